@@ -1,0 +1,89 @@
+//! Numbers as people read them, and as they type them.
+
+/// Four significant digits, with an exponent where that is shorter.
+pub(super) fn short(value: f64) -> String {
+    significant(value, 4)
+}
+
+/// `digits` significant digits, trailing zeros dropped.
+fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = value.abs().log10().floor();
+    if !(-3.0..6.0).contains(&exponent) {
+        let text = format!("{value:.*e}", digits - 1);
+        return match text.split_once('e') {
+            Some((mantissa, exponent)) if mantissa.contains('.') => {
+                format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
+            }
+            _ => text,
+        };
+    }
+    let decimals = digits as i32 - 1 - exponent as i32;
+    // Where the digits end before the point, zeros follow.
+    let text = if decimals >= 0 {
+        format!("{value:.*}", decimals as usize)
+    } else {
+        let unit = 10f64.powi(-decimals);
+        format!("{:.0}", (value / unit).round() * unit)
+    };
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Three significant digits: what a slider's position is good for.
+pub(super) fn round_to_slider(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+/// A typed number, with an optional SI prefix and this unit: `2.5`, `1e4`, `12 kN`, `0.3 MPa`.
+pub(super) fn parse(text: &str, unit: &str) -> Option<f64> {
+    let text = text.trim().replace(',', ".").replace('\u{2212}', "-");
+    if let Ok(value) = text.parse() {
+        return Some(value);
+    }
+    let without_unit = text.strip_suffix(unit).unwrap_or(&text).trim_end();
+    if let Ok(value) = without_unit.parse() {
+        return Some(value);
+    }
+    let prefixes = [('k', 1e3), ('M', 1e6), ('G', 1e9), ('m', 1e-3)];
+    let (prefix, factor) = prefixes.into_iter().find(|(p, _)| without_unit.ends_with(*p))?;
+    without_unit.strip_suffix(prefix)?.trim_end().parse::<f64>().ok().map(|v| v * factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, text) in [
+            (0.0, "0"),
+            (40_000.0, "40000"),
+            (-1.5, "-1.5"),
+            (0.123_456, "0.1235"),
+            (1e6, "1e6"),
+            (1.2345e9, "1.234e9"),
+            (-2.5e-7, "-2.5e-7"),
+            (99_999.9, "100000"),
+            (226_993.0, "227000"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+    }
+
+    #[test]
+    fn typed_numbers_take_units_and_prefixes() {
+        for (text, value) in
+            [("2.5", 2.5), ("1e4", 1e4), ("12 kN", 12e3), ("12kN", 12e3), ("7 N", 7.0), ("3k", 3e3), ("-0,5", -0.5)]
+        {
+            assert_eq!(parse(text, "N"), Some(value), "{text}");
+        }
+        assert_eq!(parse("1.5 GPa", "Pa"), Some(1.5e9));
+        assert_eq!(parse("two", "N"), None);
+        assert_eq!(parse("", "N"), None);
+    }
+}

@@ -1,0 +1,456 @@
+//! The lab: a scene, its simulation, and how it is looked at. Window, shot and tests show it through [`Lab::ui`].
+
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use egui::{CentralPanel, Key, Panel, Rect, Sense, TextureId, Ui};
+use nalgebra::Vector2;
+
+use super::panel::{self, Action, PanelState, Shown, ViewOptions};
+use super::{help, overlay};
+use crate::mesh::Mesh;
+use crate::render::{Camera, Frame, Margins};
+use crate::scene::{self, MethodKind, Scene, Source};
+use crate::simulation::{Field, Simulation, SimulationError, Status};
+
+/// Width of the panel, points.
+pub const PANEL_WIDTH: f32 = 324.0;
+
+/// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
+const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 120.0 };
+
+/// How long a message stays.
+const TOAST: Duration = Duration::from_secs(4);
+
+/// What the surroundings of the lab must do; the lab cannot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Save a picture.
+    Screenshot,
+}
+
+/// Everything the window shows.
+#[derive(Debug)]
+pub struct Lab {
+    source: Source,
+    scene: Scene,
+    simulation: Simulation,
+    /// The same scene under linear theory; `None` where it could not be set up.
+    linear: Option<Simulation>,
+    running: bool,
+    view: ViewOptions,
+    panel: PanelState,
+    /// `None`: follows the body.
+    camera: Option<Camera>,
+    fitted: Camera,
+    view_rect: Rect,
+    adapter: String,
+    toast: Option<(String, f64)>,
+    drawing: Drawing,
+}
+
+/// What is drawn of the mesh, kept between frames.
+#[derive(Debug, Default)]
+struct Drawing {
+    triangles: Vec<[u32; 3]>,
+    lines: Vec<[u32; 2]>,
+    positions: Vec<Vector2<f64>>,
+    values: Vec<f64>,
+    range: [f64; 2],
+    line_color: [u8; 4],
+    background: [u8; 3],
+}
+
+impl Drawing {
+    fn new(mesh: &Mesh) -> Self {
+        let triangles: Vec<[u32; 3]> = mesh.triangles().map(|t| [t[0], t[1], t[2]]).collect();
+        let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let lines: BTreeSet<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        Self { triangles, lines: lines.into_iter().collect(), ..Self::default() }
+    }
+}
+
+impl Lab {
+    /// A lab with this scene, iterating from rest.
+    #[must_use]
+    pub fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
+        let drawing = Drawing::new(&simulation.system().mesh);
+        let mut lab = Self {
+            source,
+            linear: None,
+            scene,
+            simulation,
+            running: true,
+            view: ViewOptions::default(),
+            panel: PanelState::default(),
+            camera: None,
+            fitted: Camera { center: Vector2::zeros(), scale: 1.0 },
+            view_rect: Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1.0, 1.0)),
+            adapter: String::new(),
+            toast: None,
+            drawing,
+        };
+        lab.solve_linear();
+        lab
+    }
+
+    /// Names what draws the lab.
+    pub fn set_adapter(&mut self, adapter: String) {
+        self.adapter = adapter;
+    }
+
+    /// Shows or hides the panel.
+    pub fn set_panel(&mut self, shown: bool) {
+        self.view.panel = shown;
+    }
+
+    /// Shows or hides the outlines at rest and of the linear solution.
+    pub fn set_outlines(&mut self, shown: bool) {
+        self.view.rest_outline = shown;
+        self.view.ghost = shown;
+    }
+
+    /// The scene as it stands.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The simulation as it stands.
+    #[must_use]
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// Displacement of the linear solution, m, where there is one.
+    #[must_use]
+    pub fn linear_displacement(&self) -> Option<&[Vector2<f64>]> {
+        self.linear.as_ref().map(Simulation::displacement)
+    }
+
+    /// The view's place in the window, points.
+    #[must_use]
+    pub fn view_rect(&self) -> Rect {
+        self.view_rect
+    }
+
+    /// The camera of the last [`Self::ui`].
+    #[must_use]
+    pub fn camera(&self) -> Camera {
+        self.camera.unwrap_or(self.fitted)
+    }
+
+    pub(super) fn view(&self) -> &ViewOptions {
+        &self.view
+    }
+
+    /// Title for the window.
+    #[must_use]
+    pub fn title(&self) -> String {
+        format!("{} \u{2013} warpbeam", self.scene.name)
+    }
+
+    /// Makes one iteration if it runs; says whether there is another to make.
+    pub fn advance(&mut self) -> bool {
+        if self.running {
+            self.simulation.step();
+        }
+        self.iterates()
+    }
+
+    /// Whether the next frame changes the body.
+    #[must_use]
+    pub fn iterates(&self) -> bool {
+        self.running && *self.simulation.status() == Status::Running
+    }
+
+    /// Iterates to the end.
+    pub fn solve(&mut self) {
+        self.simulation.solve();
+    }
+
+    /// What is drawn of the body, as of the last [`Self::ui`].
+    #[must_use]
+    pub fn frame(&self) -> Frame<'_> {
+        let d = &self.drawing;
+        Frame {
+            positions: &d.positions,
+            triangles: &d.triangles,
+            values: &d.values,
+            range: d.range,
+            lines: if self.view.wireframe { &d.lines } else { &[] },
+            line_color: d.line_color,
+            background: d.background,
+        }
+    }
+
+    fn update_drawing(&mut self, visuals: &egui::Visuals) {
+        let d = &mut self.drawing;
+        d.positions.clear();
+        d.positions
+            .extend(self.simulation.system().mesh.nodes.iter().zip(self.simulation.displacement()).map(|(x, u)| x + u));
+        self.simulation.field(self.view.field, &mut d.values);
+        d.range = self.view.fixed_range.unwrap_or_else(|| panel::range_of(&d.values));
+        let background = if visuals.dark_mode { [22, 24, 28] } else { [244, 245, 247] };
+        d.background = background;
+        d.line_color = if visuals.dark_mode { [0, 0, 0, 110] } else { [0, 0, 0, 90] };
+    }
+
+    /// The field's values at the two ends of the colour map.
+    pub(super) fn color_range(&self) -> [f64; 2] {
+        self.drawing.range
+    }
+
+    /// Node positions x of the last [`Self::ui`], m.
+    pub(super) fn positions(&self) -> &[Vector2<f64>] {
+        &self.drawing.positions
+    }
+
+    /// Sizes and colours that the defaults get wrong here.
+    fn style(ctx: &egui::Context) {
+        ctx.all_styles_mut(|style| {
+            style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(11.0));
+        });
+    }
+
+    /// Shows everything, and does what was asked for. `body` is the texture that the body is drawn into after this, if
+    /// there is one.
+    pub fn ui(&mut self, ui: &mut Ui, body: Option<TextureId>) -> Vec<Request> {
+        Self::style(ui.ctx());
+        let mut actions = Vec::new();
+        if self.view.panel {
+            let shown = Shown {
+                scene: &self.scene,
+                scene_name: &self.source.name,
+                simulation: &self.simulation,
+                running: self.running,
+                adapter: &self.adapter,
+            };
+            let panel = Panel::left("panel").exact_size(PANEL_WIDTH).resizable(false);
+            actions = panel.show(ui, |ui| panel::show(ui, &shown, &mut self.panel, &mut self.view)).inner;
+        }
+        self.keys(ui.ctx(), &mut actions);
+        let mut requests = Vec::new();
+        for action in actions {
+            self.act(ui.ctx(), action, &mut requests);
+        }
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, body));
+        help::show(ui.ctx(), &mut self.view.help);
+        if self.iterates() {
+            ui.ctx().request_repaint();
+        }
+        requests
+    }
+
+    fn body_view(&mut self, ui: &mut Ui, body: Option<TextureId>) {
+        self.update_drawing(ui.visuals());
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        self.view_rect = rect;
+        self.follow(rect);
+        self.pan_and_zoom(ui, &response);
+        let painter = ui.painter_at(rect);
+        if let Some(texture) = body {
+            let uv = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+            painter.image(texture, rect, uv, egui::Color32::WHITE);
+        }
+        overlay::paint(&painter, rect, self, ui.visuals());
+        self.paint_toast(ui, &painter, rect);
+    }
+
+    /// Fits the view to the body at rest and now, while nobody has moved it.
+    fn follow(&mut self, rect: Rect) {
+        let mesh = &self.simulation.system().mesh;
+        let (mut low, mut high) = mesh.bounds();
+        let mut include = |positions: &mut dyn Iterator<Item = Vector2<f64>>| {
+            for p in positions {
+                low = low.inf(&p);
+                high = high.sup(&p);
+            }
+        };
+        include(&mut self.drawing.positions.iter().copied());
+        if let Some(linear) = self.ghost() {
+            // The linear solution of a large load is absurdly long; the body must not shrink to a dot beside it.
+            const LARGEST: f64 = 1.5;
+            let size = (high - low).norm();
+            let ghost: Vec<_> = mesh.nodes.iter().zip(linear).map(|(x, u)| x + u).collect();
+            let (ghost_low, ghost_high) = ghost.iter().fold((low, high), |(low, high), p| (low.inf(p), high.sup(p)));
+            if (ghost_high - ghost_low).norm() < LARGEST * size {
+                (low, high) = (ghost_low, ghost_high);
+            }
+        }
+        self.fitted = Camera::fit(low, high, [f64::from(rect.width()), f64::from(rect.height())], FIT_MARGINS);
+    }
+
+    /// The linear solution, if it is to be shown.
+    pub(super) fn ghost(&self) -> Option<&[Vector2<f64>]> {
+        let wanted = self.view.ghost && self.scene.solver.method != MethodKind::Linear;
+        self.linear_displacement().filter(|_| wanted)
+    }
+
+    fn pan_and_zoom(&mut self, ui: &Ui, response: &egui::Response) {
+        let mut camera = self.camera();
+        let before = camera;
+        let drag = response.drag_delta();
+        camera.pan([f64::from(drag.x), f64::from(drag.y)]);
+        if let Some(pointer) = response.hover_pos() {
+            let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+            let factor = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
+            let at = pointer - response.rect.center();
+            camera.zoom(factor, [f64::from(at.x), f64::from(at.y)]);
+        }
+        if camera != before {
+            self.camera = Some(camera);
+        }
+        if response.double_clicked() {
+            self.camera = None;
+        }
+    }
+
+    fn keys(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        if ctx.text_edit_focused() {
+            return;
+        }
+        let pressed: Vec<Key> = ctx.input(|i| {
+            let plain = i.modifiers.is_none();
+            help::SHORTCUTS.iter().map(|s| s.key).filter(|&k| plain && i.key_pressed(k)).collect()
+        });
+        if ctx.input(|i| i.key_pressed(Key::Escape)) {
+            self.view.help = false;
+        }
+        for key in pressed {
+            match key {
+                Key::Space => actions.push(Action::Run(!self.running)),
+                Key::N => actions.push(Action::Step),
+                Key::R => actions.push(Action::Reset),
+                Key::F => actions.push(Action::Fit),
+                Key::W => self.view.wireframe ^= true,
+                Key::O => self.view.rest_outline ^= true,
+                Key::G => self.view.ghost ^= true,
+                Key::Num1 => self.color_with(Field::VonMises),
+                Key::Num2 => self.color_with(Field::EnergyDensity),
+                Key::Num3 => self.color_with(Field::LargestStrain),
+                Key::Num4 => self.color_with(Field::RotationAngle),
+                Key::P => self.view.panel ^= true,
+                Key::T => actions.push(Action::ToggleTheme),
+                Key::S => actions.push(Action::Screenshot),
+                Key::C => actions.push(Action::Copy),
+                Key::F1 => self.view.help ^= true,
+                _ => {}
+            }
+        }
+    }
+
+    fn color_with(&mut self, field: Field) {
+        if self.view.field != field {
+            self.view.field = field;
+            self.view.fixed_range = None;
+        }
+    }
+
+    fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
+        match action {
+            Action::Open(id) => self.open(ctx, id),
+            Action::Edit(label, scene) => {
+                if let Err(error) = self.set_scene(*scene) {
+                    self.panel.messages.insert(label, error.to_string());
+                } else {
+                    self.panel.messages.remove(label);
+                }
+            }
+            Action::Run(run) => self.running = run,
+            Action::Step => {
+                self.running = false;
+                self.simulation.step();
+            }
+            Action::Reset => self.simulation.reset(),
+            Action::Fit => self.camera = None,
+            Action::ToggleTheme => {
+                let dark = ctx.theme() == egui::Theme::Dark;
+                ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+            }
+            Action::Screenshot => requests.push(Request::Screenshot),
+            Action::Copy => self.copy(ctx),
+        }
+    }
+
+    /// Changes the scene under the body; it goes on from where it is if it can.
+    ///
+    /// # Errors
+    /// What is wrong with the scene. The lab is unchanged then.
+    pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
+        self.simulation.change_scene(&scene)?;
+        if self.scene.beam != scene.beam {
+            self.drawing = Drawing::new(&self.simulation.system().mesh);
+        }
+        self.scene = scene;
+        self.solve_linear();
+        Ok(())
+    }
+
+    fn open(&mut self, ctx: &egui::Context, id: &str) {
+        let source = Source { name: id.to_owned(), assignments: Vec::new() };
+        let opened = scene::open(&source)
+            .map_err(|e| e.to_string())
+            .and_then(|scene| self.set_scene(scene).map_err(|e| e.to_string()));
+        match opened {
+            Ok(()) => {
+                self.source = source;
+                self.simulation.reset();
+                self.panel.clear();
+                self.camera = None;
+                self.view.fixed_range = None;
+            }
+            Err(message) => self.say(ctx, message),
+        }
+    }
+
+    fn solve_linear(&mut self) {
+        let scene = Scene {
+            solver: scene::SolverSettings { method: MethodKind::Linear, ..self.scene.solver.clone() },
+            ..self.scene.clone()
+        };
+        let reused = self.linear.as_mut().is_some_and(|linear| linear.change_scene(&scene).is_ok());
+        if !reused {
+            self.linear = Simulation::new(&scene).ok();
+        }
+        if let Some(linear) = &mut self.linear {
+            linear.solve();
+        }
+    }
+
+    fn copy(&mut self, ctx: &egui::Context) {
+        match self.scene.to_toml() {
+            Ok(toml) => {
+                ctx.copy_text(format!("# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}"));
+                self.say(ctx, "Scene copied as TOML".to_owned());
+            }
+            Err(error) => self.say(ctx, format!("The scene could not be written as TOML: {error}")),
+        }
+    }
+
+    /// Shows a message for a while.
+    pub fn say(&mut self, ctx: &egui::Context, message: String) {
+        self.toast = Some((message, ctx.input(|i| i.time) + TOAST.as_secs_f64()));
+    }
+
+    fn paint_toast(&mut self, ui: &Ui, painter: &egui::Painter, rect: Rect) {
+        let Some((message, until)) = &self.toast else {
+            return;
+        };
+        let left = until - ui.input(|i| i.time);
+        if left <= 0.0 {
+            self.toast = None;
+            return;
+        }
+        overlay::boxed_text(
+            painter,
+            rect.center_bottom() - egui::vec2(0.0, 24.0),
+            egui::Align2::CENTER_BOTTOM,
+            message,
+            ui.visuals(),
+            ui.visuals().strong_text_color(),
+            rect.width() - 48.0,
+        );
+        ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));
+    }
+}

@@ -1,0 +1,50 @@
+//! The window and its pictures. [`lab::Lab`] is what is shown: a scene, its simulation and how to look at it. The
+//! window, the offscreen shot and the tests of the panel all show the same lab through [`lab::Lab::ui`].
+
+use thiserror::Error;
+
+use crate::render::RenderError;
+
+mod field;
+mod format;
+mod help;
+pub mod lab;
+mod overlay;
+mod panel;
+mod shot;
+mod stage;
+mod window;
+
+pub use lab::{Lab, PANEL_WIDTH};
+pub use shot::{MAX_SHOT_SIDE, ShotOptions, picture, shot};
+pub use window::{Display, run};
+
+/// Why the window closed.
+#[derive(Debug, Error)]
+pub enum AppError {
+    /// Nothing to draw with, or a picture not written.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The window system gave no window.
+    #[error("no window: {0}")]
+    Window(String),
+}
+
+/// Light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum ThemeChoice {
+    /// Light text on dark.
+    #[default]
+    Dark,
+    /// Dark text on light.
+    Light,
+}
+
+impl From<ThemeChoice> for egui::Theme {
+    fn from(choice: ThemeChoice) -> Self {
+        match choice {
+            ThemeChoice::Dark => Self::Dark,
+            ThemeChoice::Light => Self::Light,
+        }
+    }
+}

@@ -1,0 +1,366 @@
+//! What is painted over the body: outlines, supports, the load's arrow, legend, scale, and words.
+
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
+use nalgebra::Vector2;
+
+use super::format;
+use super::lab::Lab;
+use super::panel::status_words;
+use crate::mesh::Segment;
+use crate::render::{Camera, colormap};
+use crate::scene::{Load, Place};
+
+/// The colours of the overlay, chosen to differ in brightness too.
+struct Palette {
+    text: Color32,
+    rest: Color32,
+    ghost: Color32,
+    outline: Color32,
+    support: Color32,
+    load: Color32,
+}
+
+impl Palette {
+    fn new(visuals: &Visuals) -> Self {
+        if visuals.dark_mode {
+            Self {
+                text: Color32::from_gray(215),
+                rest: Color32::from_gray(110),
+                ghost: Color32::from_rgb(240, 150, 60),
+                outline: Color32::from_gray(235),
+                support: Color32::from_gray(190),
+                load: Color32::from_rgb(255, 105, 97),
+            }
+        } else {
+            Self {
+                text: Color32::from_gray(40),
+                rest: Color32::from_gray(160),
+                ghost: Color32::from_rgb(200, 90, 0),
+                outline: Color32::from_gray(30),
+                support: Color32::from_gray(70),
+                load: Color32::from_rgb(190, 20, 30),
+            }
+        }
+    }
+}
+
+/// Metres to window positions.
+struct Projection {
+    camera: Camera,
+    rect: Rect,
+}
+
+impl Projection {
+    fn offset(&self, p: Vector2<f64>) -> [f64; 2] {
+        self.camera.to_view(p)
+    }
+
+    /// The window position of a point; far outside the view, somewhere outside the view.
+    fn point(&self, p: Vector2<f64>) -> Pos2 {
+        let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
+        self.rect.center() + vec2(x, y)
+    }
+
+    /// The part of a segment that is in or near the view: coordinates far beyond it have no digits left as f32.
+    fn segment(&self, a: Vector2<f64>, b: Vector2<f64>) -> Option<[Pos2; 2]> {
+        let half = [f64::from(self.rect.width()) * 0.5 + 16.0, f64::from(self.rect.height()) * 0.5 + 16.0];
+        let [from, to] = clip(self.offset(a), self.offset(b), half)?;
+        let place = |p: [f64; 2]| self.rect.center() + vec2(p[0] as f32, p[1] as f32);
+        Some([place(from), place(to)])
+    }
+}
+
+/// Liang and Barsky 1984: the part of a segment inside the box |x| ≤ half₀, |y| ≤ half₁.
+fn clip(a: [f64; 2], b: [f64; 2], half: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        for (p, q) in [(-d[axis], a[axis] + half[axis]), (d[axis], half[axis] - a[axis])] {
+            if p == 0.0 {
+                if q < 0.0 {
+                    return None;
+                }
+            } else if p < 0.0 {
+                enter = enter.max(q / p);
+            } else {
+                leave = leave.min(q / p);
+            }
+        }
+    }
+    let at = |t: f64| [a[0] + t * d[0], a[1] + t * d[1]];
+    (enter <= leave).then(|| [at(enter), at(leave)])
+}
+
+/// Paints everything.
+pub(super) fn paint(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals) {
+    if rect.width() < 8.0 || rect.height() < 8.0 {
+        return;
+    }
+    let palette = Palette::new(visuals);
+    let projection = Projection { camera: lab.camera(), rect };
+    let system = lab.simulation().system();
+    let outline = system.mesh.outline();
+    let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
+        for Segment { ends: [a, b] } in &outline {
+            if let Some(segment) = projection.segment(place(*a), place(*b)) {
+                painter.line_segment(segment, stroke);
+            }
+        }
+    };
+    let rest = |n: u32| system.mesh.nodes[n as usize];
+    if lab.view().rest_outline {
+        draw(&rest, Stroke::new(1.0, palette.rest));
+    }
+    if let Some(linear) = lab.ghost() {
+        draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.ghost));
+    }
+    draw(&|n| lab.positions()[n as usize], Stroke::new(1.2, palette.outline));
+    supports(painter, &projection, lab, &outline, &palette);
+    loads(painter, &projection, lab, &palette, visuals);
+    legend(painter, rect, lab, &palette, visuals);
+    key(painter, rect, lab, &palette, visuals);
+    scale_bar(painter, rect, &projection.camera, &palette);
+    words(painter, rect, lab, visuals);
+}
+
+/// Held edges: hatched where both directions are held, rollers where one is. Held nodes beside none: a triangle.
+fn supports(painter: &Painter, projection: &Projection, lab: &Lab, outline: &[Segment], palette: &Palette) {
+    const HATCH: f32 = 7.0;
+    const ROLLER: f32 = 3.5;
+    let pattern = &lab.simulation().system().pattern;
+    let held = |n: u32| [0, 1].map(|axis| pattern.is_held(2 * n as usize + axis));
+    let stroke = Stroke::new(1.5, palette.support);
+    let mut drawn = vec![false; lab.positions().len()];
+    for Segment { ends: [a, b] } in outline {
+        let both = [0, 1].map(|axis| held(*a)[axis] && held(*b)[axis]);
+        if both == [false, false] {
+            continue;
+        }
+        let [p, q] = [a, b].map(|n| projection.point(lab.positions()[*n as usize]));
+        // The outline runs counter-clockwise in the plane, so the outside is on its right; the window's y points down.
+        let along = (q - p).normalized();
+        let outward = vec2(-along.y, along.x);
+        if !along.is_finite() || along == Vec2::ZERO {
+            continue;
+        }
+        if both == [true, true] {
+            drawn[*a as usize] = true;
+            drawn[*b as usize] = true;
+            painter.line_segment([p, q], Stroke::new(2.5, palette.support));
+            let strokes = ((q - p).length() / HATCH).ceil().clamp(1.0, 500.0);
+            for i in 0..strokes as u32 {
+                let foot = p + (q - p) * (i as f32 + 0.5) / strokes;
+                painter.line_segment([foot, foot + (outward + along * 0.8) * HATCH], stroke);
+            }
+        } else {
+            for end in [p, q] {
+                painter.circle_stroke(end + outward * (ROLLER + 1.5), ROLLER, stroke);
+            }
+            painter.line_segment([p, q].map(|e| e + outward * (2.0 * ROLLER + 3.0)), stroke);
+        }
+    }
+    for (n, drawn) in (0..).zip(drawn) {
+        if held(n) == [true, true] && !drawn {
+            let p = projection.point(lab.positions()[n as usize]);
+            let foot = [p, p + vec2(-7.0, 11.0), p + vec2(7.0, 11.0)];
+            painter.add(egui::Shape::convex_polygon(foot.to_vec(), palette.support.gamma_multiply(0.6), stroke));
+        }
+    }
+}
+
+const ARROW: f32 = 58.0;
+
+fn arrow(painter: &Painter, from: Pos2, direction: Vec2, color: Color32) -> Pos2 {
+    const HEAD: f32 = 12.0;
+    let direction = direction.normalized();
+    let tip = from + direction * ARROW;
+    let side = vec2(-direction.y, direction.x) * (HEAD * 0.42);
+    let neck = tip - direction * HEAD;
+    painter.line_segment([from, neck], Stroke::new(3.0, color));
+    painter.add(egui::Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
+    tip
+}
+
+/// Where a load pulls now: the middle of its edge, or its node, m.
+fn load_point(lab: &Lab, place: &Place) -> Option<Vector2<f64>> {
+    let mesh = &lab.simulation().system().mesh;
+    let nodes = match place {
+        Place::Edge(name) => mesh.edge_nodes(name)?,
+        Place::At(at) => vec![mesh.nearest_node((*at).into())],
+    };
+    let sum: Vector2<f64> = nodes.iter().map(|&n| lab.positions()[n as usize]).sum();
+    (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
+}
+
+fn loads(painter: &Painter, projection: &Projection, lab: &Lab, palette: &Palette, visuals: &Visuals) {
+    let view = projection.rect;
+    for load in &lab.scene().loads {
+        let (vector, from, label) = match load {
+            Load::Force { place, force } => {
+                let Some(point) = load_point(lab, place) else {
+                    continue;
+                };
+                let magnitude = force[0].hypot(force[1]);
+                (force, projection.point(point), format!("{} N", format::short(magnitude)))
+            }
+            Load::Gravity { acceleration } => {
+                let magnitude = acceleration[0].hypot(acceleration[1]);
+                (acceleration, view.right_top() + vec2(-64.0, 30.0), format!("{} m/s²", format::short(magnitude)))
+            }
+        };
+        let direction = vec2(vector[0] as f32, -vector[1] as f32).normalized();
+        if direction == Vec2::ZERO || !direction.is_finite() {
+            continue;
+        }
+        let tip = arrow(painter, from, direction, palette.load);
+        let (anchor, at) = if direction.y.abs() > direction.x.abs() {
+            let below = direction.y > 0.0;
+            let anchor = if below { Align2::CENTER_TOP } else { Align2::CENTER_BOTTOM };
+            (anchor, tip + vec2(0.0, 6.0 * direction.y.signum()))
+        } else {
+            (Align2::CENTER_BOTTOM, tip - direction * (ARROW * 0.5) - vec2(0.0, 10.0))
+        };
+        boxed_text(painter, at, anchor, &label, visuals, palette.load, 200.0);
+    }
+}
+
+/// Text on a box of the background's colour, moved into the view where it would leave it.
+pub(super) fn boxed_text(
+    painter: &Painter,
+    at: Pos2,
+    anchor: Align2,
+    text: &str,
+    visuals: &Visuals,
+    color: Color32,
+    width: f32,
+) {
+    let galley = painter.layout(text.to_owned(), FontId::proportional(13.0), color, width.max(40.0));
+    let view = painter.clip_rect().shrink(8.0);
+    let wanted = anchor.anchor_size(at, galley.size());
+    let corner = wanted.min.clamp(view.min, (view.max - galley.size()).max(view.min));
+    let rect = Rect::from_min_size(corner, galley.size());
+    painter.rect_filled(rect.expand(4.0), 4.0, visuals.panel_fill.gamma_multiply(0.85));
+    painter.galley(rect.min, galley, color);
+}
+
+/// The colour bar with its title and its values, along the bottom of the view.
+fn legend(painter: &Painter, rect: Rect, lab: &Lab, palette: &Palette, visuals: &Visuals) {
+    const BAR: Vec2 = vec2(240.0, 12.0);
+    const STEPS: u32 = 4;
+    const STRIPS: u32 = 128;
+    if rect.width() < 460.0 || rect.height() < 120.0 {
+        return;
+    }
+    let field = lab.view().field;
+    let [low, high] = lab.color_range();
+    let font = FontId::proportional(12.0);
+    let unit = if field.unit().is_empty() { String::new() } else { format!(" [{}]", field.unit()) };
+    let range = if lab.view().fixed_range.is_some() { ", fixed range" } else { "" };
+    let title = painter.layout_no_wrap(format!("{}{unit}{range}", field.name()), font.clone(), palette.text);
+    let corner = rect.right_bottom() - vec2(BAR.x + 44.0, 58.0);
+    let frame = Rect::from_min_size(corner - vec2(28.0, 4.0), vec2(BAR.x + 60.0, 56.0));
+    painter.rect_filled(frame, 5.0, visuals.panel_fill.gamma_multiply(0.85));
+    painter.galley(corner, title, palette.text);
+    let bar = Rect::from_min_size(corner + vec2(0.0, 18.0), BAR);
+    let mut mesh = egui::Mesh::default();
+    for i in 0..STRIPS {
+        let at = |i: u32| bar.left() + bar.width() * i as f32 / STRIPS as f32;
+        let [r, g, b] = colormap::color((f64::from(i) + 0.5) / f64::from(STRIPS));
+        let strip = Rect::from_min_max(pos2(at(i), bar.top()), pos2(at(i + 1), bar.bottom()));
+        mesh.add_colored_rect(strip, Color32::from_rgb(r, g, b));
+    }
+    painter.add(mesh);
+    for i in 0..=STEPS {
+        let t = f64::from(i) / f64::from(STEPS);
+        let value = format::short(low * (1.0 - t) + high * t);
+        let x = bar.left() + bar.width() * t as f32;
+        painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
+        painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, value, font.clone(), palette.text);
+    }
+}
+
+/// Which line is what.
+fn key(painter: &Painter, rect: Rect, lab: &Lab, palette: &Palette, visuals: &Visuals) {
+    let mut lines = vec![(palette.outline, lab.scene().solver.method.id())];
+    if lab.ghost().is_some() {
+        lines.push((palette.ghost, "linear"));
+    }
+    if lab.view().rest_outline {
+        lines.push((palette.rest, "at rest"));
+    }
+    let font = FontId::proportional(12.0);
+    let galleys: Vec<_> = lines
+        .iter()
+        .map(|(color, word)| (*color, painter.layout_no_wrap((*word).to_owned(), font.clone(), palette.text)))
+        .collect();
+    let width: f32 = galleys.iter().map(|(_, g)| g.size().x + 38.0).sum();
+    let frame = Rect::from_min_size(rect.left_top() + vec2(12.0, 12.0), vec2(width - 6.0, 18.0));
+    painter.rect_filled(frame.expand(4.0), 5.0, visuals.panel_fill.gamma_multiply(0.85));
+    let mut x = frame.left() + 2.0;
+    for (color, galley) in galleys {
+        let y = frame.center().y;
+        painter.line_segment([pos2(x, y), pos2(x + 18.0, y)], Stroke::new(2.5, color));
+        let advance = galley.size().x + 38.0;
+        painter.galley(pos2(x + 24.0, y - galley.size().y * 0.5), galley, palette.text);
+        x += advance;
+    }
+}
+
+/// A bar of a round length.
+fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
+    if rect.width() < 220.0 || rect.height() < 80.0 {
+        return;
+    }
+    let length = round_length(110.0 / camera.scale);
+    let bar = (length * camera.scale) as f32;
+    let left = rect.left_bottom() + vec2(18.0, -20.0);
+    let stroke = Stroke::new(1.5, palette.text);
+    painter.line_segment([left, left + vec2(bar, 0.0)], stroke);
+    for x in [0.0, bar] {
+        painter.line_segment([left + vec2(x, -4.0), left + vec2(x, 4.0)], stroke);
+    }
+    let middle = left + vec2(bar * 0.5, -6.0);
+    painter.text(
+        middle,
+        Align2::CENTER_BOTTOM,
+        format!("{} m", format::short(length)),
+        FontId::proportional(12.0),
+        palette.text,
+    );
+}
+
+/// The largest of 1, 2, 5 · 10ⁿ not above `length`.
+fn round_length(length: f64) -> f64 {
+    let power = 10f64.powf(length.log10().floor());
+    [5.0, 2.0].into_iter().map(|m| m * power).find(|&l| l <= length).unwrap_or(power)
+}
+
+/// A bad status, in words, in the view.
+fn words(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals) {
+    let (words, bad) = status_words(lab.simulation().status(), true);
+    if bad {
+        let at = rect.center_top() + vec2(0.0, 46.0);
+        boxed_text(painter, at, Align2::CENTER_TOP, &words, visuals, visuals.error_fg_color, rect.width() - 48.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_are_clipped_to_the_box() {
+        assert_eq!(clip([-20.0, 0.0], [20.0, 0.0], [10.0, 5.0]), Some([[-10.0, 0.0], [10.0, 0.0]]));
+        assert_eq!(clip([0.0, 0.0], [1.0, 1.0], [10.0, 5.0]), Some([[0.0, 0.0], [1.0, 1.0]]));
+        assert_eq!(clip([-20.0, 6.0], [20.0, 6.0], [10.0, 5.0]), None);
+        let [a, b] = clip([0.0, 0.0], [1e12, 1e12], [10.0, 5.0]).unwrap();
+        assert_eq!((a, b[0].round(), b[1].round()), ([0.0, 0.0], 5.0, 5.0));
+    }
+
+    #[test]
+    fn bar_lengths_are_round() {
+        for (length, round) in [(1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (0.07, 0.05), (499.0, 200.0)] {
+            assert!((round_length(length) - round).abs() < 1e-12 * round, "{length}");
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! The window: winit events in, frames out. At rest nothing is drawn.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::ViewportId;
+use egui_wgpu::ScreenDescriptor;
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::window::{Window, WindowId};
+
+use super::AppError;
+use super::lab::{Lab, Request};
+use super::shot::picture;
+use super::stage::Stage;
+use crate::render::{Gpu, RenderError};
+use crate::scene::{Scene, Source};
+use crate::simulation::Simulation;
+
+/// A connection to a display.
+pub struct Display(EventLoop<()>);
+
+impl Display {
+    /// Connects to the display.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn open() -> Result<Self, String> {
+        // winit panics where an X library it loads by name is missing; that is no reason to die without a word.
+        let hook = std::panic::take_hook();
+        std::panic::set_hook(Box::new(|_| {}));
+        let opened = std::panic::catch_unwind(EventLoop::new);
+        std::panic::set_hook(hook);
+        match opened {
+            Ok(Ok(event_loop)) => Ok(Self(event_loop)),
+            Ok(Err(error)) => Err(error.to_string()),
+            Err(_) => {
+                Err("an X11 library is missing; scripts/setup installs libxkbcommon-x11-0, libxcursor1 and libxi6"
+                    .to_owned())
+            }
+        }
+    }
+}
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// [`AppError`]: no adapter, or no window.
+pub fn run(display: Display, source: Source, scene: Scene, simulation: Simulation) -> Result<(), AppError> {
+    let mut app = App {
+        lab: Lab::new(source, scene, simulation),
+        ctx: egui::Context::default(),
+        shown: None,
+        wake: None,
+        error: None,
+    };
+    display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
+    app.error.map_or(Ok(()), Err)
+}
+
+struct App {
+    lab: Lab,
+    ctx: egui::Context,
+    shown: Option<Shown>,
+    /// When egui wants its next frame without an event.
+    wake: Option<Instant>,
+    error: Option<AppError>,
+}
+
+/// A window with what draws into it. Dropped in this order: the surface before its window.
+struct Shown {
+    surface: wgpu::Surface<'static>,
+    configuration: wgpu::SurfaceConfiguration,
+    stage: Stage,
+    input: egui_winit::State,
+    gpu: Gpu,
+    instance: wgpu::Instance,
+    window: Arc<Window>,
+    hidden: bool,
+    /// Frames in a row for which the surface gave no texture.
+    failures: u32,
+}
+
+/// Frames without a texture after which the window is given up.
+const MAX_FAILURES: u32 = 10;
+
+impl Shown {
+    fn new(event_loop: &ActiveEventLoop, lab: &Lab, ctx: &egui::Context) -> Result<Self, AppError> {
+        let attributes =
+            Window::default_attributes().with_title(lab.title()).with_inner_size(LogicalSize::new(1280.0, 800.0));
+        let window = Arc::new(event_loop.create_window(attributes).map_err(|e| AppError::Window(e.to_string()))?);
+        let (instance, surface, gpu) = Gpu::first_of_backends(|backends| {
+            let display = Box::new(event_loop.owned_display_handle());
+            let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
+            descriptor.backends = backends;
+            let instance = wgpu::Instance::new(descriptor);
+            let surface = instance.create_surface(window.clone()).map_err(|e| RenderError::NoAdapter {
+                tried: format!("{backends:?}: no surface for the window: {e}"),
+            })?;
+            let gpu = Gpu::request(&instance, Some(&surface))?;
+            Ok((instance, surface, gpu))
+        })?;
+        let capabilities = surface.get_capabilities(&gpu.adapter);
+        let format = egui_wgpu::preferred_framebuffer_format(&capabilities.formats)
+            .map_err(|e| RenderError::NoAdapter { tried: format!("{}: {e}", gpu.describe()) })?;
+        let size = window.inner_size();
+        let mut configuration = surface
+            .get_default_config(&gpu.adapter, size.width.max(1), size.height.max(1))
+            .ok_or_else(|| RenderError::NoAdapter { tried: format!("{}: cannot show this window", gpu.describe()) })?;
+        configuration.format = format;
+        configuration.present_mode = wgpu::PresentMode::AutoVsync;
+        surface.configure(&gpu.device, &configuration);
+        let input = egui_winit::State::new(
+            ctx.clone(),
+            ViewportId::ROOT,
+            &window,
+            Some(window.scale_factor() as f32),
+            window.theme(),
+            Some(gpu.max_side() as usize),
+        );
+        let stage = Stage::new(&gpu, format);
+        Ok(Self { surface, configuration, stage, input, gpu, instance, window, hidden: false, failures: 0 })
+    }
+
+    fn resize(&mut self, width: u32, height: u32) {
+        // A minimised window has no size on some systems; there is nothing to configure then.
+        self.hidden = width == 0 || height == 0;
+        if !self.hidden {
+            self.configuration.width = width.min(self.gpu.max_side());
+            self.configuration.height = height.min(self.gpu.max_side());
+            self.surface.configure(&self.gpu.device, &self.configuration);
+        }
+    }
+
+    /// The texture of the next frame; `None` where there is none this time.
+    fn acquire(&mut self) -> Result<Option<wgpu::SurfaceTexture>, AppError> {
+        use wgpu::CurrentSurfaceTexture as Current;
+        let reason = match self.surface.get_current_texture() {
+            Current::Success(texture) | Current::Suboptimal(texture) => {
+                self.failures = 0;
+                return Ok(Some(texture));
+            }
+            Current::Occluded => return Ok(None),
+            Current::Timeout => "the display did not answer in time",
+            Current::Outdated => {
+                self.surface.configure(&self.gpu.device, &self.configuration);
+                "the surface stays out of date"
+            }
+            Current::Lost => {
+                self.surface = self
+                    .instance
+                    .create_surface(self.window.clone())
+                    .map_err(|e| AppError::Window(format!("the surface was lost: {e}")))?;
+                self.surface.configure(&self.gpu.device, &self.configuration);
+                "the surface was lost"
+            }
+            Current::Validation => "the surface is not valid",
+        };
+        self.failures += 1;
+        if self.failures >= MAX_FAILURES {
+            return Err(AppError::Window(reason.to_owned()));
+        }
+        self.window.request_redraw();
+        Ok(None)
+    }
+
+    fn screen(&self, pixels_per_point: f32) -> ScreenDescriptor {
+        ScreenDescriptor { size_in_pixels: [self.configuration.width, self.configuration.height], pixels_per_point }
+    }
+}
+
+impl App {
+    /// One frame: an iteration, the panel, the picture. Returns when egui wants the next without being asked.
+    fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<(), AppError> {
+        let Some(shown) = &mut self.shown else {
+            return Ok(());
+        };
+        if shown.hidden {
+            return Ok(());
+        }
+        let Some(texture) = shown.acquire()? else {
+            return Ok(());
+        };
+        self.lab.advance();
+        let input = shown.input.take_egui_input(&shown.window);
+        let mut requests = Vec::new();
+        let body = shown.stage.body_texture();
+        let mut output = self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui, Some(body))));
+        shown.input.handle_platform_output_with_event_loop(
+            &shown.window,
+            event_loop,
+            std::mem::take(&mut output.platform_output),
+        );
+        let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        shown.stage.set_textures(&shown.gpu, &mut output.textures_delta);
+        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let screen = shown.screen(output.pixels_per_point);
+        shown.stage.paint(&shown.gpu, &view, &screen, &primitives, &self.lab);
+        shown.window.pre_present_notify();
+        shown.gpu.queue.present(texture);
+        shown.stage.free_textures(&mut output.textures_delta);
+        shown.window.set_title(&self.lab.title());
+
+        let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
+        self.schedule(delay);
+        if requests.contains(&Request::Screenshot) {
+            self.screenshot(screen.pixels_per_point);
+        }
+        Ok(())
+    }
+
+    fn schedule(&mut self, delay: Duration) {
+        self.wake = None;
+        if delay.is_zero() {
+            if let Some(shown) = &self.shown {
+                shown.window.request_redraw();
+            }
+        } else {
+            // Very long delays overflow, and mean never.
+            self.wake = Instant::now().checked_add(delay);
+        }
+    }
+
+    fn screenshot(&mut self, pixels_per_point: f32) {
+        let Some(shown) = &self.shown else { return };
+        let size = [shown.configuration.width, shown.configuration.height];
+        let saved = free_name().and_then(|path| {
+            let picture = picture(&shown.gpu, &mut self.lab, size, pixels_per_point, self.ctx.theme());
+            picture.and_then(|p| p.write_png(&path)).map(|()| path).map_err(|e| e.to_string())
+        });
+        let message = match saved {
+            Ok(path) => format!("Saved {}", path.display()),
+            Err(reason) => format!("No screenshot: {reason}"),
+        };
+        self.lab.say(&self.ctx, message);
+        shown.window.request_redraw();
+    }
+
+    fn quit(&mut self, event_loop: &ActiveEventLoop, error: Option<AppError>) {
+        self.error = self.error.take().or(error);
+        // The surface goes while the display connection still stands.
+        self.shown = None;
+        event_loop.exit();
+    }
+}
+
+/// The first of `warpbeam-001.png`, … that does not exist.
+fn free_name() -> Result<PathBuf, String> {
+    (1..1000)
+        .map(|i| PathBuf::from(format!("warpbeam-{i:03}.png")))
+        .find(|path| !path.exists())
+        .ok_or_else(|| "warpbeam-001.png to warpbeam-999.png all exist".to_owned())
+}
+
+impl ApplicationHandler for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.shown.is_some() {
+            return;
+        }
+        match Shown::new(event_loop, &self.lab, &self.ctx) {
+            Ok(shown) => {
+                self.lab.set_adapter(shown.gpu.describe());
+                shown.window.request_redraw();
+                self.shown = Some(shown);
+            }
+            Err(error) => self.quit(event_loop, Some(error)),
+        }
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if let (StartCause::ResumeTimeReached { .. }, Some(shown)) = (cause, &self.shown) {
+            self.wake = None;
+            shown.window.request_redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(shown) = &mut self.shown else { return };
+        let wants = shown.input.on_window_event(&shown.window, &event);
+        match event {
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => {
+                return self.quit(event_loop, None);
+            }
+            WindowEvent::Resized(size) => {
+                shown.resize(size.width, size.height);
+                shown.window.request_redraw();
+            }
+            WindowEvent::Occluded(occluded) => {
+                shown.hidden = occluded;
+                if !occluded {
+                    shown.window.request_redraw();
+                }
+            }
+            WindowEvent::RedrawRequested => {
+                if let Err(error) = self.frame(event_loop) {
+                    self.quit(event_loop, Some(error));
+                }
+                return;
+            }
+            _ => {}
+        }
+        if wants.repaint {
+            shown.window.request_redraw();
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        event_loop.set_control_flow(self.wake.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+    }
+}

@@ -1,0 +1,226 @@
+//! The commands: `run`, `scenes`, `solve`, `shot`.
+//!
+//! Exit codes: 0 done and converged, 1 ran but did not converge, 2 bad input or usage, 3 no graphics adapter.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::app;
+use crate::export::{self, ExportError, Format};
+use crate::render::RenderError;
+use crate::scene::{self, Scene, SceneError, registry};
+use crate::simulation::{Simulation, SimulationError, Status};
+
+mod report;
+
+/// Ran, but did not converge.
+const NOT_CONVERGED: u8 = 1;
+/// Bad input or usage.
+const BAD_INPUT: u8 = 2;
+/// No usable graphics adapter.
+const NO_ADAPTER: u8 = 3;
+
+const EXIT_CODES: &str = "Exit codes: 0 done and converged, 1 ran but did not converge (the result is still printed), \
+2 bad input or usage, 3 no usable graphics adapter.";
+
+/// A lab for the warped stiffness (corotational finite element) method on 2D triangle beams.
+///
+/// Without a command: the window.
+#[derive(Debug, Parser)]
+#[command(name = "warpbeam", version, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Open the window. Without a display: solve the scene, write a picture, exit 0.
+    #[command(after_help = EXIT_CODES)]
+    Run {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// The picture written where there is no display.
+        #[arg(short, long, value_name = "OUT.png", default_value = "warpbeam.png")]
+        output: PathBuf,
+    },
+    /// List the built-in scenes.
+    Scenes,
+    /// Find the equilibrium of a scene, without a window.
+    #[command(after_help = EXIT_CODES)]
+    Solve {
+        #[command(flatten)]
+        scene: RequiredSceneArgs,
+        /// Print one JSON object, and nothing else, on standard output.
+        #[arg(long)]
+        json: bool,
+        /// Also write the nodes (.csv) or the mesh with its fields (.vtu, for ParaView).
+        #[arg(long, value_name = "FILE.csv|.vtu")]
+        out: Option<PathBuf>,
+    },
+    /// Draw the picture the window shows into a PNG file, without a window.
+    #[command(after_help = EXIT_CODES)]
+    Shot {
+        #[command(flatten)]
+        scene: RequiredSceneArgs,
+        /// The picture to write.
+        #[arg(short, long, value_name = "OUT.png")]
+        output: PathBuf,
+        /// Its size in pixels, 64x64 to 8192x8192.
+        #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = parse_size)]
+        size: [u32; 2],
+        /// Only the view, without the panel.
+        #[arg(long)]
+        no_panel: bool,
+        /// Light or dark.
+        #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
+        theme: app::ThemeChoice,
+    },
+}
+
+#[derive(Debug, Args)]
+struct SceneArgs {
+    /// A built-in scene (see `warpbeam scenes`) or a scene file.
+    #[arg(default_value = registry::DEFAULT)]
+    scene: String,
+    #[command(flatten)]
+    set: SetArgs,
+}
+
+#[derive(Debug, Args)]
+struct RequiredSceneArgs {
+    /// A built-in scene (see `warpbeam scenes`) or a scene file.
+    scene: String,
+    #[command(flatten)]
+    set: SetArgs,
+}
+
+#[derive(Debug, Args)]
+struct SetArgs {
+    /// Change a value of the scene: material.young=2e6, beam.cells=[40,2], load.0.force=[0,-5].
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    assignments: Vec<String>,
+}
+
+impl From<SceneArgs> for scene::Source {
+    fn from(args: SceneArgs) -> Self {
+        Self { name: args.scene, assignments: args.set.assignments }
+    }
+}
+
+impl From<RequiredSceneArgs> for scene::Source {
+    fn from(args: RequiredSceneArgs) -> Self {
+        Self { name: args.scene, assignments: args.set.assignments }
+    }
+}
+
+/// Anything that ends a command early.
+#[derive(Debug, thiserror::Error)]
+enum CliError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error("{scene}: {error}")]
+    Simulation { scene: String, error: SimulationError },
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    #[error(transparent)]
+    App(#[from] app::AppError),
+}
+
+impl CliError {
+    fn exit_code(&self) -> u8 {
+        match self {
+            Self::Render(error) | Self::App(app::AppError::Render(error)) if error.is_missing_adapter() => NO_ADAPTER,
+            _ => BAD_INPUT,
+        }
+    }
+}
+
+/// Runs the command that the process was started with.
+#[must_use]
+pub fn main() -> ExitCode {
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error,wgpu_hal=off")).init();
+    let cli = Cli::parse();
+    let command = cli.command.unwrap_or_else(|| Command::Run {
+        scene: SceneArgs { scene: registry::DEFAULT.to_owned(), set: SetArgs { assignments: Vec::new() } },
+        output: PathBuf::from("warpbeam.png"),
+    });
+    let result = match command {
+        Command::Run { scene, output } => run(scene.into(), &output),
+        Command::Scenes => {
+            report::print(&report::scenes());
+            Ok(ExitCode::SUCCESS)
+        }
+        Command::Solve { scene, json, out } => solve(&scene.into(), json, out.as_deref()),
+        Command::Shot { scene, output, size, no_panel, theme } => {
+            shot(scene.into(), &output, &app::ShotOptions { size, panel: !no_panel, theme })
+        }
+    };
+    result.unwrap_or_else(|error| {
+        eprintln!("warpbeam: {error}");
+        ExitCode::from(error.exit_code())
+    })
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let expected = || format!("expected WIDTHxHEIGHT, each from 64 to {}, as in 1280x800", app::MAX_SHOT_SIDE);
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(expected)?;
+    let side = |text: &str| match text.trim().parse() {
+        Ok(side) if (64..=app::MAX_SHOT_SIDE).contains(&side) => Ok(side),
+        _ => Err(expected()),
+    };
+    Ok([side(width)?, side(height)?])
+}
+
+fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
+    let scene = scene::open(source)?;
+    let failed = |error| CliError::Simulation { scene: source.name.clone(), error };
+    let simulation = Simulation::new(&scene).map_err(failed)?;
+    Ok((scene, simulation))
+}
+
+fn exit_code(status: &Status) -> ExitCode {
+    if *status == Status::Converged { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) }
+}
+
+fn solve(source: &scene::Source, json: bool, out: Option<&std::path::Path>) -> Result<ExitCode, CliError> {
+    // A wrong file name is said before the work, not after.
+    out.map(Format::of).transpose()?;
+    let (scene, mut simulation) = simulate(source)?;
+    let status = simulation.solve().clone();
+    if let Some(path) = out {
+        export::write(&simulation, path)?;
+    }
+    let solution = simulation.solution();
+    report::print(&if json { report::json(&scene, &solution) } else { report::text(&scene, &solution) });
+    Ok(exit_code(&status))
+}
+
+fn shot(source: scene::Source, output: &std::path::Path, options: &app::ShotOptions) -> Result<ExitCode, CliError> {
+    let (scene, simulation) = simulate(&source)?;
+    let status = app::shot(source, scene, simulation, options, output)?;
+    if let Status::NotConverged(reason) | Status::Diverged(reason) = &status {
+        eprintln!("warpbeam: {}: {reason}", status.id());
+    }
+    Ok(exit_code(&status))
+}
+
+fn run(source: scene::Source, output: &std::path::Path) -> Result<ExitCode, CliError> {
+    let (scene, simulation) = simulate(&source)?;
+    match app::Display::open() {
+        Ok(display) => app::run(display, source, scene, simulation)?,
+        Err(reason) => {
+            let picture = output.display();
+            report::print(&format!(
+                "No window: {reason}.\nSolving the scene instead; the picture goes to {picture}.\n"
+            ));
+            solve(&source, false, None)?;
+            app::shot(source, scene, simulation, &app::ShotOptions::default(), output)?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,132 @@
+//! What commands print.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use crate::scene::{Scene, registry};
+use crate::simulation::{Solution, Status};
+
+/// Prints to standard output. A reader that went away, such as `head`, is no error.
+pub(super) fn print(text: &str) {
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes());
+    let _ = out.flush();
+}
+
+/// The list of built-in scenes.
+pub(super) fn scenes() -> String {
+    let mut text = String::new();
+    for built_in in registry::BUILT_IN {
+        // The registry's own files are checked by a test; one that did not read would still be listed.
+        let (name, about) = Scene::from_toml(built_in.toml, built_in.id.as_ref())
+            .map_or_else(|error| (error.to_string(), String::new()), |scene| (scene.name, scene.about));
+        let _ = writeln!(text, "{:<12} {name}\n{:12} {about}", built_in.id, "");
+    }
+    text
+}
+
+/// A result for people.
+pub(super) fn text(scene: &Scene, solution: &Solution) -> String {
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "{}: element {}, method {}, {} unknowns",
+        scene.name,
+        scene.beam.element.id(),
+        scene.solver.method.id(),
+        solution.dofs
+    );
+    let word = solution.status.id().replace('_', " ");
+    let _ =
+        writeln!(text, "{word} after {} iterations, relative residual {:.2e}", solution.iterations, solution.residual);
+    if let Status::NotConverged(reason) | Status::Diverged(reason) = &solution.status {
+        let _ = writeln!(text, "  {reason}");
+    }
+    for probe in &solution.probes {
+        let _ = writeln!(
+            text,
+            "{}: at ({:.6}, {:.6}) m, moved by ({:.6}, {:.6}) m",
+            probe.name, probe.x.x, probe.x.y, probe.u.x, probe.u.y
+        );
+    }
+    let _ = writeln!(
+        text,
+        "largest rotation {:.2}°, largest strain {:.4}, inverted elements {}",
+        solution.max_rotation_deg, solution.max_strain, solution.inverted_elements
+    );
+    let _ = writeln!(
+        text,
+        "reaction ({:.6}, {:.6}) N, moment about the origin {:.6} N m",
+        solution.reaction.force.x, solution.reaction.force.y, solution.reaction.moment
+    );
+    let _ = writeln!(
+        text,
+        "elastic energy {:.6} J, work of the loads {:.6} J",
+        solution.energy.elastic, solution.energy.external
+    );
+    let time = &solution.time;
+    let _ = writeln!(
+        text,
+        "time {:.0} µs: rotate {:.0}, assemble {:.0}, factorize {:.0}, solve {:.0}",
+        microseconds(time.total()),
+        microseconds(time.rotate),
+        microseconds(time.assemble),
+        microseconds(time.factorize),
+        microseconds(time.solve)
+    );
+    text
+}
+
+fn microseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e6
+}
+
+/// A result for programs: the object of the documented contract.
+pub(super) fn json(scene: &Scene, solution: &Solution) -> String {
+    let pair = |v: &nalgebra::Vector2<f64>| json!([number(v.x), number(v.y)]);
+    let probes: Vec<Value> = solution
+        .probes
+        .iter()
+        .map(|p| json!({ "name": p.name, "x": pair(&p.x), "u": pair(&p.u), "truth_u": null, "error_percent": null }))
+        .collect();
+    let time = &solution.time;
+    let object = json!({
+        "scene": scene.name,
+        "element": scene.beam.element.id(),
+        "method": scene.solver.method.id(),
+        "dofs": solution.dofs,
+        "status": solution.status.id(),
+        "stable": null,
+        "iterations": solution.iterations,
+        "load_steps": 1,
+        "residual": number(solution.residual),
+        "fixed_point_rho": null,
+        "max_rotation_deg": number(solution.max_rotation_deg),
+        "max_strain": number(solution.max_strain),
+        "inverted_elements": solution.inverted_elements,
+        "probes": probes,
+        "energy": {
+            "elastic": number(solution.energy.elastic),
+            "external": number(solution.energy.external),
+            "kinetic": 0.0,
+            "dissipated": 0.0,
+        },
+        "reaction": { "force": pair(&solution.reaction.force), "moment": number(solution.reaction.moment) },
+        "time_us": {
+            "total": number(microseconds(time.total())),
+            "rotate": number(microseconds(time.rotate)),
+            "assemble": number(microseconds(time.assemble)),
+            "factorize": number(microseconds(time.factorize)),
+            "solve": number(microseconds(time.solve)),
+        },
+    });
+    format!("{object:#}\n")
+}
+
+/// A number JSON can hold: what left the range of f64 is reported as its largest number.
+fn number(value: f64) -> f64 {
+    if value.is_nan() { f64::MAX } else { value.clamp(-f64::MAX, f64::MAX) }
+}

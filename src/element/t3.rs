@@ -1,0 +1,35 @@
+//! The three-node triangle: linear shape functions, constant strain, one quadrature point.
+
+use nalgebra::Vector2;
+
+use super::QuadraturePoint;
+
+/// Nodes of the element.
+pub const NODES: usize = 3;
+
+/// Nₐ at the area coordinates `l`: the coordinates themselves.
+#[must_use]
+pub fn shape(l: [f64; 3]) -> [f64; NODES] {
+    l
+}
+
+/// ∫ Nₐ dA over the area.
+pub const NODAL_WEIGHTS: [f64; NODES] = [1.0 / 3.0; NODES];
+
+/// ∫ Nₐ ds over the length of a side, for the side's two ends.
+pub const SIDE_WEIGHTS: [f64; 2] = [0.5, 0.5];
+
+/// The one quadrature point of a triangle with these rest corners (counter-clockwise, m) and thickness, m.
+///
+/// ∇Nₐ is the opposite side turned by a quarter, over twice the area. That there is an area, [`crate::mesh::Mesh`] has
+/// checked.
+#[must_use]
+pub fn quadrature(corners: [Vector2<f64>; NODES], thickness: f64) -> [QuadraturePoint<NODES>; 1] {
+    let [a, b, c] = corners;
+    let doubled = (b - a).perp(&(c - a));
+    let gradient = |side: Vector2<f64>| Vector2::new(-side.y, side.x) / doubled;
+    [QuadraturePoint {
+        gradients: [gradient(c - b), gradient(a - c), gradient(b - a)],
+        volume: 0.5 * doubled * thickness,
+    }]
+}

@@ -1,0 +1,45 @@
+//! Isotropic linear elasticity in the plane: E, ν → Lamé constants.
+
+use nalgebra::Matrix3;
+
+use crate::scene::{Material, Plane};
+
+/// Lamé constants of the plane problem, Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lame {
+    /// λ: Eν/(1−ν²) for plane stress, Eν/((1+ν)(1−2ν)) for plane strain.
+    pub lambda: f64,
+    /// μ = E/(2(1+ν)), the shear modulus.
+    pub mu: f64,
+}
+
+impl Material {
+    /// The Lamé constants of this material under its plane assumption.
+    #[must_use]
+    pub fn lame(&self) -> Lame {
+        let (e, nu) = (self.young, self.poisson);
+        let lambda = match self.plane {
+            Plane::Stress => e * nu / (1.0 - nu * nu),
+            Plane::Strain => e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        };
+        Lame { lambda, mu: e / (2.0 * (1.0 + nu)) }
+    }
+
+    /// The matrix C of σ = C ε with ε = (ε_xx, ε_yy, 2 ε_xy), Pa.
+    #[must_use]
+    pub fn elasticity_matrix(&self) -> Matrix3<f64> {
+        let Lame { lambda, mu } = self.lame();
+        let axial = lambda + 2.0 * mu;
+        Matrix3::new(axial, lambda, 0.0, lambda, axial, 0.0, 0.0, 0.0, mu)
+    }
+
+    /// Stress out of the plane for in-plane stresses of the given sum: 0 in plane stress, ν (σ_xx + σ_yy) in plane
+    /// strain, Pa.
+    #[must_use]
+    pub fn out_of_plane_stress(&self, in_plane_trace: f64) -> f64 {
+        match self.plane {
+            Plane::Stress => 0.0,
+            Plane::Strain => self.poisson * in_plane_trace,
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Triangle meshes: nodes, connectivity, named edges. Areas are checked once, here.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use crate::rotation::affine::DEGENERATE;
+use crate::scene::ElementKind;
+
+mod beam;
+
+/// A mesh that cannot be used.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum MeshError {
+    /// A triangle without area.
+    #[error("triangle {triangle} has no area: expected corners that are not on one line, got {corners:?}")]
+    Degenerate {
+        /// Zero-based number of the triangle.
+        triangle: usize,
+        /// Its rest corners, m.
+        corners: [[f64; 2]; 3],
+    },
+    /// A triangle with a node that does not exist.
+    #[error("triangle {triangle} names node {node}: expected a node below {count}")]
+    NoSuchNode {
+        /// Zero-based number of the triangle.
+        triangle: usize,
+        /// The node it names.
+        node: u32,
+        /// How many nodes there are.
+        count: usize,
+    },
+    /// No triangle at all, or a connectivity of the wrong length.
+    #[error("expected triangles of {expected} nodes each, got {got} node numbers")]
+    Connectivity {
+        /// Nodes a triangle.
+        expected: usize,
+        /// Node numbers given.
+        got: usize,
+    },
+}
+
+/// One side of a triangle on a named edge, by node numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Its two ends.
+    pub ends: [u32; 2],
+}
+
+/// Nodes, triangles and named edges, at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Rest positions X, m.
+    pub nodes: Vec<Vector2<f64>>,
+    /// What every triangle is.
+    pub element: ElementKind,
+    /// Node numbers, `element.nodes()` a triangle, corners first and counter-clockwise.
+    pub connectivity: Vec<u32>,
+    /// Boundary segments by edge name.
+    pub edges: BTreeMap<String, Vec<Segment>>,
+}
+
+impl ElementKind {
+    /// Nodes a triangle.
+    #[must_use]
+    pub fn nodes(self) -> usize {
+        match self {
+            Self::T3 => 3,
+        }
+    }
+}
+
+impl Mesh {
+    /// A mesh whose triangles all exist, have area, and are turned counter-clockwise.
+    ///
+    /// # Errors
+    /// [`MeshError`], naming the triangle.
+    pub fn new(
+        nodes: Vec<Vector2<f64>>,
+        element: ElementKind,
+        mut connectivity: Vec<u32>,
+        edges: BTreeMap<String, Vec<Segment>>,
+    ) -> Result<Self, MeshError> {
+        let n = element.nodes();
+        if connectivity.is_empty() || !connectivity.len().is_multiple_of(n) {
+            return Err(MeshError::Connectivity { expected: n, got: connectivity.len() });
+        }
+        for (triangle, t) in connectivity.chunks_exact_mut(n).enumerate() {
+            if let Some(&node) = t.iter().find(|&&node| node as usize >= nodes.len()) {
+                return Err(MeshError::NoSuchNode { triangle, node, count: nodes.len() });
+            }
+            let corners = [t[0], t[1], t[2]].map(|i| nodes[i as usize]);
+            let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
+            let longest = e1.norm().max(e2.norm()).max((e2 - e1).norm());
+            let doubled_area = e1.perp(&e2);
+            let floor = DEGENERATE * longest * longest;
+            if doubled_area.is_nan() || floor.is_infinite() || doubled_area.abs() <= floor {
+                return Err(MeshError::Degenerate { triangle, corners: corners.map(Into::into) });
+            }
+            if doubled_area < 0.0 {
+                t.swap(1, 2);
+            }
+        }
+        Ok(Self { nodes, element, connectivity, edges })
+    }
+
+    /// Number of triangles.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.connectivity.len() / self.element.nodes()
+    }
+
+    /// The node numbers of every triangle.
+    pub fn triangles(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+        self.connectivity.chunks_exact(self.element.nodes())
+    }
+
+    /// The nodes of a named edge, each once; `None` if there is no such edge.
+    #[must_use]
+    pub fn edge_nodes(&self, name: &str) -> Option<Vec<u32>> {
+        let mut nodes: Vec<u32> = self.edges.get(name)?.iter().flat_map(|s| s.ends).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        Some(nodes)
+    }
+
+    /// The node nearest to a rest position; the first of equals.
+    #[must_use]
+    pub fn nearest_node(&self, at: Vector2<f64>) -> u32 {
+        let mut best = (f64::INFINITY, 0);
+        for (i, node) in (0..).zip(&self.nodes) {
+            let distance = (node - at).norm_squared();
+            if distance < best.0 {
+                best = (distance, i);
+            }
+        }
+        best.1
+    }
+
+    /// The triangle that holds a rest position, with the position's area coordinates there; `None` outside the mesh.
+    #[must_use]
+    pub fn locate(&self, at: Vector2<f64>) -> Option<(usize, [f64; 3])> {
+        // Points on the boundary must not fall out by rounding.
+        const SLACK: f64 = 1e-9;
+        self.triangles().enumerate().find_map(|(triangle, t)| {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|i| self.nodes[i as usize]);
+            let doubled = (b - a).perp(&(c - a));
+            let l2 = (at - a).perp(&(c - a)) / doubled;
+            let l3 = (b - a).perp(&(at - a)) / doubled;
+            let l = [1.0 - l2 - l3, l2, l3];
+            l.iter().all(|&v| v >= -SLACK).then_some((triangle, l))
+        })
+    }
+
+    /// The corners of the box around the rest mesh, m.
+    #[must_use]
+    pub fn bounds(&self) -> (Vector2<f64>, Vector2<f64>) {
+        let start = Vector2::repeat(f64::INFINITY);
+        self.nodes.iter().fold((start, -start), |(low, high), p| (low.inf(p), high.sup(p)))
+    }
+
+    /// The sides that belong to one triangle only: the outline, each running counter-clockwise around the body.
+    #[must_use]
+    pub fn outline(&self) -> Vec<Segment> {
+        let mut sides: Vec<[u32; 2]> =
+            self.triangles().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).collect();
+        let key = |s: &[u32; 2]| (s[0].min(s[1]), s[0].max(s[1]));
+        sides.sort_unstable_by_key(key);
+        sides.chunk_by(|a, b| key(a) == key(b)).filter(|same| same.len() == 1).map(|s| Segment { ends: s[0] }).collect()
+    }
+}

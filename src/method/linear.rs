@@ -1,0 +1,28 @@
+//! Linear finite elements, article eqs. (1) and (3): K (x − X) = f. Right while rotations are small, absurdly long
+//! beyond.
+
+use nalgebra::Vector2;
+
+use super::{Frame, FrameError, Method};
+use crate::assembly::System;
+use crate::rotation::Rotation;
+
+pub(super) const ABOUT: &str = "Linear FEM: one solve, right only while rotations stay small; beams swell beyond.";
+
+/// The warped frame with every rotation the identity.
+#[derive(Clone, Copy, Debug)]
+pub struct Linear;
+
+impl Method for Linear {
+    fn rotate(&self, _: &System, _: &[Vector2<f64>], r: &mut [Rotation]) {
+        r.fill(Rotation::IDENTITY);
+    }
+
+    fn corotates(&self) -> bool {
+        false
+    }
+
+    fn solve(&self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
+        frame.step_with_warped_stiffness()
+    }
+}

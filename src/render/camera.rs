@@ -1,0 +1,105 @@
+//! Metres to points of a view, and back.
+
+use nalgebra::Vector2;
+
+/// Looks at a point of the plane with a magnification.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// The point in the middle of the view, m.
+    pub center: Vector2<f64>,
+    /// Points of the view a metre.
+    pub scale: f64,
+}
+
+/// What is kept free around a fitted box, points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margins {
+    /// Left and right.
+    pub sides: f64,
+    /// Above.
+    pub top: f64,
+    /// Below.
+    pub bottom: f64,
+}
+
+impl Camera {
+    /// Scales beyond these leave nothing to see.
+    const SCALES: std::ops::RangeInclusive<f64> = 1e-9..=1e12;
+
+    /// The camera that shows the box from `low` to `high` in a view of this size (points), inside the margins. A view
+    /// smaller than its margins gets smaller margins.
+    #[must_use]
+    pub fn fit(low: Vector2<f64>, high: Vector2<f64>, view: [f64; 2], margins: Margins) -> Self {
+        /// The share of a small view that margins may take.
+        const LARGEST: f64 = 0.7;
+        let extent = (high - low).map(|v| v.max(1e-12));
+        let shrink = |total: f64, view: f64| (LARGEST * view / total.max(1e-9)).min(1.0);
+        let across = shrink(2.0 * margins.sides, view[0]);
+        let down = shrink(margins.top + margins.bottom, view[1]);
+        let room = [
+            (view[0] - across * 2.0 * margins.sides).max(1.0),
+            (view[1] - down * (margins.top + margins.bottom)).max(1.0),
+        ];
+        let scale = (room[0] / extent.x).min(room[1] / extent.y).clamp(*Self::SCALES.start(), *Self::SCALES.end());
+        let lift = Vector2::new(0.0, 0.5 * down * (margins.bottom - margins.top) / scale);
+        Self { center: (low + high) * 0.5 - lift, scale }
+    }
+
+    /// Where a point of the plane is, in points right and down of the view's middle.
+    #[must_use]
+    pub fn to_view(&self, p: Vector2<f64>) -> [f64; 2] {
+        let d = (p - self.center) * self.scale;
+        [d.x, -d.y]
+    }
+
+    /// The point of the plane at these points right and down of the view's middle.
+    #[must_use]
+    pub fn to_world(&self, at: [f64; 2]) -> Vector2<f64> {
+        self.center + Vector2::new(at[0], -at[1]) / self.scale
+    }
+
+    /// Moves what is seen by these points right and down.
+    pub fn pan(&mut self, by: [f64; 2]) {
+        self.center -= Vector2::new(by[0], -by[1]) / self.scale;
+    }
+
+    /// Magnifies by `factor`; what is at `at` stays there.
+    pub fn zoom(&mut self, factor: f64, at: [f64; 2]) {
+        let fixed = self.to_world(at);
+        let scale = (self.scale * factor).clamp(*Self::SCALES.start(), *Self::SCALES.end());
+        self.center = fixed + (self.center - fixed) * (self.scale / scale);
+        self.scale = scale;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zoom_keeps_the_point_under_the_pointer() {
+        let mut camera = Camera { center: Vector2::new(3.0, -1.0), scale: 50.0 };
+        let at = [120.0, -35.0];
+        let before = camera.to_world(at);
+        camera.zoom(1.7, at);
+        assert!((camera.to_world(at) - before).norm() < 1e-12);
+        assert!((camera.scale - 85.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn fit_shows_the_whole_box() {
+        let (low, high) = (Vector2::new(-1.0, -2.0), Vector2::new(9.0, 3.0));
+        let camera = Camera::fit(low, high, [800.0, 300.0], Margins { sides: 20.0, top: 10.0, bottom: 50.0 });
+        for corner in [low, high, Vector2::new(low.x, high.y), Vector2::new(high.x, low.y)] {
+            let [x, y] = camera.to_view(corner);
+            assert!(x.abs() <= 380.0 + 1e-9 && (-140.0 - 1e-9..=100.0 + 1e-9).contains(&y), "{corner} at {x}, {y}");
+        }
+    }
+
+    #[test]
+    fn an_empty_view_or_box_gives_a_finite_camera() {
+        let point = Vector2::new(1.0, 1.0);
+        let camera = Camera::fit(point, point, [0.0, 0.0], Margins { sides: 40.0, top: 40.0, bottom: 40.0 });
+        assert!(camera.scale.is_finite() && camera.scale > 0.0);
+    }
+}

@@ -1,0 +1,72 @@
+//! What can be wrong with a scene, said with file, line and what was expected.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// A value that reads well but cannot be used.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{key}: {message}")]
+pub struct Invalid {
+    /// The key, as `--set` writes it: `load.0.force`.
+    pub key: String,
+    /// What was expected, and what was there.
+    pub message: String,
+}
+
+impl Invalid {
+    /// `key` and the sentence about it.
+    pub fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { key: key.into(), message: message.into() }
+    }
+}
+
+/// Why a scene could not be opened.
+#[derive(Debug, Error)]
+pub enum SceneError {
+    /// Neither a built-in scene nor a readable file.
+    #[error("{path}: {reason}; expected a scene file, or one of the built-in scenes: {built_in}", path = path.display())]
+    Read {
+        /// What was asked for.
+        path: PathBuf,
+        /// The system's reason.
+        reason: String,
+        /// The names that would have worked.
+        built_in: String,
+    },
+    /// Not TOML, an unknown or missing key, or a value of the wrong type.
+    #[error("{}{message}", at(file, *line))]
+    Syntax {
+        /// The file, or the built-in name.
+        file: PathBuf,
+        /// One-based line, where the parser gave one.
+        line: Option<usize>,
+        /// The parser's sentence.
+        message: String,
+    },
+    /// A value that cannot be used.
+    #[error("{}{invalid}", at(file, *line))]
+    Invalid {
+        /// The file, or the built-in name.
+        file: PathBuf,
+        /// One-based line of the key; `None` where the key is not written in the file.
+        line: Option<usize>,
+        /// Key and sentence.
+        invalid: Invalid,
+    },
+    /// A `--set` that cannot be applied.
+    #[error("--set {assignment}: {message}")]
+    Set {
+        /// As typed.
+        assignment: String,
+        /// What was expected.
+        message: String,
+    },
+}
+
+fn at(file: &std::path::Path, line: Option<usize>) -> String {
+    match line {
+        Some(line) => format!("{}:{line}: ", file.display()),
+        None => format!("{}: ", file.display()),
+    }
+}

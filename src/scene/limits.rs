@@ -1,0 +1,77 @@
+//! The range of every number a scene may hold: one table for scene files, `--set` and the sliders.
+
+/// A closed range, its unit, and the key it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// What the number is called in messages.
+    pub name: &'static str,
+    /// Unit, empty for pure numbers.
+    pub unit: &'static str,
+    /// Smallest accepted value.
+    pub min: f64,
+    /// Largest accepted value.
+    pub max: f64,
+}
+
+impl Limit {
+    const fn new(name: &'static str, unit: &'static str, min: f64, max: f64) -> Self {
+        Self { name, unit, min, max }
+    }
+
+    /// Accepts `value`, or says what was expected.
+    ///
+    /// # Errors
+    /// The sentence to show, for values out of range, NaN and infinities.
+    pub fn check(&self, value: f64) -> Result<(), String> {
+        if value >= self.min && value <= self.max { Ok(()) } else { Err(self.expected(&number(value))) }
+    }
+
+    /// What was expected instead of `got`.
+    #[must_use]
+    pub fn expected(&self, got: &str) -> String {
+        let space = if self.unit.is_empty() { "" } else { " " };
+        format!("expected {} to {}{space}{}, got {got}", number(self.min), number(self.max), self.unit)
+    }
+}
+
+/// A number as short as it reads back: plain where that is short, else with an exponent.
+#[must_use]
+pub fn number(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&magnitude) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// Beam length.
+pub const LENGTH: Limit = Limit::new("length", "m", 1e-6, 1e6);
+/// Beam height.
+pub const HEIGHT: Limit = Limit::new("height", "m", 1e-6, 1e6);
+/// Cells along one direction.
+pub const CELLS: Limit = Limit::new("cells in one direction", "", 1.0, 100_000.0);
+/// Cells in all: what fits in memory with its factor (about a million unknowns).
+pub const TOTAL_CELLS: Limit = Limit::new("cells in all", "", 1.0, 250_000.0);
+/// Young's modulus.
+pub const YOUNG: Limit = Limit::new("Young's modulus", "Pa", 1e-6, 1e15);
+/// Poisson ratio, plane stress.
+pub const POISSON_STRESS: Limit = Limit::new("Poisson ratio (plane stress)", "", -0.99, 0.5);
+/// Poisson ratio, plane strain, where ½ is incompressible and λ infinite.
+pub const POISSON_STRAIN: Limit = Limit::new("Poisson ratio (plane strain)", "", -0.99, 0.4999);
+/// Density.
+pub const DENSITY: Limit = Limit::new("density", "kg/m³", 0.0, 1e6);
+/// Thickness out of the plane.
+pub const THICKNESS: Limit = Limit::new("thickness", "m", 1e-6, 1e6);
+/// Magnitude of a force.
+pub const FORCE: Limit = Limit::new("force", "N", 0.0, 1e15);
+/// Direction of a force or of gravity, from the x axis, counter-clockwise.
+pub const DIRECTION: Limit = Limit::new("direction", "°", -180.0, 180.0);
+/// Magnitude of gravity.
+pub const ACCELERATION: Limit = Limit::new("acceleration", "m/s²", 0.0, 1e6);
+/// A coordinate.
+pub const COORDINATE: Limit = Limit::new("coordinate", "m", -1e6, 1e6);
+/// Relative residual at which a solve is done.
+pub const TOLERANCE: Limit = Limit::new("tolerance", "", 1e-14, 0.1);
+/// Iterations a solve may take.
+pub const MAX_ITERATIONS: Limit = Limit::new("iterations", "", 1.0, 100_000.0);

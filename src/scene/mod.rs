@@ -1,0 +1,341 @@
+//! A scene: what a TOML file says of a beam, its material, supports, loads and probes. Plain data.
+//!
+//! Unknown keys are rejected with their line. [`Scene::validate`] checks every number against [`limits`], names against
+//! what exists, and says what was expected.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+pub mod error;
+pub mod limits;
+mod load;
+mod open;
+pub mod registry;
+
+pub use error::{Invalid, SceneError};
+pub use load::{Load, Place};
+pub use open::{Source, open};
+
+/// Everything a solve needs to know.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Title.
+    pub name: String,
+    /// One sentence for the scene list.
+    #[serde(default)]
+    pub about: String,
+    /// What is computed.
+    #[serde(default)]
+    pub analysis: Analysis,
+    /// The meshed rectangle.
+    pub beam: Beam,
+    /// The elastic material.
+    pub material: Material,
+    /// Where nodes are held.
+    #[serde(rename = "support", default)]
+    pub supports: Vec<Support>,
+    /// What pulls.
+    #[serde(rename = "load", default)]
+    pub loads: Vec<Load>,
+    /// What is measured.
+    #[serde(rename = "probe", default)]
+    pub probes: Vec<Probe>,
+    /// How the equilibrium is found.
+    #[serde(default)]
+    pub solver: SolverSettings,
+}
+
+/// What is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Analysis {
+    /// An equilibrium.
+    #[default]
+    Static,
+}
+
+/// A structured mesh of the rectangle [0, length] × [−height/2, height/2].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Beam {
+    /// Length, m.
+    pub length: f64,
+    /// Height, m.
+    pub height: f64,
+    /// Cells along and across; each is cut into two triangles.
+    pub cells: [u32; 2],
+    /// The element every triangle becomes.
+    #[serde(default)]
+    pub element: ElementKind,
+    /// Which way cells are cut.
+    #[serde(default)]
+    pub diagonals: Diagonals,
+}
+
+/// The elements there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ElementKind {
+    /// Three nodes, constant strain.
+    #[default]
+    T3,
+}
+
+impl ElementKind {
+    /// The name scene files use.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::T3 => "t3",
+        }
+    }
+}
+
+/// Which way the cells of a beam are cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Diagonals {
+    /// Cell (i, j) from lower left to upper right where i + j is even, else the other way.
+    #[default]
+    Alternating,
+    /// Every cell from lower left to upper right.
+    Same,
+}
+
+/// Linear elastic, isotropic.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Young's modulus E, Pa.
+    pub young: f64,
+    /// Poisson ratio ν.
+    pub poisson: f64,
+    /// Density ρ, kg/m³; only gravity reads it.
+    #[serde(default = "default_density")]
+    pub density: f64,
+    /// Thickness t out of the plane, m.
+    #[serde(default = "default_thickness")]
+    pub thickness: f64,
+    /// Plane stress or plane strain.
+    #[serde(default)]
+    pub plane: Plane,
+}
+
+fn default_density() -> f64 {
+    1000.0
+}
+
+fn default_thickness() -> f64 {
+    1.0
+}
+
+/// What happens out of the plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Plane {
+    /// No stress out of the plane: a thin plate.
+    #[default]
+    Stress,
+    /// No strain out of the plane: a slice of something long.
+    Strain,
+}
+
+/// Nodes held at their rest position.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Support {
+    /// The edge whose nodes are held …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub edge: Option<String>,
+    /// … or the point whose nearest node is, rest coordinates, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f64; 2]>,
+    /// The directions held.
+    pub fix: Vec<Axis>,
+}
+
+/// A direction of the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    /// Along the rest beam.
+    X,
+    /// Across it.
+    Y,
+}
+
+/// A displacement to report: the mean over an edge, or of a material point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Probe {
+    /// What it is called in results.
+    pub name: String,
+    /// The edge it averages over …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub edge: Option<String>,
+    /// … or the material point it follows, rest coordinates, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f64; 2]>,
+}
+
+impl Support {
+    /// Where it holds.
+    ///
+    /// # Errors
+    /// Where not exactly one of `edge` and `at` is given.
+    pub fn place(&self) -> Result<Place, String> {
+        Place::new(self.edge.clone(), self.at)
+    }
+}
+
+impl Probe {
+    /// Where it looks.
+    ///
+    /// # Errors
+    /// Where not exactly one of `edge` and `at` is given.
+    pub fn place(&self) -> Result<Place, String> {
+        Place::new(self.edge.clone(), self.at)
+    }
+}
+
+/// How the equilibrium is found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SolverSettings {
+    /// The method, by its name in the registry.
+    pub method: MethodKind,
+    /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ below which the solve is done.
+    pub tolerance: f64,
+    /// Iterations after which it gives up.
+    pub max_iterations: u32,
+}
+
+impl Default for SolverSettings {
+    fn default() -> Self {
+        Self { method: MethodKind::default(), tolerance: 1e-8, max_iterations: 100 }
+    }
+}
+
+/// The methods there are; `method::METHODS` says what each does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MethodKind {
+    /// Small-rotation FEM, one solve.
+    Linear,
+    /// The article's iteration.
+    #[default]
+    Warped,
+}
+
+impl MethodKind {
+    /// The name scene files use.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Warped => "warped",
+        }
+    }
+}
+
+impl Scene {
+    /// Reads a scene from TOML text; `file` names it in errors.
+    ///
+    /// # Errors
+    /// [`SceneError::Syntax`] or [`SceneError::Invalid`], with the line.
+    pub fn from_toml(text: &str, file: &Path) -> Result<Self, SceneError> {
+        open::parse(text, file, &[])
+    }
+
+    /// The scene as a TOML file.
+    ///
+    /// # Errors
+    /// The serializer's message; a validated scene has none.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
+    }
+
+    /// Checks every number and every choice that can be checked without a mesh.
+    ///
+    /// # Errors
+    /// The first key that is wrong and what was expected there.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        let check = |key: &str, limit: limits::Limit, value: f64| {
+            limit.check(value).map_err(|message| Invalid::new(key, message))
+        };
+        if self.name.trim().is_empty() {
+            return Err(Invalid::new("name", "expected a title, got an empty string"));
+        }
+        check("beam.length", limits::LENGTH, self.beam.length)?;
+        check("beam.height", limits::HEIGHT, self.beam.height)?;
+        for cells in self.beam.cells {
+            check("beam.cells", limits::CELLS, f64::from(cells))?;
+        }
+        let total = f64::from(self.beam.cells[0]) * f64::from(self.beam.cells[1]);
+        limits::TOTAL_CELLS
+            .check(total)
+            .map_err(|message| Invalid::new("beam.cells", format!("{message} cells in all")))?;
+        let aspect = self.beam.cell_aspect();
+        if !(1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect) {
+            return Err(Invalid::new(
+                "beam.cells",
+                format!(
+                    "expected cells at most {} times as long as high or as high as long, got {}",
+                    limits::number(MAX_CELL_ASPECT),
+                    limits::number(aspect)
+                ),
+            ));
+        }
+        check("material.young", limits::YOUNG, self.material.young)?;
+        check("material.poisson", self.material.plane.poisson_limit(), self.material.poisson)?;
+        check("material.density", limits::DENSITY, self.material.density)?;
+        check("material.thickness", limits::THICKNESS, self.material.thickness)?;
+        if self.supports.is_empty() {
+            return Err(Invalid::new("support", "expected at least one [[support]], got none"));
+        }
+        for (i, support) in self.supports.iter().enumerate() {
+            let key = format!("support.{i}");
+            validate_place(&key, support.place())?;
+            if support.fix.is_empty() {
+                return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
+            }
+        }
+        for (i, load) in self.loads.iter().enumerate() {
+            load.validate(&format!("load.{i}"))?;
+        }
+        for (i, probe) in self.probes.iter().enumerate() {
+            validate_place(&format!("probe.{i}"), probe.place())?;
+        }
+        check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
+        check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))
+    }
+}
+
+fn validate_place(key: &str, place: Result<Place, String>) -> Result<(), Invalid> {
+    place.map_err(|message| Invalid::new(key, message))?.validate(key)
+}
+
+/// Length over height of a cell, or the inverse, beyond which an element's stiffness is all rounding.
+const MAX_CELL_ASPECT: f64 = 1e5;
+
+impl Beam {
+    /// Length over height of one cell.
+    #[must_use]
+    pub fn cell_aspect(&self) -> f64 {
+        let [nx, ny] = self.cells.map(f64::from);
+        (self.length / nx) / (self.height / ny)
+    }
+}
+
+impl Plane {
+    /// The Poisson ratios this plane assumption allows.
+    #[must_use]
+    pub fn poisson_limit(self) -> limits::Limit {
+        match self {
+            Self::Stress => limits::POISSON_STRESS,
+            Self::Strain => limits::POISSON_STRAIN,
+        }
+    }
+}

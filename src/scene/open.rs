@@ -1,0 +1,183 @@
+//! From a name or a path, and `--set` assignments, to a validated scene; errors with file and line.
+
+use std::path::{Path, PathBuf};
+
+use toml::de::{DeTable, DeValue};
+use toml::{Table, Value};
+
+use super::error::{Invalid, SceneError};
+use super::{Scene, registry};
+
+/// Scene files are small; anything larger is refused before it is read.
+const MAX_FILE_BYTES: u64 = 4 << 20;
+
+/// Where a scene came from: its text and the assignments made to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// The built-in name or the path, as typed.
+    pub name: String,
+    /// `PATH=VALUE` assignments, in order.
+    pub assignments: Vec<String>,
+}
+
+/// Opens a built-in scene or a scene file and applies `PATH=VALUE` assignments.
+///
+/// # Errors
+/// [`SceneError`], each with one message that says what was expected.
+pub fn open(source: &Source) -> Result<Scene, SceneError> {
+    let file = PathBuf::from(&source.name);
+    match registry::find(&source.name) {
+        Some(built_in) => parse(built_in.toml, &file, &source.assignments),
+        None => parse(&read(&file)?, &file, &source.assignments),
+    }
+}
+
+fn read(path: &Path) -> Result<String, SceneError> {
+    let failed = |reason: String| SceneError::Read {
+        path: path.to_owned(),
+        reason,
+        built_in: registry::BUILT_IN.iter().map(|b| b.id).collect::<Vec<_>>().join(", "),
+    };
+    let metadata = std::fs::metadata(path).map_err(|e| failed(e.to_string()))?;
+    if !metadata.is_file() {
+        return Err(failed("not a file".to_owned()));
+    }
+    if metadata.len() > MAX_FILE_BYTES {
+        return Err(failed(format!(
+            "the file has {} bytes, more than the {MAX_FILE_BYTES} a scene may have",
+            metadata.len()
+        )));
+    }
+    std::fs::read_to_string(path).map_err(|e| failed(e.to_string()))
+}
+
+pub(super) fn parse(text: &str, file: &Path, assignments: &[String]) -> Result<Scene, SceneError> {
+    let syntax = |e: toml::de::Error| SceneError::Syntax {
+        file: file.to_owned(),
+        line: e.span().map(|span| line_of(text, span.start)),
+        message: e.message().trim().replace('\n', ", "),
+    };
+    // The file alone first, so that its own errors have lines.
+    let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
+    if !assignments.is_empty() {
+        let mut table: Table = toml::from_str(text).map_err(syntax)?;
+        for assignment in assignments {
+            let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
+            let (key, value) = assign(&mut table, assignment).map_err(failed)?;
+            scene = Scene::deserialize_table(&table)
+                .map_err(|e| failed(format!("{} (got {key} = {value})", e.message().trim().replace('\n', ", "))))?;
+        }
+    }
+    scene.validate().map_err(|invalid| {
+        let blamed = assignments.iter().rev().find(|a| a.split('=').next().is_some_and(|k| same_key(k, &invalid.key)));
+        match blamed {
+            Some(assignment) => SceneError::Set { assignment: assignment.clone(), message: invalid.message },
+            None => located(text, file, invalid),
+        }
+    })?;
+    Ok(scene)
+}
+
+/// `Invalid` with the line its key is written on, if it is.
+pub(crate) fn located(text: &str, file: &Path, invalid: Invalid) -> SceneError {
+    let line = DeTable::parse(text).ok().and_then(|table| find_line(text, table.get_ref(), &invalid.key));
+    SceneError::Invalid { file: file.to_owned(), line, invalid }
+}
+
+fn same_key(typed: &str, key: &str) -> bool {
+    let typed = typed.trim();
+    typed == key
+        || typed.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'))
+        || key.strip_prefix(typed).is_some_and(|rest| rest.starts_with('.'))
+}
+
+impl Scene {
+    fn deserialize_table(table: &Table) -> Result<Self, toml::de::Error> {
+        Value::Table(table.clone()).try_into()
+    }
+}
+
+/// Sets `a.0.b=value` in the table. A value that is no TOML is taken as a string, so that quotes can be left out.
+fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), String> {
+    let (key, text) = assignment.split_once('=').ok_or("expected PATH=VALUE")?;
+    let (key, text) = (key.trim(), text.trim());
+    let value = toml::from_str::<Table>(&format!("value = {text}"))
+        .ok()
+        .and_then(|mut t| if t.len() == 1 { t.remove("value") } else { None })
+        .unwrap_or_else(|| Value::String(text.to_owned()));
+    let mut parts: Vec<&str> = key.split('.').collect();
+    let last = parts.pop().filter(|k| !k.is_empty()).ok_or("expected PATH=VALUE, got an empty path")?;
+    let mut place = PlaceMut::Table(table);
+    for part in parts {
+        place = place.enter(part)?;
+    }
+    place.set(last, value.clone())?;
+    Ok((key.to_owned(), value))
+}
+
+enum PlaceMut<'a> {
+    Table(&'a mut Table),
+    Array(&'a mut Vec<Value>),
+}
+
+impl<'a> PlaceMut<'a> {
+    fn enter(self, part: &str) -> Result<Self, String> {
+        let value = match self {
+            // A table that the file leaves out, such as [solver], comes into being.
+            Self::Table(table) => table.entry(part).or_insert_with(|| Value::Table(Table::new())),
+            Self::Array(array) => {
+                let length = array.len();
+                array.get_mut(index(part, length)?).ok_or_else(|| out_of_range(part, length))?
+            }
+        };
+        match value {
+            Value::Table(table) => Ok(Self::Table(table)),
+            Value::Array(array) => Ok(Self::Array(array)),
+            other => Err(format!("`{part}` is a {}: expected a table or a list there", other.type_str())),
+        }
+    }
+
+    fn set(self, part: &str, value: Value) -> Result<(), String> {
+        match self {
+            Self::Table(table) => {
+                table.insert(part.to_owned(), value);
+            }
+            Self::Array(array) => {
+                let length = array.len();
+                *array.get_mut(index(part, length)?).ok_or_else(|| out_of_range(part, length))? = value;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn index(part: &str, length: usize) -> Result<usize, String> {
+    part.parse().map_err(|_| format!("expected an index below {length}, got `{part}`"))
+}
+
+fn out_of_range(part: &str, length: usize) -> String {
+    format!("expected an index below {length}, got {part}")
+}
+
+/// The line of the longest part of `key` that is written in the file.
+fn find_line(text: &str, table: &DeTable<'_>, key: &str) -> Option<usize> {
+    let mut parts = key.split('.');
+    let first = parts.next()?;
+    let (written, mut value) = table.iter().find(|(k, _)| k.get_ref() == first)?;
+    let mut line = Some(line_of(text, written.span().start));
+    for part in parts {
+        let next = match value.get_ref() {
+            DeValue::Table(table) => table.iter().find(|(k, _)| k.get_ref() == part).map(|(k, v)| (k.span().start, v)),
+            DeValue::Array(items) => part.parse().ok().and_then(|i: usize| items.get(i)).map(|v| (v.span().start, v)),
+            _ => None,
+        };
+        let Some((start, inner)) = next else { break };
+        line = Some(line_of(text, start));
+        value = inner;
+    }
+    line
+}
+
+fn line_of(text: &str, offset: usize) -> usize {
+    text.bytes().take(offset).filter(|&b| b == b'\n').count() + 1
+}

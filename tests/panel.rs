@@ -1,0 +1,309 @@
+//! The panel, driven as a person would: by labels, pointer and keys, without a display or a GPU.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use common::{scene, solve_json};
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use warpbeam::app::Lab;
+use warpbeam::scene::{Load, MethodKind, Plane, Source};
+use warpbeam::simulation::{Simulation, Status};
+
+fn harness(id: &str) -> Harness<'static, Lab> {
+    let scene = scene(id);
+    let simulation = Simulation::new(&scene).unwrap();
+    let lab = Lab::new(Source { name: id.to_owned(), assignments: Vec::new() }, scene, simulation);
+    let mut harness = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance();
+            lab.ui(ui, None);
+        },
+        lab,
+    );
+    harness.run();
+    harness
+}
+
+fn force(lab: &Lab) -> [f64; 2] {
+    lab.scene()
+        .loads
+        .iter()
+        .find_map(|l| match l {
+            Load::Force { force, .. } => Some(*force),
+            Load::Gravity { .. } => None,
+        })
+        .unwrap()
+}
+
+fn tip(lab: &Lab) -> [f64; 2] {
+    lab.simulation().solution().probes[0].u.into()
+}
+
+/// Types a number into the field of this label.
+fn type_into(harness: &mut Harness<'_, Lab>, label: &str, text: &str) {
+    harness.get_by_role_and_label(Role::SpinButton, label).click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.event(egui::Event::Text(text.to_owned()));
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run();
+}
+
+/// Dragging the force slider changes the deflection to what `solve` gives for that force.
+#[test]
+fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
+    let mut harness = harness("cantilever");
+    let before = (force(harness.state()), tip(harness.state()));
+    let slider = harness.get_by_role_and_label(Role::Slider, "Force").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    harness.hover_at(at(0.4));
+    harness.drag_at(at(0.4));
+    harness.run();
+    harness.hover_at(at(0.46));
+    harness.run();
+    harness.drop_at(at(0.46));
+    harness.run();
+    let lab = harness.state();
+    let [fx, fy] = force(lab);
+    assert_ne!([fx, fy], before.0, "the slider did not move the force");
+    assert_eq!(fx, 0.0);
+    assert_eq!(*lab.simulation().status(), Status::Converged);
+    let json = solve_json(&["cantilever", "--set", &format!("load.0.force=[{fx},{fy}]")]);
+    let solved = [0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap());
+    let shown = tip(lab);
+    // Both within the solver's tolerance of the equilibrium, from different starts.
+    let error = (shown[0] - solved[0]).hypot(shown[1] - solved[1]);
+    assert!(error < 1e-5 * solved[1].abs(), "{shown:?} {solved:?}");
+    assert!((shown[1] - before.1[1]).abs() > 1e-3);
+}
+
+#[test]
+fn typed_values_take_effect_also_beyond_the_slider() {
+    let mut harness = harness("cantilever");
+    type_into(&mut harness, "Force", "0.5 kN");
+    assert_eq!(force(harness.state()), [0.0, -500.0]);
+    type_into(&mut harness, "Direction", "0");
+    assert_eq!(force(harness.state()), [500.0, 0.0]);
+    type_into(&mut harness, "Force", "0");
+    type_into(&mut harness, "Direction", "90");
+    type_into(&mut harness, "Force", "2e7");
+    assert_eq!(force(harness.state()), [0.0, 2e7]);
+    type_into(&mut harness, "Gravity", "9.81");
+    assert!(harness.state().scene().loads.contains(&Load::Gravity { acceleration: [0.0, -9.81] }));
+    type_into(&mut harness, "Young E", "2 MPa");
+    type_into(&mut harness, "Poisson ν", "0.45");
+    type_into(&mut harness, "Density ρ", "1200");
+    type_into(&mut harness, "Thickness t", "0.2");
+    let m = harness.state().scene().material;
+    assert_eq!((m.young, m.poisson, m.density, m.thickness), (2e6, 0.45, 1200.0, 0.2));
+    type_into(&mut harness, "Cells along", "40");
+    type_into(&mut harness, "Cells across", "3");
+    assert_eq!(harness.state().scene().beam.cells, [40, 3]);
+    assert_eq!(harness.state().simulation().system().mesh.triangle_count(), 240);
+}
+
+/// Out of range: refused, with a message that says what was expected; never clamped, never taken.
+#[test]
+fn values_out_of_range_are_refused_with_a_message() {
+    let cases = [
+        ("Force", "-5", "expected 0 to 1e15 N, got -5"),
+        ("Force", "lots", "got \u{201c}lots\u{201d}"),
+        ("Direction", "400", "expected -180 to 180 °, got 400"),
+        ("Gravity", "1e9", "m/s², got 1e9"),
+        ("Young E", "0", "Pa, got 0"),
+        ("Young E", "nan", "got \u{201c}nan\u{201d}"),
+        ("Poisson ν", "0.7", "expected -0.99 to 0.5, got 0.7"),
+        ("Density ρ", "-1", "kg/m³, got -1"),
+        ("Thickness t", "0", "m, got 0"),
+        ("Cells along", "0", "expected 1 to 100000, got 0"),
+        ("Cells along", "2.5", "expected a whole number, got 2.5"),
+        ("Cells across", "90000", "cells in all"),
+    ];
+    for (label, text, message) in cases {
+        let mut harness = harness("cantilever");
+        let before = harness.state().scene().clone();
+        assert!(harness.query_by_label_contains(message).is_none());
+        type_into(&mut harness, label, text);
+        assert_eq!(*harness.state().scene(), before, "{label} {text}");
+        let shown = harness.query_by_label_contains(message).map(|node| node.rect());
+        let shown = shown.unwrap_or_else(|| unreachable!("{label} {text}: no message {message:?}"));
+        let field = harness.get_by_role_and_label(Role::SpinButton, label).rect();
+        assert!(
+            shown.top() >= field.bottom() - 1.0 && shown.top() < field.bottom() + 24.0,
+            "{label}: not next to the field"
+        );
+        // A good value makes the message go.
+        let good = if label.starts_with("Cells") { "4" } else { "0.25" };
+        type_into(&mut harness, label, good);
+        assert!(harness.query_by_label_contains(message).is_none(), "{label}: the message stays");
+    }
+}
+
+#[test]
+fn every_number_has_a_unit_and_a_tooltip() {
+    let mut harness = harness("article");
+    for (label, unit, tip) in [
+        ("Force", " N", "12 kN"),
+        ("Direction", "°", "90° up"),
+        ("Gravity", "m/s²", "9.81 on earth"),
+        ("Young E", " Pa", "stiffness"),
+        ("Poisson ν", "", "thins"),
+        ("Density ρ", "kg/m³", "gravity reads it"),
+        ("Thickness t", " m", "out of the plane"),
+        ("Cells along", "", "two triangles"),
+        ("Cells across", "", "two triangles"),
+    ] {
+        let node = harness.get_by_role_and_label(Role::SpinButton, label);
+        let value = node.accesskit_node().value().unwrap_or_default();
+        let center = harness.get_by_role_and_label(Role::Slider, label).rect().center();
+        assert!(value.contains(unit), "{label}: {value}");
+        harness.hover_at(center);
+        harness.run_steps(60);
+        assert!(harness.query_all_by_label_contains(tip).next().is_some(), "{label}: no tooltip with {tip:?}");
+        harness.hover_at(egui::pos2(900.0, 400.0));
+        harness.run_steps(5);
+    }
+}
+
+#[test]
+fn run_pause_step_and_reset() {
+    let mut harness = harness("article");
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    let converged = harness.state().simulation().iterations();
+    harness.get_by_label("Pause").click();
+    harness.run();
+    harness.get_by_label("Reset").click();
+    harness.run();
+    assert_eq!(harness.state().simulation().iterations(), 0);
+    assert_eq!(tip(harness.state()), [0.0, 0.0]);
+    harness.get_by_label("Step").click();
+    harness.run();
+    assert_eq!(harness.state().simulation().iterations(), 1);
+    // The first warped iteration is the linear solution.
+    let linear = solve_json(&["article", "--set", "solver.method=linear"]);
+    assert!((tip(harness.state())[1] - linear["probes"][0]["u"][1].as_f64().unwrap()).abs() < 1e-9);
+    harness.key_press(Key::N);
+    harness.run();
+    assert_eq!(harness.state().simulation().iterations(), 2);
+    harness.get_by_label("Run").click();
+    harness.run();
+    assert_eq!(harness.state().simulation().iterations(), converged);
+    harness.key_press(Key::Space);
+    harness.key_press(Key::R);
+    harness.run();
+    assert_eq!(harness.state().simulation().iterations(), 0);
+}
+
+#[test]
+fn a_diverging_iteration_is_said_in_words_and_the_panel_lives_on() {
+    let mut harness = harness("cantilever");
+    type_into(&mut harness, "Force", "9000");
+    assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
+    assert!(harness.query_all_by_label_contains("Diverged: the residual has not fallen").next().is_some());
+    assert!(harness.query_all_by_label_contains("last finite state").next().is_some());
+    type_into(&mut harness, "Force", "1000");
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    assert!(harness.query_by_label_contains("Diverged").is_none());
+}
+
+#[test]
+fn scene_method_and_plane_can_be_chosen() {
+    let mut harness = harness("article");
+    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
+    harness.run();
+    harness.get_by_label("bridge").click();
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Bridge");
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    harness.get_by_role_and_label(Role::ComboBox, "Method").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "linear").click();
+    harness.run();
+    assert_eq!(harness.state().scene().solver.method, MethodKind::Linear);
+    harness.get_by_label("strain").click();
+    harness.run();
+    assert_eq!(harness.state().scene().material.plane, Plane::Strain);
+}
+
+#[test]
+fn keys_are_listed_and_work() {
+    let mut harness = harness("article");
+    harness.key_press(Key::F1);
+    harness.run();
+    for words in ["Run or pause", "Save a screenshot", "Copy the scene", "Zoom to the pointer"] {
+        assert!(harness.query_by_label_contains(words).is_some(), "{words}");
+    }
+    harness.key_press(Key::Escape);
+    harness.run();
+    assert!(harness.query_by_label_contains("Run or pause").is_none());
+    harness.key_press(Key::P);
+    harness.run();
+    assert!(harness.query_by_role_and_label(Role::Slider, "Force").is_none());
+    harness.key_press(Key::P);
+    harness.run();
+    assert!(harness.query_by_role_and_label(Role::Slider, "Force").is_some());
+    // Pressed only: a release would be a frame of its own, with its own output.
+    harness.key_down(Key::C);
+    harness.step();
+    let copied = harness.output().platform_output.commands.iter().find_map(|c| match c {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let text = copied.unwrap();
+    assert!(text.starts_with("# Save as scene.toml, then: warpbeam solve scene.toml"), "{text}");
+    // What was copied solves to what is shown.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, text).unwrap();
+    let json = solve_json(&[path.to_str().unwrap()]);
+    assert_eq!(json["probes"][0]["u"][1].as_f64().unwrap(), tip(harness.state())[1]);
+}
+
+#[test]
+fn scrolling_zooms_to_the_pointer_and_f_fits() {
+    let mut harness = harness("article");
+    let rect = harness.state().view_rect();
+    let pointer = rect.center() + egui::vec2(150.0, -80.0);
+    let offset = [150.0, -80.0];
+    let fitted = harness.state().camera();
+    let under = fitted.to_world(offset);
+    harness.hover_at(pointer);
+    harness.step();
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: egui::vec2(0.0, 120.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run();
+    let zoomed = harness.state().camera();
+    assert!(zoomed.scale > 1.2 * fitted.scale, "{zoomed:?}");
+    assert!((zoomed.to_world(offset) - under).norm() < 1e-6);
+    harness.drag_at(pointer);
+    harness.step();
+    harness.hover_at(pointer + egui::vec2(40.0, 25.0));
+    harness.step();
+    harness.drop_at(pointer + egui::vec2(40.0, 25.0));
+    harness.run();
+    let panned = harness.state().camera();
+    assert!((panned.to_world([190.0, -55.0]) - under).norm() < 1e-2, "the body did not follow the pointer");
+    harness.key_press(Key::F);
+    harness.run();
+    assert_eq!(harness.state().camera(), fitted);
+}
+
+/// At rest the lab asks for no further frame.
+#[test]
+fn at_rest_nothing_is_redrawn() {
+    let mut harness = harness("article");
+    harness.run_steps(3);
+    assert!(!harness.state().iterates());
+    let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert!(delay > std::time::Duration::from_secs(3600), "{delay:?}");
+}

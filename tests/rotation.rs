@@ -1,0 +1,407 @@
+//! The closed-form rotation against exact arithmetic and the SVD; affine maps; the 3×3 iteration; the article's errata.
+
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
+use num_bigint::BigInt;
+use proptest::prelude::*;
+use warpbeam::rotation::affine::{Affine2, Affine3, AffineError, Diagonal, quadrilateral_maps, triangle_system};
+use warpbeam::rotation::polar::{PolarError, orthogonality_error, polar_from_svd, polar3, proper_rotation3};
+use warpbeam::rotation::{Rotation, polar, polar_or};
+
+/// A finite f64 as an integer times 2^−1074, exactly.
+fn exact(value: f64) -> BigInt {
+    let bits = value.to_bits();
+    let exponent = (bits >> 52) & 0x7ff;
+    let fraction = bits & ((1 << 52) - 1);
+    let magnitude = match exponent {
+        0 => BigInt::from(fraction),
+        _ => BigInt::from(fraction | (1 << 52)) << (exponent - 1),
+    };
+    if value.is_sign_negative() { -magnitude } else { magnitude }
+}
+
+/// The definition, in exact arithmetic: RᵀF is symmetric, its trace is positive, and R is a rotation.
+fn check_exactly(f: &Matrix2<f64>, r: Rotation) {
+    assert!((r.c.hypot(r.s) - 1.0).abs() < 4.0 * f64::EPSILON, "not a rotation: {r:?} of {f:?}");
+    let (a, b) = (exact(f.m11) + exact(f.m22), exact(f.m21) - exact(f.m12));
+    let (c, s) = (exact(r.c), exact(r.s));
+    let skew = &c * &b - &s * &a;
+    let trace = &c * &a + &s * &b;
+    assert!(trace > BigInt::ZERO, "a turn too far: {r:?} of {f:?}");
+    // |skew| ≤ 4 ε · trace, that is: the angle is right to four units in the last place.
+    assert!((skew.magnitude() << 50u32) <= *trace.magnitude(), "wrong angle: {r:?} of {f:?}");
+}
+
+fn check(f: &Matrix2<f64>) {
+    let undefined = exact(f.m11) == -exact(f.m22) && exact(f.m21) == exact(f.m12);
+    match polar(f) {
+        Some(r) => {
+            assert!(!undefined, "a rotation of a scaled reflection: {f:?}");
+            check_exactly(f, r);
+        }
+        None => assert!(undefined, "no rotation of {f:?}"),
+    }
+}
+
+/// A fixed sequence of well-mixed 64-bit numbers (splitmix64, Steele et al. 2014).
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn uniform(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
+    }
+
+    fn any_finite(&mut self) -> f64 {
+        loop {
+            let value = f64::from_bits(self.bits());
+            if value.is_finite() {
+                return value;
+            }
+        }
+    }
+}
+
+#[test]
+fn a_million_matrices_against_exact_arithmetic() {
+    let mut random = Random(1);
+    for i in 0..1_000_000 {
+        let [a, b, c, d] = match i % 5 {
+            // Ordinary numbers.
+            0 => [(); 4].map(|()| random.uniform()),
+            // Any bit pattern: subnormal to the largest, entries hundreds of decades apart.
+            1 => [(); 4].map(|()| random.any_finite()),
+            // Almost a scaled reflection: the sums cancel.
+            2 => {
+                let (p, q) = (random.uniform(), random.uniform());
+                let nudge = |v: f64, random: &mut Random| f64::from_bits(v.to_bits() ^ (random.bits() & 3));
+                [p, nudge(q, &mut random), q, -nudge(p, &mut random)]
+            }
+            // Singular, or a reflection, at some scale.
+            3 => {
+                let scale = 2f64.powi((random.bits() % 2000) as i32 - 1000);
+                let (p, q, k) = (random.uniform() * scale, random.uniform() * scale, (random.bits() % 3) as f64 - 1.0);
+                [p, q, k * p, k * q]
+            }
+            // Subnormal.
+            _ => [(); 4].map(|()| random.uniform() * 1e-308),
+        };
+        check(&Matrix2::new(a, b, c, d));
+    }
+}
+
+#[test]
+fn adversarial_matrices_against_exact_arithmetic() {
+    let special = [
+        0.0,
+        -0.0,
+        5e-324,
+        -5e-324,
+        2.3e-308,
+        1e-300,
+        1e-16,
+        0.5,
+        1.0,
+        -1.0,
+        1.0 + f64::EPSILON,
+        3.0,
+        1e16,
+        -1e300,
+        1e300,
+        f64::MAX,
+        -f64::MAX,
+    ];
+    for a in special {
+        for b in special {
+            for c in special {
+                for d in special {
+                    check(&Matrix2::new(a, b, c, d));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rotations_agree_with_the_svd() {
+    let mut random = Random(2);
+    for _ in 0..100_000 {
+        let f = Matrix2::from_fn(|_, _| random.uniform());
+        let svd = f.svd(true, true);
+        let (u, v_t) = (svd.u.unwrap(), svd.v_t.unwrap());
+        // The nearest proper rotation: U diag(1, det(U Vᵀ)) Vᵀ, the smaller singular value taking the sign.
+        let sign = (u * v_t).determinant().signum();
+        let nearest = u * Matrix2::new(1.0, 0.0, 0.0, sign) * v_t;
+        let gap = svd.singular_values[0] + sign * svd.singular_values[1];
+        let r = polar(&f).unwrap().matrix();
+        assert!((r - nearest).norm() < 1e-14 / gap.max(1e-9), "{f} {r} {nearest}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+    #[test]
+    fn any_four_numbers(a in any::<f64>(), b in any::<f64>(), c in any::<f64>(), d in any::<f64>()) {
+        let f = Matrix2::new(a, b, c, d);
+        if f.iter().all(|v| v.is_finite()) { check(&f); } else { prop_assert!(polar(&f).is_none()); }
+    }
+
+    #[test]
+    fn a_turned_stretch_gives_back_its_turn(angle in -3.1f64..3.1, p in 1e-3f64..1e3, q in 1e-3f64..1e3, axis in 0.0..3.1) {
+        let v = Rotation::from_angle(axis).matrix();
+        let stretch = v * Matrix2::new(p, 0.0, 0.0, q) * v.transpose();
+        let r = polar(&(Rotation::from_angle(angle).matrix() * stretch)).unwrap();
+        prop_assert!((r.angle() - angle).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_mirrored_element_gets_a_rotation_not_a_reflection(angle in -3.1f64..3.1, p in 0.5f64..2.0, q in 0.01f64..0.4) {
+        let f = Rotation::from_angle(angle).matrix() * Matrix2::new(p, 0.0, 0.0, -q);
+        let r = polar(&f).unwrap();
+        prop_assert!((r.matrix().determinant() - 1.0).abs() < 1e-14);
+        prop_assert!((r.angle() - angle).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_previous_rotation_is_kept_where_none_is_defined() {
+    let previous = Rotation::from_angle(0.7);
+    for f in [Matrix2::zeros(), Matrix2::new(2.0, 3.0, 3.0, -2.0), Matrix2::new(f64::NAN, 0.0, 0.0, 1.0)] {
+        assert_eq!(polar_or(&f, previous), previous);
+    }
+}
+
+/// Erratum: with eq. (38) as printed, c = a √(a² + b²), the result is not a rotation.
+#[test]
+fn erratum_eq_38_lacks_the_reciprocal() {
+    let f = Matrix2::<f64>::new(0.552885, -1.019231, 0.875, 0.5);
+    let (a, b) = (f.m11 + f.m22, f.m21 - f.m12);
+    let root = a.hypot(b);
+    assert!(((a * root).hypot(b * root) - 1.0).abs() > 1.0);
+    let r = polar(&f).unwrap();
+    assert!((r.c - a / root).abs() < 1e-15 && (r.s - b / root).abs() < 1e-15);
+    assert!((r.c - 0.485831).abs() < 1e-6 && (r.s - 0.874053).abs() < 1e-6);
+}
+
+fn corners<const N: usize>(points: [[f64; 2]; N]) -> [Vector2<f64>; N] {
+    points.map(Vector2::from)
+}
+
+const TRIANGLE: [[f64; 2]; 3] = [[0.3, -0.2], [2.1, 0.4], [0.9, 1.7]];
+
+/// The article's system (13) and the direct map agree: P a = y.
+fn assert_solves_the_system(rest: [Vector2<f64>; 3], deformed: [Vector2<f64>; 3], map: &Affine2) {
+    let m = map.homogeneous();
+    let a = SVector::<f64, 6>::from_row_slice(&[m[(0, 0)], m[(0, 1)], m[(0, 2)], m[(1, 0)], m[(1, 1)], m[(1, 2)]]);
+    let y = SVector::<f64, 6>::from_fn(|row, _| deformed[row % 3][row / 3]);
+    assert!((triangle_system(rest) * a - y).norm() < 1e-12);
+}
+
+#[test]
+fn article_example_1_nothing_moves() {
+    let rest = corners(TRIANGLE);
+    let map = Affine2::from_triangle(rest, rest).unwrap();
+    assert!((map.homogeneous() - Matrix3::identity()).norm() < 1e-14);
+    assert_solves_the_system(rest, rest, &map);
+}
+
+#[test]
+fn article_example_2_a_translation() {
+    let rest = corners(TRIANGLE);
+    let deformed = rest.map(|p| p + Vector2::new(6.0, 7.0));
+    let map = Affine2::from_triangle(rest, deformed).unwrap();
+    let expected = Matrix3::new(1.0, 0.0, 6.0, 0.0, 1.0, 7.0, 0.0, 0.0, 1.0);
+    assert!((map.homogeneous() - expected).norm() < 1e-13);
+    assert_solves_the_system(rest, deformed, &map);
+}
+
+#[test]
+fn article_example_3_onto_a_line_but_not_back() {
+    let (k, b) = (0.5, -1.0);
+    let rest = corners(TRIANGLE);
+    let deformed = rest.map(|p| Vector2::new(p.x, k * p.x + b));
+    let map = Affine2::from_triangle(rest, deformed).unwrap();
+    let expected = Matrix3::new(1.0, 0.0, 0.0, k, 0.0, b, 0.0, 0.0, 1.0);
+    assert!((map.homogeneous() - expected).norm() < 1e-13);
+    assert!(map.linear.determinant().abs() < 1e-14);
+    assert_solves_the_system(rest, deformed, &map);
+    assert!(matches!(Affine2::from_triangle(deformed, rest), Err(AffineError::CollinearCorners { .. })));
+}
+
+#[test]
+fn collinear_corners_are_refused_at_every_size() {
+    for scale in [1e-150, 1e-3, 1.0, 1e6, 1e150] {
+        let rest = corners([[0.0, 0.0], [1.0, 2.0], [3.0, 6.0]]).map(|p| p * scale);
+        assert!(matches!(Affine2::from_triangle(rest, rest), Err(AffineError::CollinearCorners { .. })), "{scale}");
+        let rest = corners(TRIANGLE).map(|p| p * scale);
+        let map = Affine2::from_triangle(rest, rest).unwrap();
+        assert!((map.linear - Matrix2::identity()).norm() < 1e-13, "{scale}");
+    }
+    let point = corners([[1.0, 1.0]; 3]);
+    assert!(matches!(Affine2::from_triangle(point, point), Err(AffineError::CollinearCorners { .. })));
+    let nan = corners([[f64::NAN, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert_eq!(Affine2::from_triangle(nan, nan), Err(AffineError::NotFinite));
+}
+
+#[test]
+fn a_quadrilateral_has_two_maps_that_depend_on_the_diagonal() {
+    let rest = corners([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
+    let deformed = corners([[0.0, 0.0], [2.0, 0.3], [2.5, 1.6], [-0.2, 1.0]]);
+    let one_three = quadrilateral_maps(rest, deformed, Diagonal::OneThree).unwrap();
+    let two_four = quadrilateral_maps(rest, deformed, Diagonal::TwoFour).unwrap();
+    // Each map takes its corners where they go.
+    for (map, corners) in
+        [(one_three[0], [0, 1, 2]), (one_three[1], [0, 2, 3]), (two_four[0], [0, 1, 3]), (two_four[1], [1, 2, 3])]
+    {
+        for i in corners {
+            assert!((map.apply(rest[i]) - deformed[i]).norm() < 1e-13);
+        }
+    }
+    // All four differ: there is no one map of the quadrilateral, and the diagonal matters.
+    let maps = [one_three[0], one_three[1], two_four[0], two_four[1]];
+    for (i, a) in maps.iter().enumerate() {
+        for b in &maps[..i] {
+            assert!((a.linear - b.linear).norm() > 0.1);
+        }
+    }
+    // Unless the deformation is affine.
+    let affine = rest.map(|p| Vector2::new(1.0 + 2.0 * p.x - p.y, 0.5 * p.x + 3.0 * p.y));
+    let a = quadrilateral_maps(rest, affine, Diagonal::OneThree).unwrap();
+    let b = quadrilateral_maps(rest, affine, Diagonal::TwoFour).unwrap();
+    for map in [a[1], b[0], b[1]] {
+        assert!((map.homogeneous() - a[0].homogeneous()).norm() < 1e-13);
+    }
+}
+
+#[test]
+fn a_tetrahedron_has_one_map() {
+    let rest = [[0.1, 0.0, 0.2], [1.3, 0.1, 0.0], [0.2, 1.1, -0.1], [0.0, 0.3, 0.9]].map(Vector3::from);
+    let m = Matrix3::new(8.442, 0.559, 2.790, 2.771, 1.936, 4.589, 0.818, 6.158, 5.564);
+    let d = Vector3::new(1.0, -2.0, 3.0);
+    let map = Affine3::from_tetrahedron(rest, rest.map(|p| m * p + d)).unwrap();
+    assert!((map.linear - m).norm() < 1e-12 && (map.translation - d).norm() < 1e-12);
+    assert!((map.homogeneous().fixed_view::<3, 3>(0, 0) - m).norm() < 1e-12);
+    // Eq. (24), all twelve rows of it, by a general solve.
+    let p = SMatrix::<f64, 12, 12>::from_fn(|row, column| {
+        let corner = rest[row % 4];
+        if row / 4 == column / 4 { [corner.x, corner.y, corner.z, 1.0][column % 4] } else { 0.0 }
+    });
+    let y = SVector::<f64, 12>::from_fn(|row, _| (m * rest[row % 4] + d)[row / 4]);
+    let a = p.lu().solve(&y).unwrap();
+    for (row, entries) in a.as_slice().chunks(4).enumerate() {
+        for (column, &entry) in entries.iter().enumerate() {
+            assert!((map.homogeneous()[(row, column)] - entry).abs() < 1e-11);
+        }
+    }
+    let flat = rest.map(|p| Vector3::new(p.x, p.y, p.x + p.y));
+    assert_eq!(Affine3::from_tetrahedron(flat, rest), Err(AffineError::CoplanarCorners));
+}
+
+/// Eq. (26): a shear is a rotation, a stretch and a rotation; the printed singular values and factors.
+#[test]
+fn article_eq_26_svd_of_a_shear() {
+    let shear = Matrix2::new(1.0, 1.0, 0.0, 1.0);
+    let svd = shear.svd(true, true);
+    assert!((svd.singular_values - Vector2::new(1.618, 0.618)).norm() < 1e-3);
+    let u = Matrix2::new(0.8506, 0.5257, 0.5257, -0.8506);
+    let v_t = Matrix2::new(0.5257, 0.8506, 0.8506, -0.5257);
+    assert!((u * Matrix2::new(1.618, 0.0, 0.0, 0.618) * v_t - shear).norm() < 1e-3);
+    assert!((svd.u.unwrap().abs() - u.abs()).norm() < 1e-3 && (svd.v_t.unwrap().abs() - v_t.abs()).norm() < 1e-3);
+    // Eqs. (31), (32): left and right factors share one rotation, that of the closed form.
+    let p = polar_from_svd(&shear).unwrap();
+    assert!((p.orthogonal - polar(&shear).unwrap().matrix()).norm() < 1e-14);
+    assert!((p.orthogonal * p.right - shear).norm() < 1e-14 && (p.left * p.orthogonal - shear).norm() < 1e-14);
+}
+
+/// Eqs. (28), (30): a plane translation as a 3×3 matrix has the printed singular values.
+#[test]
+fn article_eq_30_svd_of_a_translation() {
+    let rest = corners(TRIANGLE);
+    let map = Affine2::from_triangle(rest, rest.map(|p| p + Vector2::new(6.0, 7.0))).unwrap();
+    let translation = map.homogeneous();
+    let singular = translation.svd(false, false).singular_values;
+    assert!((singular - Vector3::new(9.3268, 1.0, 0.107)).norm() < 1e-3, "{singular}");
+    assert!((translation.svd(true, true).recompose().unwrap() - translation).norm() < 1e-12);
+}
+
+fn article_matrix() -> Matrix3<f64> {
+    Matrix3::new(8.442, 0.559, 2.790, 2.771, 1.936, 4.589, 0.818, 6.158, 5.564)
+}
+
+/// The worked example, to its printed digits: seven iterations, R, U and V.
+#[test]
+fn article_example_of_the_3x3_iteration() {
+    let p = polar3(&article_matrix()).unwrap();
+    assert_eq!(p.iterations, 7);
+    let error = orthogonality_error(&p.orthogonal);
+    assert!((error - 3.6e-10).abs() < 0.1e-10, "{error:e}");
+    let r = Matrix3::new(0.998, 0.058, -0.021, 0.039, -0.332, 0.942, -0.047, 0.941, 0.334);
+    let u = Matrix3::new(8.497, 0.341, 2.702, 0.341, 5.184, 3.872, 2.702, 3.872, 6.124);
+    let v = Matrix3::new(8.398, 2.779, 1.056, 2.779, 3.790, 3.225, 1.056, 3.225, 7.618);
+    // Printed to three decimals, from a matrix printed to three decimals.
+    for (ours, printed) in [(p.orthogonal, r), (p.right, u), (p.left, v)] {
+        assert!((ours - printed).amax() < 1.6e-3, "{ours} {printed}");
+    }
+    assert!((p.orthogonal * p.right - article_matrix()).norm() < 1e-8);
+    assert!((p.left * p.orthogonal - article_matrix()).norm() < 1e-8);
+}
+
+/// Erratum: the V printed beside eq. (36) is F Rᵀ; FᵀR, as the equation says, is U transposed.
+#[test]
+fn erratum_eq_36_v_is_f_r_transposed() {
+    let f = article_matrix();
+    let p = polar3(&f).unwrap();
+    let as_printed = f.transpose() * p.orthogonal;
+    assert!((as_printed - p.left).norm() > 1.0);
+    assert!((as_printed - p.right).norm() < 1e-8);
+}
+
+/// Erratum: what the example prints as A⁻ᵀ is A⁻¹.
+#[test]
+fn erratum_the_printed_inverse_is_not_transposed() {
+    let printed = Matrix3::new(0.157, -0.126, 0.025, 0.105, -0.402, 0.279, -0.139, 0.464, -0.133);
+    let inverse = article_matrix().try_inverse().unwrap();
+    assert!((inverse - printed).amax() < 1e-3);
+    assert!((inverse.transpose() - printed).amax() > 0.1);
+}
+
+/// Erratum: the example's R is a reflection; the proper rotation is another one.
+#[test]
+fn erratum_the_example_is_a_reflection() {
+    let f = article_matrix();
+    assert!((f.determinant() + 110.96).abs() < 0.01);
+    assert!((polar3(&f).unwrap().orthogonal.determinant() + 1.0).abs() < 1e-8);
+    let proper = proper_rotation3(&f).unwrap();
+    let expected = Matrix3::new(0.8672, -0.3313, 0.3717, 0.4401, 0.8591, -0.2611, -0.2329, 0.3900, 0.8909);
+    assert!((proper.orthogonal - expected).amax() < 1e-4, "{}", proper.orthogonal);
+    assert!((proper.orthogonal.determinant() - 1.0).abs() < 1e-8);
+    assert!((proper.orthogonal * proper.right - f).norm() < 1e-8);
+}
+
+/// Erratum: eq. (31) writes U V⁻¹ for U Vᵀ; for an orthogonal V they are the same.
+#[test]
+fn erratum_eq_31_inverse_and_transpose_of_v_agree() {
+    let svd = article_matrix().svd(true, true);
+    let v = svd.v_t.unwrap().transpose();
+    assert!((v.try_inverse().unwrap() - v.transpose()).norm() < 1e-12);
+}
+
+#[test]
+fn the_3x3_iteration_at_the_extremes() {
+    for scale in [1e-300, 1e-100, 1e-3, 1e100, 1e300] {
+        let p = polar3(&(article_matrix() * scale)).unwrap();
+        assert!((p.orthogonal - polar3(&article_matrix()).unwrap().orthogonal).norm() < 1e-8, "{scale:e}");
+    }
+    assert_eq!(polar3(&Matrix3::zeros()), Err(PolarError::Singular));
+    assert_eq!(polar3(&Matrix3::from_element(f64::NAN)), Err(PolarError::NotFinite));
+    assert_eq!(polar_from_svd(&Matrix2::from_element(f64::INFINITY)), Err(PolarError::NotFinite));
+    let thin = Matrix3::from_diagonal(&Vector3::new(1.0, 1e-6, 1e3));
+    assert!((polar3(&thin).unwrap().orthogonal - Matrix3::identity()).norm() < 1e-8);
+}
