@@ -1,5 +1,55 @@
+//! **warpbeam** bends 2D triangle beams with the *warped stiffness* (corotational finite element) method, and says what
+//! each method costs and how wrong it is.
+//!
+//! ```
+//! use warpbeam::scene::{Scene, Source, open};
+//! use warpbeam::simulation::{Simulation, Status};
+//!
+//! let source = Source { name: "cantilever".into(), assignments: vec!["load.0.force=[0,-500]".into()] };
+//! let scene: Scene = open(&source)?;
+//! let mut beam = Simulation::new(&scene)?;
+//! while *beam.status() == Status::Running {
+//!     beam.step(); // one frame: rotations → assemble → factorize → solve → update
+//! }
+//! let tip = &beam.solution().probes[0];
+//! assert!((tip.u.y + 1.869).abs() < 1e-3, "the tip went down by {} m", -tip.u.y);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Notation
+//!
+//! | symbol | meaning | shape, unit |
+//! |---|---|---|
+//! | `X`, `x` | rest and current node positions | n × 2, m |
+//! | `u = x − X` | displacement: what the state stores, so that small strains keep their digits | n × 2, m |
+//! | `F = I + H` | deformation gradient Σ xₐ ⊗ ∇Nₐ at a quadrature point | 2 × 2 |
+//! | `R`, `S` | polar factors F = R S; R a proper rotation, S symmetric | 2 × 2 |
+//! | `E`, `ν`, `ρ`, `t` | Young's modulus Pa, Poisson ratio, density kg/m³, thickness m | scalars |
+//! | `λ`, `μ` | Lamé constants of the plane problem | Pa |
+//! | `Ke` | linear element stiffness ∫ Bᵀ C B t dA | 6 × 6 for `t3`, N/m |
+//! | `A` | warped stiffness Σ R Ke Rᵀ | 2n × 2n, sparse, N/m |
+//! | `f_ext`, `f_int` | external force, and Σ R Ke (Rᵀ x − X) | n × 2, N |
+//!
+//! # The frame
+//!
+//! ```text
+//! rotations(F(x)) → assemble A, f → factorize → solve → update x → (draw)
+//! ```
+//!
+//! Data flows one way, and the modules say so: [`scene`] → [`mesh`] → [`element`] → [`assembly`] → [`solver`] →
+//! [`method`] → [`simulation`] → the app. Without the feature `app` (on by default) there is no window, no GPU and no
+//! command line in the dependency tree.
+//!
+//! # Sources
+//!
+//! - M. Müller, M. Gross, *Interactive Virtual Materials*, Graphics Interface 2004: warped stiffness.
+//! - "实时物理模拟之 Warped Stiffness 方法" (*the article*): the equation numbers in these pages are its own. Its errata
+//!   are documented where they matter: [`rotation::polar`], [`rotation::decomposition::polar3`],
+//!   [`rotation::decomposition::Polar::left`], [`rotation::decomposition::polar_from_svd`].
+//! - faer for sparse Cholesky, nalgebra for small matrices.
+
 #![forbid(unsafe_code)]
-//! lib
+
 #[cfg(feature = "app")]
 pub mod app;
 pub mod assembly;

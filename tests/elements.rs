@@ -289,10 +289,10 @@ fn stiffness_and_offset_make_up_the_force() {
     let n = system.dofs();
     let mut a = nalgebra::DMatrix::zeros(n, n);
     for column in 0..n {
-        for k in system.pattern.column_starts[column]..system.pattern.column_starts[column + 1] {
-            let row = system.pattern.row_indices[k];
-            a[(row, column)] = values[k];
-            a[(column, row)] = values[k];
+        let entries = system.pattern.column_starts[column]..system.pattern.column_starts[column + 1];
+        for (&row, &value) in system.pattern.row_indices[entries.clone()].iter().zip(&values[entries]) {
+            a[(row, column)] = value;
+            a[(column, row)] = value;
         }
     }
     // Moving free nodes by d changes the force by A d, exactly: it is linear in x for fixed R.

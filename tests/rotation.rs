@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
 use num_bigint::BigInt;
 use proptest::prelude::*;
 use warpbeam::rotation::affine::{Affine2, Affine3, AffineError, Diagonal, quadrilateral_maps, triangle_system};
-use warpbeam::rotation::polar::{PolarError, orthogonality_error, polar_from_svd, polar3, proper_rotation3};
+use warpbeam::rotation::decomposition::{PolarError, orthogonality_error, polar_from_svd, polar3, proper_rotation3};
 use warpbeam::rotation::{Rotation, polar, polar_or};
 
 /// A finite f64 as an integer times 2^−1074, exactly.

@@ -192,9 +192,11 @@ fn result(ui: &mut Ui, shown: &Shown<'_>) {
         );
         for probe in simulation.system().probes.iter().take(2) {
             let u = probe.mean(simulation.displacement());
+            // Beside a component of ordinary size, rounding is no number to show.
+            let [x, y] = [u.x, u.y].map(|v| if v.abs() < 1e-12 * u.norm() { 0.0 } else { v });
             row(
                 &format!("{} x, y", probe.name),
-                format!("{}, {} m", format::short(u.x), format::short(u.y)),
+                format!("{}, {} m", format::short(x), format::short(y)),
                 "Displacement of the probe",
             );
         }

@@ -1,12 +1,12 @@
 //! Rotations of the plane: the closed-form polar decomposition every frame runs once per quadrature point.
 //!
 //! Article eqs. (37)–(39), with the reciprocal its eq. (38) lost. The affine maps whose rotation is extracted are in
-//! [`affine`]; the 3×3 iteration and the SVD reading of the same decomposition are in [`polar`](mod@polar).
+//! [`affine`]; the 3×3 iteration and the SVD reading of the same decomposition are in [`decomposition`].
 
 use nalgebra::{Matrix2, Vector2};
 
 pub mod affine;
-pub mod polar;
+pub mod decomposition;
 
 /// A proper rotation of the plane, stored as cosine and sine.
 #[derive(Clone, Copy, Debug, PartialEq)]

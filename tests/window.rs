@@ -1,0 +1,302 @@
+//! The real window on a virtual display, driven by xdotool as a person would.
+//!
+//! Where Xvfb, xdotool or openbox is missing the test says so and passes, unless `WARPBEAM_REQUIRE_XVFB` is set, as
+//! `scripts/test` does after installing them.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+#![cfg(target_os = "linux")]
+
+mod common;
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use common::scene;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use warpbeam::app::Lab;
+use warpbeam::scene::Source;
+use warpbeam::simulation::Simulation;
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{AtomEnum, ConnectionExt, ImageFormat};
+
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A virtual display with a window manager; both end with it.
+struct Desktop {
+    server: Child,
+    manager: Child,
+    name: String,
+}
+
+impl Drop for Desktop {
+    fn drop(&mut self) {
+        for child in [&mut self.manager, &mut self.server] {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+impl Desktop {
+    /// `None` where a program is missing.
+    fn start() -> Option<Self> {
+        let there = |program: &str| {
+            let found = Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap();
+            found.status.success()
+        };
+        let missing: Vec<_> = ["Xvfb", "xdotool", "openbox"].into_iter().filter(|p| !there(p)).collect();
+        if !missing.is_empty() {
+            assert!(std::env::var_os("WARPBEAM_REQUIRE_XVFB").is_none(), "missing: {missing:?}");
+            eprintln!("skipped: {missing:?} not installed; `scripts/setup test` installs them");
+            return None;
+        }
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1600x1100x24", "-nolisten", "tcp", "-noreset"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        let name = format!(":{}", number.trim());
+        let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
+        let desktop = Self { server, manager, name };
+        // A window that is mapped before there is a manager may never be managed.
+        wait_for("the window manager", || desktop.is_managed().then_some(()));
+        Some(desktop)
+    }
+
+    fn is_managed(&self) -> bool {
+        let (connection, screen) = x11rb::connect(Some(&self.name)).unwrap();
+        let root = connection.setup().roots[screen].root;
+        let atom = connection.intern_atom(false, b"_NET_SUPPORTING_WM_CHECK").unwrap().reply().unwrap().atom;
+        let property = connection.get_property(false, root, atom, AtomEnum::WINDOW, 0, 1).unwrap().reply().unwrap();
+        property.value_len == 1
+    }
+
+    fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        command
+    }
+
+    fn xdotool(&self, args: &[&str]) -> String {
+        let output = self.command("xdotool").args(args).output().unwrap();
+        assert!(output.status.success(), "xdotool {args:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    }
+}
+
+/// The program in its window.
+struct Window<'a> {
+    desktop: &'a Desktop,
+    process: Child,
+    id: String,
+}
+
+impl<'a> Window<'a> {
+    fn open(desktop: &'a Desktop, args: &[&str]) -> Self {
+        Self::open_in(desktop, std::path::Path::new("."), args)
+    }
+
+    fn open_in(desktop: &'a Desktop, folder: &std::path::Path, args: &[&str]) -> Self {
+        let mut process = desktop
+            .command(env!("CARGO_BIN_EXE_warpbeam"))
+            .args(args)
+            .current_dir(folder)
+            .stderr(Stdio::piped())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        let id = wait_for("the window", || {
+            assert_eq!(process.try_wait().unwrap(), None, "the program ended without a window");
+            let found =
+                desktop.command("xdotool").args(["search", "--onlyvisible", "--name", "warpbeam"]).output().unwrap();
+            String::from_utf8(found.stdout).unwrap().lines().last().map(str::to_owned)
+        });
+        let window = Self { desktop, process, id };
+        window.settle();
+        window
+    }
+
+    /// The window's pixels, four bytes each; none while it is not on the screen.
+    fn image(&self) -> Vec<u8> {
+        let (connection, _) = x11rb::connect(Some(&self.desktop.name)).unwrap();
+        let id: u32 = self.id.parse().unwrap();
+        let geometry = connection.get_geometry(id).unwrap().reply().unwrap();
+        let image = connection.get_image(ImageFormat::Z_PIXMAP, id, 0, 0, geometry.width, geometry.height, !0);
+        image.unwrap().reply().map(|reply| reply.data).unwrap_or_default()
+    }
+
+    /// Waits until the picture has stood still for a while, and returns it.
+    fn settle(&self) -> Vec<u8> {
+        let mut last = Vec::new();
+        let mut same = 0;
+        wait_for("a picture that stands still", || {
+            let image = self.image();
+            let drawn = image.chunks(4).any(|p| p[..3] != image[..3]);
+            same = if drawn && image == last { same + 1 } else { 0 };
+            last = image;
+            (same >= 3).then_some(())
+        });
+        last
+    }
+
+    fn key(&self, key: &str) {
+        self.desktop.xdotool(&["windowfocus", "--sync", &self.id, "key", key]);
+    }
+
+    fn point(&self, x: f32, y: f32) {
+        self.desktop.xdotool(&["mousemove", "--window", &self.id, &format!("{x:.0}"), &format!("{y:.0}")]);
+    }
+
+    /// Processor time used so far, in clock ticks.
+    fn ticks(&self) -> u64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).unwrap();
+        let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
+        fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
+    }
+
+    /// Waits for the program to end by itself; returns its exit code and what it said.
+    fn end(mut self) -> (Option<i32>, String) {
+        let status = wait_for("the program to end", || self.process.try_wait().unwrap());
+        let mut said = String::new();
+        std::io::Read::read_to_string(&mut self.process.stderr.take().unwrap(), &mut said).unwrap();
+        (status.code(), said)
+    }
+}
+
+impl Drop for Window<'_> {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn wait_for<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(value) = ready() {
+            return value;
+        }
+        assert!(start.elapsed() < PATIENCE, "waited in vain for {what}");
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
+/// Where the panel has its force slider, from the same panel laid out without a window.
+fn force_slider() -> egui::Rect {
+    let scene = scene("article");
+    let simulation = Simulation::new(&scene).unwrap();
+    let lab = Lab::new(Source { name: "article".to_owned(), assignments: Vec::new() }, scene, simulation);
+    let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.ui(ui, None);
+        },
+        lab,
+    );
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Slider, "Force").rect()
+}
+
+fn changed(a: &[u8], b: &[u8]) -> usize {
+    a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24)).count()
+}
+
+#[test]
+fn a_slider_is_dragged_the_picture_changes_and_close_exits_0() {
+    let Some(desktop) = Desktop::start() else { return };
+    let window = Window::open(&desktop, &["run", "article"]);
+    let slider = force_slider();
+    let at = |share: f32| (slider.left() + share * slider.width(), slider.center().y);
+    let before = window.settle();
+    // The handle of 30 000 N; dragged towards less, the beam springs back.
+    window.point(at(0.67).0, at(0.67).1);
+    desktop.xdotool(&["mousedown", "1"]);
+    for share in [0.6, 0.5, 0.4, 0.3] {
+        window.point(at(share).0, at(share).1);
+        std::thread::sleep(Duration::from_millis(60));
+    }
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(900.0, 700.0);
+    let after = window.settle();
+    // Of 1 024 000 pixels, the beam and its ghost cover tens of thousands.
+    let moved = changed(&before, &after);
+    assert!(moved > 20_000, "only {moved} pixels changed");
+    window.key("alt+F4");
+    let (code, said) = window.end();
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+}
+
+#[test]
+fn the_window_survives_what_windows_go_through() {
+    let Some(desktop) = Desktop::start() else { return };
+    let window = Window::open(&desktop, &["run", "cantilever"]);
+    let before = window.settle();
+    desktop.xdotool(&["windowminimize", "--sync", &window.id]);
+    std::thread::sleep(Duration::from_millis(300));
+    desktop.xdotool(&["windowmap", "--sync", &window.id]);
+    let restored = window.settle();
+    assert!(changed(&before, &restored) < 2_000, "not the same picture after restoring");
+    for (width, height) in [("1", "1"), ("37", "500"), ("500", "37"), ("1300", "850"), ("1280", "800")] {
+        desktop.xdotool(&["windowsize", &window.id, width, height]);
+        std::thread::sleep(Duration::from_millis(250));
+    }
+    let resized = window.settle();
+    assert_eq!(resized.len(), before.len());
+    assert!(changed(&before, &resized) < 2_000, "not the same picture after resizing");
+    for key in ["F1", "Escape", "w", "o", "g", "t", "2", "3", "4", "1", "p", "p", "space", "n", "r", "space", "f", "c"]
+    {
+        window.key(key);
+    }
+    window.settle();
+    window.key("alt+F4");
+    let (code, said) = window.end();
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+}
+
+/// At rest nothing is redrawn: the program uses no processor time.
+#[test]
+fn an_idle_window_uses_no_processor() {
+    let Some(desktop) = Desktop::start() else { return };
+    let window = Window::open(&desktop, &["run", "gravity"]);
+    window.point(1000.0, 850.0);
+    window.settle();
+    std::thread::sleep(Duration::from_millis(500));
+    let before = window.ticks();
+    std::thread::sleep(Duration::from_secs(2));
+    let used = window.ticks() - before;
+    // Of 200 ticks; a loop that polls or redraws uses most of them.
+    assert!(used <= 4, "{used} ticks in two seconds");
+    window.key("alt+F4");
+    assert_eq!(window.end().0, Some(0));
+}
+
+/// S writes the picture that the window shows.
+#[test]
+fn s_saves_a_screenshot() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let window = Window::open_in(&desktop, folder.path(), &[]);
+    window.point(1000.0, 700.0);
+    let shown = window.settle();
+    window.key("s");
+    let path = folder.path().join("warpbeam-001.png");
+    wait_for("the screenshot", || std::fs::metadata(&path).ok().filter(|m| m.len() > 10_000));
+    std::thread::sleep(Duration::from_millis(300));
+    let mut reader = png::Decoder::new(BufReader::new(std::fs::File::open(&path).unwrap())).read_info().unwrap();
+    let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut rgba).unwrap();
+    // X images are BGRx.
+    let bgrx: Vec<u8> = rgba.chunks(4).flat_map(|p| [p[2], p[1], p[0], 0]).collect();
+    let shown: Vec<u8> = shown.chunks(4).flat_map(|p| [p[0], p[1], p[2], 0]).collect();
+    assert_eq!(bgrx.len(), shown.len());
+    let different = changed(&bgrx, &shown);
+    assert!(different < 1_000, "{different} pixels differ from the window");
+    window.key("alt+F4");
+    assert_eq!(window.end().0, Some(0));
+}
