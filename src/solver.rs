@@ -1,11 +1,12 @@
-//! Sparse Cholesky with faer: analysed once, refactorized every frame without allocating. The only file that names
-//! faer.
+//! Sparse factorizations with faer: analysed once, refactorized every frame without allocating. The only file that
+//! names faer.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, IntranodeLbltRef, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
@@ -24,55 +25,80 @@ pub enum SolverError {
     TooLarge,
 }
 
-/// A Cholesky factor of a symmetric positive definite matrix with a fixed pattern.
-pub struct Cholesky {
+/// Which factor is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// L Lᵀ.
+    PositiveDefinite,
+    /// L B Lᵀ with B of 1×1 and 2×2 blocks.
+    Indefinite,
+}
+
+/// A factor of a symmetric matrix with a fixed pattern.
+pub struct Factor {
     structure: SymbolicSparseColMat<usize>,
     symbolic: SymbolicCholesky<usize>,
-    factor: Vec<f64>,
+    values: Vec<f64>,
+    /// What the indefinite factor has beside L: B's subdiagonal, and pivots within supernodes.
+    subdiagonal: Vec<f64>,
+    pivots: Vec<usize>,
+    inverse_pivots: Vec<usize>,
+    kind: Kind,
     memory: MemBuffer,
 }
 
-impl std::fmt::Debug for Cholesky {
+impl std::fmt::Debug for Factor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Cholesky").field("factor", &self.factor.len()).finish_non_exhaustive()
+        f.debug_struct("Factor").field("values", &self.values.len()).finish_non_exhaustive()
     }
 }
 
-impl Cholesky {
+impl Factor {
     /// Orders and analyses the pattern (AMD, supernodal: faer's automatic choice is up to 2.6 times slower on these
     /// meshes).
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
     pub fn new(pattern: &Pattern) -> Result<Self, SolverError> {
-        let (column_starts, row_indices) = (pattern.column_starts.clone(), pattern.row_indices.clone());
         let n = pattern.dofs();
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
         };
-        let structure = SymbolicSparseColMat::new_checked(n, n, column_starts, None, row_indices);
+        let (starts, rows) = (pattern.column_starts.clone(), pattern.row_indices.clone());
+        let structure = SymbolicSparseColMat::new_checked(n, n, starts, None, rows);
         let symbolic = factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, SymmetricOrdering::Amd, params)
             .map_err(|_| SolverError::TooLarge)?;
         let scratch = StackReq::any_of(&[
             symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()),
+            symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Spec::default()),
             symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
         ]);
         let memory = MemBuffer::try_new(scratch).map_err(|_| SolverError::TooLarge)?;
-        let mut factor = Vec::new();
-        factor.try_reserve_exact(symbolic.len_val()).map_err(|_| SolverError::TooLarge)?;
-        factor.resize(symbolic.len_val(), 0.0);
-        Ok(Self { structure, symbolic, factor, memory })
+        let mut values = Vec::new();
+        values.try_reserve_exact(symbolic.len_val()).map_err(|_| SolverError::TooLarge)?;
+        values.resize(symbolic.len_val(), 0.0);
+        Ok(Self {
+            structure,
+            symbolic,
+            values,
+            subdiagonal: vec![0.0; n],
+            pivots: vec![0; n],
+            inverse_pivots: vec![0; n],
+            kind: Kind::PositiveDefinite,
+            memory,
+        })
     }
 
-    /// Factorizes the matrix with these lower-triangle values, in the pattern's order.
+    /// Factorizes the positive definite matrix with these lower-triangle values, in the pattern's order.
     ///
     /// # Errors
     /// [`SolverError::NotPositiveDefinite`]; the factor then is of no use until the next success.
-    pub fn factorize(&mut self, values: &[f64]) -> Result<(), SolverError> {
-        let matrix = SparseColMatRef::new(self.structure.as_ref(), &values[..self.structure.row_idx().len()]);
+    pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), SolverError> {
+        let matrix = SparseColMatRef::new(self.structure.as_ref(), &matrix[..self.structure.row_idx().len()]);
+        self.kind = Kind::PositiveDefinite;
         let factorized = self.symbolic.factorize_numeric_llt(
-            &mut self.factor,
+            &mut self.values,
             matrix,
             Side::Lower,
             LltRegularization::default(),
@@ -83,11 +109,38 @@ impl Cholesky {
         factorized.map(|_| ()).map_err(|_| SolverError::NotPositiveDefinite)
     }
 
-    /// Replaces `b` by A⁻¹ b, with the last factor.
+    /// Factorizes a symmetric matrix that need not be definite. One that is singular gives solutions that are not
+    /// finite.
+    pub fn factorize_indefinite(&mut self, matrix: &[f64]) {
+        let matrix = SparseColMatRef::new(self.structure.as_ref(), &matrix[..self.structure.row_idx().len()]);
+        self.kind = Kind::Indefinite;
+        self.symbolic.factorize_numeric_intranode_lblt(
+            &mut self.values,
+            &mut self.subdiagonal,
+            &mut self.pivots,
+            &mut self.inverse_pivots,
+            matrix,
+            Side::Lower,
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+            Spec::default(),
+        );
+    }
+
+    /// Replaces `b` by the solution of the system with the last factor.
     pub fn solve_in_place(&mut self, b: &mut [f64]) {
         let rows = b.len();
-        let factor = LltRef::new(&self.symbolic, &self.factor);
         let b = MatMut::from_column_major_slice_mut(b, rows, 1);
-        factor.solve_in_place_with_conj(Conj::No, b, Par::Seq, MemStack::new(&mut self.memory));
+        let memory = MemStack::new(&mut self.memory);
+        match self.kind {
+            Kind::PositiveDefinite => {
+                LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, b, Par::Seq, memory);
+            }
+            Kind::Indefinite => {
+                let pivots = PermRef::new_checked(&self.pivots, &self.inverse_pivots, rows);
+                IntranodeLbltRef::new(&self.symbolic, &self.values, &self.subdiagonal, pivots)
+                    .solve_in_place_with_conj(Conj::No, b, Par::Seq, memory);
+            }
+        }
     }
 }

@@ -38,7 +38,7 @@ fn reactions_balance_the_loads() {
             let simulation = solved(&scene);
             let reaction = simulation.solution().reaction;
             let system = simulation.system();
-            let total: Vector2<f64> = system.external_force.iter().sum();
+            let total: Vector2<f64> = system.dead_force.iter().sum();
             let scale = total.norm().max(1e-9);
             assert!((reaction.force + total).norm() < 1e-6 * scale, "{id}: {:?}", reaction.force);
             if entry.kind == MethodKind::Linear {
@@ -46,7 +46,7 @@ fn reactions_balance_the_loads() {
                 continue;
             }
             let arms = system.mesh.nodes.iter().zip(simulation.displacement()).map(|(x, u)| x + u);
-            let moment: f64 = arms.zip(&system.external_force).map(|(x, f)| x.perp(f)).sum();
+            let moment: f64 = arms.zip(&system.dead_force).map(|(x, f)| x.perp(f)).sum();
             let size = system.mesh.bounds().1.norm();
             assert!((reaction.moment + moment).abs() < 1e-6 * scale * size, "{id}: {} {moment}", reaction.moment);
         }
@@ -136,6 +136,7 @@ fn the_result_does_not_depend_on_the_frame_of_reference() {
                             *at = turn.apply((*at).into()).into();
                         }
                     }
+                    Load::Moment { .. } => {}
                     Load::Gravity { acceleration } => *acceleration = turn.apply((*acceleration).into()).into(),
                 }
             }
@@ -161,7 +162,7 @@ fn warped_frames_are_the_articles_frames() {
     let mesh = &system.mesh;
     assert_eq!((mesh.nodes.len(), mesh.triangle_count(), system.dofs()), (12, 10, 20));
     let rest = DVector::from_iterator(24, mesh.nodes.iter().flat_map(|x| [x.x, x.y]));
-    let load = DVector::from_iterator(24, system.external_force.iter().flat_map(|f| [f.x, f.y]));
+    let load = DVector::from_iterator(24, system.dead_force.iter().flat_map(|f| [f.x, f.y]));
     let elements: Vec<(Vec<usize>, ElementStiffness)> = mesh
         .triangles()
         .map(|t| {

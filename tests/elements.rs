@@ -147,7 +147,7 @@ fn irregular_mesh() -> Mesh {
         [8, 9, 10],
         [8, 10, 11],
     ];
-    let edge = |nodes: &[u32]| nodes.windows(2).map(|w| Segment { ends: [w[0], w[1]] }).collect();
+    let edge = |nodes: &[u32]| nodes.windows(2).map(|w| Segment { ends: [w[0], w[1]], middle: None }).collect();
     let edges = BTreeMap::from([
         ("left".to_owned(), edge(&[6, 7, 0])),
         ("right".to_owned(), edge(&[2, 3, 4])),

@@ -33,7 +33,7 @@ fn force(lab: &Lab) -> [f64; 2] {
         .iter()
         .find_map(|l| match l {
             Load::Force { force, .. } => Some(*force),
-            Load::Gravity { .. } => None,
+            _ => None,
         })
         .unwrap()
 }

@@ -144,6 +144,14 @@ impl<'a> Window<'a> {
         last
     }
 
+    /// Waits until the window shows this picture.
+    fn wait_for_picture(&self, what: &str, picture: &[u8]) {
+        wait_for(what, || {
+            let image = self.image();
+            (image.len() == picture.len() && changed(&image, picture) < 2_000).then_some(())
+        });
+    }
+
     fn key(&self, key: &str) {
         self.desktop.xdotool(&["windowfocus", "--sync", &self.id, "key", key]);
     }
@@ -239,15 +247,12 @@ fn the_window_survives_what_windows_go_through() {
     desktop.xdotool(&["windowminimize", "--sync", &window.id]);
     std::thread::sleep(Duration::from_millis(300));
     desktop.xdotool(&["windowmap", "--sync", &window.id]);
-    let restored = window.settle();
-    assert!(changed(&before, &restored) < 2_000, "not the same picture after restoring");
+    window.wait_for_picture("the same picture after restoring", &before);
     for (width, height) in [("1", "1"), ("37", "500"), ("500", "37"), ("1300", "850"), ("1280", "800")] {
         desktop.xdotool(&["windowsize", &window.id, width, height]);
         std::thread::sleep(Duration::from_millis(250));
     }
-    let resized = window.settle();
-    assert_eq!(resized.len(), before.len());
-    assert!(changed(&before, &resized) < 2_000, "not the same picture after resizing");
+    window.wait_for_picture("the same picture after resizing", &before);
     for key in ["F1", "Escape", "w", "o", "g", "t", "2", "3", "4", "1", "p", "p", "space", "n", "r", "space", "f", "c"]
     {
         window.key(key);

@@ -1,14 +1,13 @@
 //! The lab: a scene, its simulation, and how it is looked at. Window, shot and tests show it through [`Lab::ui`].
 
-use std::collections::BTreeSet;
 use std::time::Duration;
 
 use egui::{CentralPanel, Key, Panel, Rect, Sense, TextureId, Ui};
 use nalgebra::Vector2;
 
+use super::drawing::Drawing;
 use super::panel::{self, Action, PanelState, Shown, ViewOptions};
 use super::{help, overlay};
-use crate::mesh::Mesh;
 use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, MethodKind, Scene, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
@@ -47,27 +46,19 @@ pub struct Lab {
     adapter: String,
     toast: Option<(String, f64)>,
     drawing: Drawing,
+    shape: Shape,
 }
 
-/// What is drawn of the mesh, kept between frames.
+/// What is drawn of the body at present, kept between frames.
 #[derive(Debug, Default)]
-struct Drawing {
-    triangles: Vec<[u32; 3]>,
-    lines: Vec<[u32; 2]>,
-    positions: Vec<Vector2<f64>>,
+struct Shape {
+    nodes: Vec<Vector2<f64>>,
+    points: Vec<Vector2<f64>>,
+    at_points: Vec<f64>,
     values: Vec<f64>,
     range: [f64; 2],
     line_color: [u8; 4],
     background: [u8; 3],
-}
-
-impl Drawing {
-    fn new(mesh: &Mesh) -> Self {
-        let triangles: Vec<[u32; 3]> = mesh.triangles().map(|t| [t[0], t[1], t[2]]).collect();
-        let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-        let lines: BTreeSet<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        Self { triangles, lines: lines.into_iter().collect(), ..Self::default() }
-    }
 }
 
 impl Lab {
@@ -89,6 +80,7 @@ impl Lab {
             adapter: String::new(),
             toast: None,
             drawing,
+            shape: Shape::default(),
         };
         lab.solve_linear();
         lab
@@ -172,38 +164,45 @@ impl Lab {
     /// What is drawn of the body, as of the last [`Self::ui`].
     #[must_use]
     pub fn frame(&self) -> Frame<'_> {
-        let d = &self.drawing;
+        let shape = &self.shape;
         Frame {
-            positions: &d.positions,
-            triangles: &d.triangles,
-            values: &d.values,
-            range: d.range,
-            lines: if self.view.wireframe { &d.lines } else { &[] },
-            line_color: d.line_color,
-            background: d.background,
+            positions: &shape.points,
+            triangles: &self.drawing.triangles,
+            values: &shape.values,
+            range: shape.range,
+            lines: if self.view.wireframe { &self.drawing.lines } else { &[] },
+            line_color: shape.line_color,
+            background: shape.background,
         }
     }
 
-    fn update_drawing(&mut self, visuals: &egui::Visuals) {
-        let d = &mut self.drawing;
-        d.positions.clear();
-        d.positions
-            .extend(self.simulation.system().mesh.nodes.iter().zip(self.simulation.displacement()).map(|(x, u)| x + u));
-        self.simulation.field(self.view.field, &mut d.values);
-        d.range = self.view.fixed_range.unwrap_or_else(|| panel::range_of(&d.values));
-        let background = if visuals.dark_mode { [22, 24, 28] } else { [244, 245, 247] };
-        d.background = background;
-        d.line_color = if visuals.dark_mode { [0, 0, 0, 110] } else { [0, 0, 0, 90] };
+    fn update_shape(&mut self, visuals: &egui::Visuals) {
+        let shape = &mut self.shape;
+        shape.nodes.clear();
+        let rest = &self.simulation.system().mesh.nodes;
+        shape.nodes.extend(rest.iter().zip(self.simulation.displacement()).map(|(x, u)| x + u));
+        let nodes = &shape.nodes;
+        self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
+        self.simulation.field(self.view.field, &mut shape.at_points);
+        self.drawing.values(&shape.at_points, &mut shape.values);
+        shape.range = self.view.fixed_range.unwrap_or_else(|| panel::range_of(&shape.at_points));
+        shape.background = if visuals.dark_mode { [22, 24, 28] } else { [244, 245, 247] };
+        shape.line_color = if visuals.dark_mode { [0, 0, 0, 110] } else { [0, 0, 0, 90] };
     }
 
     /// The field's values at the two ends of the colour map.
     pub(super) fn color_range(&self) -> [f64; 2] {
-        self.drawing.range
+        self.shape.range
     }
 
     /// Node positions x of the last [`Self::ui`], m.
     pub(super) fn positions(&self) -> &[Vector2<f64>] {
-        &self.drawing.positions
+        &self.shape.nodes
+    }
+
+    /// What of the mesh is drawn.
+    pub(super) fn drawing(&self) -> &Drawing {
+        &self.drawing
     }
 
     /// Sizes and colours that the defaults get wrong here.
@@ -243,7 +242,7 @@ impl Lab {
     }
 
     fn body_view(&mut self, ui: &mut Ui, body: Option<TextureId>) {
-        self.update_drawing(ui.visuals());
+        self.update_shape(ui.visuals());
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         self.view_rect = rect;
         self.follow(rect);
@@ -267,7 +266,7 @@ impl Lab {
                 high = high.sup(&p);
             }
         };
-        include(&mut self.drawing.positions.iter().copied());
+        include(&mut self.shape.points.iter().copied());
         if let Some(linear) = self.ghost() {
             // The linear solution of a large load is absurdly long; the body must not shrink to a dot beside it.
             const LARGEST: f64 = 1.5;

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use crate::render::RenderError;
 
+mod drawing;
 mod field;
 mod format;
 mod help;

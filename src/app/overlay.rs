@@ -101,8 +101,9 @@ pub(super) fn paint(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals)
     let system = lab.simulation().system();
     let outline = system.mesh.outline();
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
-        for Segment { ends: [a, b] } in &outline {
-            if let Some(segment) = projection.segment(place(*a), place(*b)) {
+        for line in &lab.drawing().outline {
+            let [a, b] = line.map(|p| lab.drawing().point(p, place));
+            if let Some(segment) = projection.segment(a, b) {
                 painter.line_segment(segment, stroke);
             }
         }
@@ -131,7 +132,7 @@ fn supports(painter: &Painter, projection: &Projection, lab: &Lab, outline: &[Se
     let held = |n: u32| [0, 1].map(|axis| pattern.is_held(2 * n as usize + axis));
     let stroke = Stroke::new(1.5, palette.support);
     let mut drawn = vec![false; lab.positions().len()];
-    for Segment { ends: [a, b] } in outline {
+    for Segment { ends: [a, b], .. } in outline {
         let both = [0, 1].map(|axis| held(*a)[axis] && held(*b)[axis]);
         if both == [false, false] {
             continue;
@@ -181,6 +182,28 @@ fn arrow(painter: &Painter, from: Pos2, direction: Vec2, color: Color32) -> Pos2
     tip
 }
 
+/// An arc of three quarters of a turn with a head, and the moment beside it.
+fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, visuals: &Visuals) {
+    const RADIUS: f32 = 26.0;
+    const PIECES: u16 = 24;
+    const HEAD: f32 = 11.0;
+    // Window angles grow clockwise, moments counter-clockwise.
+    let sense = if moment > 0.0 { -1.0 } else { 1.0 };
+    let at = |share: f32| {
+        let angle = sense * share * 1.5 * std::f32::consts::PI - 0.25 * std::f32::consts::PI;
+        center + RADIUS * vec2(angle.cos(), angle.sin())
+    };
+    let arc = (0..=PIECES).map(|i| at(f32::from(i) / f32::from(PIECES))).collect();
+    painter.add(egui::Shape::line(arc, Stroke::new(3.0, color)));
+    let end = at(1.0);
+    let outward = (end - center).normalized();
+    let along = vec2(-outward.y, outward.x) * sense;
+    let head = vec![end + along * HEAD, end + outward * (HEAD * 0.5), end - outward * (HEAD * 0.5)];
+    painter.add(egui::Shape::convex_polygon(head, color, Stroke::NONE));
+    let label = format!("{} N m", format::short(moment));
+    boxed_text(painter, center + vec2(0.0, RADIUS + 12.0), Align2::CENTER_TOP, &label, visuals, color, 200.0);
+}
+
 /// Where a load pulls now: the middle of its edge, or its node, m.
 fn load_point(lab: &Lab, place: &Place) -> Option<Vector2<f64>> {
     let mesh = &lab.simulation().system().mesh;
@@ -202,6 +225,12 @@ fn loads(painter: &Painter, projection: &Projection, lab: &Lab, palette: &Palett
                 };
                 let magnitude = force[0].hypot(force[1]);
                 (force, projection.point(point), format!("{} N", format::short(magnitude)))
+            }
+            Load::Moment { edge, moment } => {
+                if let (Some(point), true) = (load_point(lab, &Place::edge(edge)), *moment != 0.0) {
+                    turning_arrow(painter, projection.point(point), *moment, palette.load, visuals);
+                }
+                continue;
             }
             Load::Gravity { acceleration } => {
                 let magnitude = acceleration[0].hypot(acceleration[1]);

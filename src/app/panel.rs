@@ -241,11 +241,11 @@ fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
 fn load(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Action>) {
     let force = scene.loads.iter().find_map(|l| match l {
         Load::Force { force, .. } => Some(*force),
-        Load::Gravity { .. } => None,
+        _ => None,
     });
     let gravity = scene.loads.iter().find_map(|l| match l {
         Load::Gravity { acceleration } => Some(*acceleration),
-        Load::Force { .. } => None,
+        _ => None,
     });
     let (magnitude, direction) = polar_form(force.unwrap_or_default());
     let direction = direction.or(state.force_direction).unwrap_or(DOWN);
@@ -303,7 +303,7 @@ fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
     let mut scene = Box::new(scene.clone());
     let first = scene.loads.iter_mut().find_map(|l| match l {
         Load::Force { force, .. } => Some(force),
-        Load::Gravity { .. } => None,
+        _ => None,
     });
     match first {
         Some(force) => *force = new,
@@ -316,7 +316,7 @@ fn with_gravity(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
     let mut scene = Box::new(scene.clone());
     let first = scene.loads.iter_mut().find_map(|l| match l {
         Load::Gravity { acceleration } => Some(acceleration),
-        Load::Force { .. } => None,
+        _ => None,
     });
     match first {
         Some(acceleration) => *acceleration = new,
@@ -434,7 +434,7 @@ fn mesh_and_method(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: 
             })
             .response
             .labelled_by(label.id)
-            .on_hover_text(scene.solver.method.about());
+            .on_hover_text(scene.solver.method.entry().about);
         ui.weak(format!("element {}", scene.beam.element.id()));
     });
     show_message(ui, &state.messages, "Method");

@@ -2,7 +2,9 @@
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use crate::element::t3;
+use super::elements::Elements;
+use super::moment::EdgeMoment;
+use crate::element::{side_weights, t3, t6};
 use crate::mesh::Mesh;
 use crate::scene::{Axis, ElementKind, Invalid, Load, Place, Scene};
 
@@ -82,8 +84,8 @@ fn free_rigid_motion(mesh: &Mesh, held: &[bool]) -> bool {
     eigenvalues.min() <= SINGULAR * eigenvalues.max()
 }
 
-/// The nodal forces of all loads, N.
-pub(super) fn external_force(scene: &Scene, mesh: &Mesh) -> Result<Vec<Vector2<f64>>, Invalid> {
+/// The nodal forces of all dead loads, N.
+pub(super) fn dead_force(scene: &Scene, mesh: &Mesh, elements: &dyn Elements) -> Result<Vec<Vector2<f64>>, Invalid> {
     let mut f = vec![Vector2::zeros(); mesh.nodes.len()];
     for (i, load) in scene.loads.iter().enumerate() {
         match load {
@@ -96,21 +98,28 @@ pub(super) fn external_force(scene: &Scene, mesh: &Mesh) -> Result<Vec<Vector2<f
                 }
             }
             Load::Gravity { acceleration } => {
-                let pull = Vector2::from(*acceleration) * (scene.material.density * scene.material.thickness);
-                for triangle in mesh.triangles() {
-                    let [a, b, c] = [triangle[0], triangle[1], triangle[2]].map(|n| mesh.nodes[n as usize]);
-                    let area = 0.5 * (b - a).perp(&(c - a));
-                    let weights = match mesh.element {
-                        ElementKind::T3 => t3::NODAL_WEIGHTS,
-                    };
-                    for (&node, weight) in triangle.iter().zip(weights) {
-                        f[node as usize] += pull * (area * weight);
-                    }
-                }
+                elements.body_force(Vector2::from(*acceleration) * scene.material.density, &mut f);
             }
+            Load::Moment { .. } => {}
         }
     }
     Ok(f)
+}
+
+/// The moments on edges.
+pub(super) fn moments(scene: &Scene, mesh: &Mesh) -> Result<Vec<EdgeMoment>, Invalid> {
+    let mut moments = Vec::new();
+    for (i, load) in scene.loads.iter().enumerate() {
+        if let Load::Moment { edge, moment } = load {
+            let key = format!("load.{i}");
+            let weights = edge_weights(mesh, edge, &key)?;
+            let edge_moment = EdgeMoment::new(mesh, &weights, *moment).ok_or_else(|| {
+                Invalid::new(format!("{key}.edge"), format!("expected a straight edge, got \"{edge}\", which is not"))
+            })?;
+            moments.push(edge_moment);
+        }
+    }
+    Ok(moments)
 }
 
 /// The scene's probes on this mesh.
@@ -119,17 +128,9 @@ pub(super) fn probes(scene: &Scene, mesh: &Mesh) -> Result<Vec<NodalProbe>, Inva
         let key = format!("probe.{i}");
         let weights = match probe.place().map_err(|message| Invalid::new(&key, message))? {
             Place::Edge(name) => edge_weights(mesh, &name, &key)?,
-            Place::At(at) => {
-                let (triangle, l) = mesh.locate(at.into()).ok_or_else(|| {
-                    Invalid::new(format!("{key}.at"), format!("expected a point of the body, got {at:?} outside it"))
-                })?;
-                let n = mesh.element.nodes();
-                let nodes = mesh.connectivity[triangle * n..].iter().copied();
-                let shape = match mesh.element {
-                    ElementKind::T3 => t3::shape(l),
-                };
-                nodes.zip(shape).collect()
-            }
+            Place::At(at) => material_point(mesh, at.into()).ok_or_else(|| {
+                Invalid::new(format!("{key}.at"), format!("expected a point of the body, got {at:?} outside it"))
+            })?,
         };
         Ok(NodalProbe { name: probe.name.clone(), weights })
     };
@@ -148,16 +149,52 @@ fn edge_nodes(mesh: &Mesh, name: &str, key: &str) -> Result<Vec<u32>, Invalid> {
 /// Nodes of an edge with their share of a uniform traction: ∫ Nₐ ds over the edge's length. The shares sum to 1.
 fn edge_weights(mesh: &Mesh, name: &str, key: &str) -> Result<Vec<(u32, f64)>, Invalid> {
     let segments = mesh.edges.get(name).ok_or_else(|| no_such_edge(mesh, name, key))?;
-    let length = |s: &crate::mesh::Segment| {
-        let [a, b] = s.ends.map(|n| mesh.nodes[n as usize]);
-        (b - a).norm()
-    };
-    let total: f64 = segments.iter().map(length).sum();
     let mut weights = std::collections::BTreeMap::new();
+    let mut total = 0.0;
     for segment in segments {
-        for (node, share) in segment.ends.into_iter().zip(t3::SIDE_WEIGHTS) {
-            *weights.entry(node).or_insert(0.0) += share * length(segment) / total;
+        let position = |node: u32| mesh.nodes[node as usize];
+        let shares = side_weights(segment.ends.map(position), segment.middle.map(position));
+        for (node, share) in segment.nodes().zip(shares) {
+            *weights.entry(node).or_insert(0.0) += share;
+            total += share;
         }
     }
-    Ok(weights.into_iter().collect())
+    Ok(weights.into_iter().map(|(node, weight)| (node, weight / total)).collect())
+}
+
+/// Nodes and shape functions of the triangle that holds a rest position; `None` outside the body.
+fn material_point(mesh: &Mesh, at: Vector2<f64>) -> Option<Vec<(u32, f64)>> {
+    // Points on the boundary must not fall out by rounding.
+    const SLACK: f64 = 1e-9;
+    // The map of a six-node triangle is inverted by Newton's method; straight sides take one step.
+    const STEPS: u32 = 12;
+    mesh.triangles().find_map(|triangle| {
+        let mut l = Vector2::repeat(1.0 / 3.0);
+        for _ in 0..STEPS {
+            let (shape, gradients) = local_shape(mesh.element, [1.0 - l.x - l.y, l.x, l.y]);
+            let mut missing = at;
+            let mut jacobian = nalgebra::Matrix2::zeros();
+            for ((&node, n), g) in triangle.iter().zip(&shape).zip(&gradients) {
+                let x = mesh.nodes[node as usize];
+                missing -= x * *n;
+                jacobian += x * g.transpose();
+            }
+            let step = jacobian.try_inverse()? * missing;
+            l += step;
+            if step.norm() < 1e-14 {
+                break;
+            }
+        }
+        let l = [1.0 - l.x - l.y, l.x, l.y];
+        let inside = l.iter().all(|&v| v >= -SLACK);
+        inside.then(|| triangle.iter().copied().zip(local_shape(mesh.element, l).0).collect())
+    })
+}
+
+/// Shape functions and their gradients in the triangle's own coordinates.
+fn local_shape(element: ElementKind, l: [f64; 3]) -> (Vec<f64>, Vec<Vector2<f64>>) {
+    match element {
+        ElementKind::T3 => (t3::shape(l).to_vec(), t3::local_gradients().to_vec()),
+        ElementKind::T6 => (t6::shape(l).to_vec(), t6::local_gradients(l).to_vec()),
+    }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::pattern::Pattern;
-use crate::element::{QuadraturePoint, energy_density, warped_strain};
+use crate::element::{GeometricShare, QuadraturePoint, energy_density, warped_strain};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
@@ -21,6 +21,19 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
 
     /// Adds Σ R Ke Rᵀ, lower triangle, to `values` (one slot longer than the pattern: held unknowns go there).
     fn stiffness(&self, lame: Lame, r: &[Rotation], values: &mut [f64]);
+
+    /// Adds Σ G, the geometric part of the exact tangent, lower triangle, to `values`.
+    fn geometric_stiffness(
+        &self,
+        lame: Lame,
+        u: &[Vector2<f64>],
+        r: &[Rotation],
+        share: GeometricShare,
+        values: &mut [f64],
+    );
+
+    /// Adds ∫ N b dV to `force`, N, for a uniform force per volume b, N/m³.
+    fn body_force(&self, b: Vector2<f64>, force: &mut [Vector2<f64>]);
 
     /// Adds Σ R Ke (Rᵀ x − X) to `force` and Σ |R Ke (Rᵀ x − X)|, by component, to `magnitude`, N.
     fn internal_force(
@@ -63,10 +76,37 @@ impl<const N: usize> ElementSet<N> {
         Self { nodes, points, points_per_element, slots }
     }
 
+    /// Every element's places in the matrix.
+    fn slots(&self) -> std::slice::ChunksExact<'_, u32> {
+        self.slots.chunks_exact(N * (2 * N + 1))
+    }
+
     /// Every element's nodes and points, with the number of its first point.
     fn elements(&self) -> impl Iterator<Item = (&[u32; N], &[QuadraturePoint<N>], usize)> {
         let points = self.points.chunks_exact(self.points_per_element);
         self.nodes.iter().zip(points).enumerate().map(|(e, (n, p))| (n, p, e * self.points_per_element))
+    }
+}
+
+/// Adds an element's lower node blocks to the entries they belong to.
+#[inline]
+fn scatter<const N: usize>(sum: &[[Matrix2<f64>; N]; N], slots: &[u32], values: &mut [f64]) {
+    let mut slots = slots.iter();
+    let mut add = |value: f64| {
+        if let Some(&slot) = slots.next() {
+            values[slot as usize] += value;
+        }
+    };
+    for (a, row) in sum.iter().enumerate() {
+        for k in &row[..a] {
+            add(k.m11);
+            add(k.m12);
+            add(k.m21);
+            add(k.m22);
+        }
+        add(row[a].m11);
+        add(row[a].m21);
+        add(row[a].m22);
     }
 }
 
@@ -94,28 +134,40 @@ impl<const N: usize> Elements for ElementSet<N> {
     }
 
     fn stiffness(&self, lame: Lame, r: &[Rotation], values: &mut [f64]) {
-        let slots = self.slots.chunks_exact(N * (2 * N + 1));
-        for ((_, points, first), slots) in self.elements().zip(slots) {
+        for ((_, points, first), slots) in self.elements().zip(self.slots()) {
             let mut sum = [[Matrix2::zeros(); N]; N];
             for (point, &r) in points.iter().zip(&r[first..]) {
                 point.warped_stiffness(lame, r, |a, b, k| sum[a][b] += k);
             }
-            let mut slots = slots.iter();
-            let mut add = |value: f64| {
-                if let Some(&slot) = slots.next() {
-                    values[slot as usize] += value;
+            scatter(&sum, slots, values);
+        }
+    }
+
+    fn geometric_stiffness(
+        &self,
+        lame: Lame,
+        u: &[Vector2<f64>],
+        r: &[Rotation],
+        share: GeometricShare,
+        values: &mut [f64],
+    ) {
+        for ((nodes, points, first), slots) in self.elements().zip(self.slots()) {
+            let u = gather(nodes, u);
+            let mut sum = [[Matrix2::zeros(); N]; N];
+            for (point, &r) in points.iter().zip(&r[first..]) {
+                let h = point.displacement_gradient(&u);
+                point.geometric_stiffness(lame, r, &h, share, |a, b, k| sum[a][b] += k);
+            }
+            scatter(&sum, slots, values);
+        }
+    }
+
+    fn body_force(&self, b: Vector2<f64>, force: &mut [Vector2<f64>]) {
+        for (nodes, points, _) in self.elements() {
+            for point in points {
+                for (&node, n) in nodes.iter().zip(point.shape) {
+                    force[node as usize] += b * (point.volume * n);
                 }
-            };
-            for (a, row) in sum.iter().enumerate() {
-                for k in &row[..a] {
-                    add(k.m11);
-                    add(k.m12);
-                    add(k.m21);
-                    add(k.m22);
-                }
-                add(row[a].m11);
-                add(row[a].m21);
-                add(row[a].m22);
             }
         }
     }

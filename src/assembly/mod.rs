@@ -4,7 +4,7 @@
 
 use nalgebra::Vector2;
 
-use crate::element::t3;
+use crate::element::{GeometricShare, QuadraturePoint, t3, t6};
 use crate::material::Lame;
 use crate::mesh::Mesh;
 use crate::rotation::Rotation;
@@ -12,10 +12,12 @@ use crate::scene::{ElementKind, Invalid, Material, Scene};
 
 mod boundary;
 mod elements;
+mod moment;
 mod pattern;
 
 pub use boundary::NodalProbe;
 pub use elements::{Elements, StrainVisitor};
+pub use moment::EdgeMoment;
 pub use pattern::Pattern;
 
 /// The discrete problem of a scene.
@@ -31,8 +33,10 @@ pub struct System {
     pub elements: Box<dyn Elements>,
     /// Free unknowns and sparsity.
     pub pattern: Pattern,
-    /// External nodal force f_ext, N.
-    pub external_force: Vec<Vector2<f64>>,
+    /// Nodal force of the dead loads, N.
+    pub dead_force: Vec<Vector2<f64>>,
+    /// Moments that turn with their edges.
+    pub moments: Vec<EdgeMoment>,
     /// What is measured.
     pub probes: Vec<NodalProbe>,
 }
@@ -53,17 +57,20 @@ impl System {
     /// As [`Self::new`].
     pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, Invalid> {
         let held = boundary::held_unknowns(scene, &mesh)?;
-        let external_force = boundary::external_force(scene, &mesh)?;
+        let moments = boundary::moments(scene, &mesh)?;
+        let groups: Vec<Vec<u32>> = moments.iter().map(|m| m.weights.iter().map(|&(node, _)| node).collect()).collect();
+        let pattern = Pattern::new(&mesh, &held, &groups);
+        let elements = elements_of(&mesh, scene.material.thickness, &pattern)?;
+        let dead_force = boundary::dead_force(scene, &mesh, elements.as_ref())?;
         let probes = boundary::probes(scene, &mesh)?;
-        let pattern = Pattern::new(&mesh, &held);
-        let elements = elements_of(&mesh, scene.material.thickness, &pattern);
         Ok(Self {
             material: scene.material,
             lame: scene.material.lame(),
             mesh,
             elements,
             pattern,
-            external_force,
+            dead_force,
+            moments,
             probes,
         })
     }
@@ -95,6 +102,41 @@ impl System {
         self.elements.stiffness(self.lame, r, values);
     }
 
+    /// Adds G to the values of [`Self::stiffness`]: all of it makes the exact Hessian of the elastic energy.
+    pub fn add_geometric_stiffness(
+        &self,
+        u: &[Vector2<f64>],
+        r: &[Rotation],
+        share: GeometricShare,
+        values: &mut [f64],
+    ) {
+        self.elements.geometric_stiffness(self.lame, u, r, share, values);
+    }
+
+    /// Adds the Hessian of the moments' potential at this load factor.
+    pub fn add_load_stiffness(&self, u: &[Vector2<f64>], factor: f64, values: &mut [f64]) {
+        for moment in &self.moments {
+            moment.add_stiffness(&self.mesh, u, factor, &self.pattern, values);
+        }
+    }
+
+    /// The external nodal force f_ext at this load factor, N.
+    pub fn external_force(&self, u: &[Vector2<f64>], factor: f64, force: &mut [Vector2<f64>]) {
+        for (f, dead) in force.iter_mut().zip(&self.dead_force) {
+            *f = dead * factor;
+        }
+        for moment in &self.moments {
+            moment.add_force(&self.mesh, u, factor, force);
+        }
+    }
+
+    /// Potential of the loads relative to rest, at this load factor, J.
+    #[must_use]
+    pub fn load_potential(&self, u: &[Vector2<f64>], factor: f64) -> f64 {
+        let dead: f64 = self.dead_force.iter().zip(u).map(|(f, u)| -f.dot(u)).sum();
+        factor * (dead + self.moments.iter().map(|m| m.potential(&self.mesh, u)).sum::<f64>())
+    }
+
     /// The warped force f_int = Σ R Ke (Rᵀ x − X) and the sum of its elements' absolute values, N.
     ///
     /// It is A x − R K X, the article's system (eq. 2) with everything on one side; written with the strain, so that it
@@ -120,12 +162,26 @@ impl System {
     }
 }
 
-fn elements_of(mesh: &Mesh, thickness: f64, pattern: &Pattern) -> Box<dyn Elements> {
+fn elements_of(mesh: &Mesh, thickness: f64, pattern: &Pattern) -> Result<Box<dyn Elements>, Invalid> {
     match mesh.element {
-        ElementKind::T3 => {
-            let nodes: Vec<[u32; 3]> = mesh.triangles().map(|t| [t[0], t[1], t[2]]).collect();
-            let points = nodes.iter().flat_map(|t| t3::quadrature(t.map(|n| mesh.nodes[n as usize]), thickness));
-            Box::new(elements::ElementSet::new(nodes.clone(), points.collect(), 1, pattern))
-        }
+        ElementKind::T3 => element_set(mesh, pattern, |x| Some(t3::quadrature(x, thickness))),
+        ElementKind::T6 => element_set(mesh, pattern, |x| t6::quadrature(x, thickness)),
     }
+}
+
+fn element_set<const N: usize, const Q: usize>(
+    mesh: &Mesh,
+    pattern: &Pattern,
+    quadrature: impl Fn([Vector2<f64>; N]) -> Option<[QuadraturePoint<N>; Q]>,
+) -> Result<Box<dyn Elements>, Invalid> {
+    let mut nodes = Vec::with_capacity(mesh.triangle_count());
+    let mut points = Vec::with_capacity(Q * mesh.triangle_count());
+    for (number, triangle) in mesh.triangles().enumerate() {
+        let mut element = [0; N];
+        element.copy_from_slice(triangle);
+        let folded = || Invalid::new("mesh", format!("triangle {number} folds over: expected its sides less curved"));
+        points.extend(quadrature(element.map(|n| mesh.nodes[n as usize])).ok_or_else(folded)?);
+        nodes.push(element);
+    }
+    Ok(Box::new(elements::ElementSet::new(nodes, points, Q, pattern)))
 }

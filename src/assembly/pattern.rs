@@ -19,9 +19,10 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern of a mesh whose unknowns `held` (2 · node + axis) are eliminated.
+    /// The pattern of a mesh whose unknowns `held` (2 · node + axis) are eliminated. `groups` are nodes that are coupled
+    /// though no element has them all.
     #[must_use]
-    pub fn new(mesh: &Mesh, held: &[bool]) -> Self {
+    pub fn new(mesh: &Mesh, held: &[bool], groups: &[Vec<u32>]) -> Self {
         let mut free = Vec::new();
         let mut free_of = vec![HELD; held.len()];
         for ((unknown, held), slot) in (0..).zip(held).zip(&mut free_of) {
@@ -31,17 +32,14 @@ impl Pattern {
             }
         }
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); mesh.nodes.len()];
-        for triangle in mesh.triangles() {
-            for &a in triangle {
-                for &b in triangle {
-                    if !neighbours[a as usize].contains(&b) {
-                        neighbours[a as usize].push(b);
-                    }
-                }
+        for coupled in mesh.triangles().chain(groups.iter().map(Vec::as_slice)) {
+            for &a in coupled {
+                neighbours[a as usize].extend(coupled);
             }
         }
         for list in &mut neighbours {
             list.sort_unstable();
+            list.dedup();
         }
         let mut column_starts = vec![0];
         let mut row_indices = Vec::new();
@@ -73,6 +71,22 @@ impl Pattern {
         self.free_of[unknown] == HELD
     }
 
+    /// y = K x for the symmetric matrix with these lower-triangle values.
+    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for (column, bounds) in self.column_starts.windows(2).enumerate() {
+            let entries = bounds[0]..bounds[1];
+            let mut sum = 0.0;
+            for (&row, &value) in self.row_indices[entries.clone()].iter().zip(&values[entries]) {
+                sum += value * x[row];
+                if row != column {
+                    y[row] += value * x[column];
+                }
+            }
+            y[column] += sum;
+        }
+    }
+
     /// Where the entries of one element's matrix go: node blocks (a, b), b ≤ a, row by row; the four entries of a block,
     /// of a diagonal block the three of its lower triangle. Entries of held unknowns go to the slot after the last.
     pub(super) fn element_slots(&self, nodes: &[u32]) -> Vec<u32> {
@@ -90,7 +104,8 @@ impl Pattern {
         slots
     }
 
-    fn slot(&self, i: u32, j: u32) -> u32 {
+    /// Where the entry of two unknowns (2 · node + axis) is; the slot after the last where one is held.
+    pub(super) fn slot(&self, i: u32, j: u32) -> u32 {
         let (i, j) = (self.free_of[i as usize], self.free_of[j as usize]);
         if i == HELD || j == HELD {
             return self.entries() as u32;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use crate::scene::{Scene, registry};
-use crate::simulation::{Solution, Status};
+use crate::simulation::{Certificate, Solution, Status};
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
 pub(super) fn print(text: &str) {
@@ -44,6 +44,14 @@ pub(super) fn text(scene: &Scene, solution: &Solution) -> String {
         writeln!(text, "{word} after {} iterations, relative residual {:.2e}", solution.iterations, solution.residual);
     if let Status::NotConverged(reason) | Status::Diverged(reason) = &solution.status {
         let _ = writeln!(text, "  {reason}");
+    }
+    let Certificate { stable, fixed_point_rho } = solution.certificate;
+    if solution.status == Status::Converged && stable == Some(false) {
+        let _ = writeln!(text, "  this equilibrium is unstable: the exact tangent is not positive definite");
+    }
+    if let Some(rho) = fixed_point_rho {
+        let verdict = if rho < 1.0 { "can converge here" } else { "cannot converge here" };
+        let _ = writeln!(text, "the warped iteration {verdict}: ρ = {rho:.3}");
     }
     for probe in &solution.probes {
         let _ = writeln!(
@@ -99,11 +107,11 @@ pub(super) fn json(scene: &Scene, solution: &Solution) -> String {
         "method": scene.solver.method.id(),
         "dofs": solution.dofs,
         "status": solution.status.id(),
-        "stable": null,
+        "stable": solution.certificate.stable,
         "iterations": solution.iterations,
-        "load_steps": 1,
+        "load_steps": solution.load_steps,
         "residual": number(solution.residual),
-        "fixed_point_rho": null,
+        "fixed_point_rho": solution.certificate.fixed_point_rho.map(number),
         "max_rotation_deg": number(solution.max_rotation_deg),
         "max_strain": number(solution.max_strain),
         "inverted_elements": solution.inverted_elements,

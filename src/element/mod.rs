@@ -8,11 +8,17 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use crate::material::Lame;
 use crate::rotation::Rotation;
 
+mod side;
 pub mod t3;
+pub mod t6;
+
+pub use side::{side_shape, side_weights};
 
 /// One quadrature point of an element with `N` nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadraturePoint<const N: usize> {
+    /// Nₐ.
+    pub shape: [f64; N],
     /// ∇Nₐ with respect to the rest position, 1/m.
     pub gradients: [Vector2<f64>; N],
     /// Quadrature weight times Jacobian times thickness, m³.
@@ -50,6 +56,38 @@ impl<const N: usize> QuadraturePoint<N> {
         }
     }
 
+    /// The blocks of G, the geometric part of the exact tangent A + G, N/m.
+    ///
+    /// The warped force is the exact gradient of the corotated energy; its derivative through R adds, in F-space,
+    /// (tr T / tr S) τ τᵀ with τ = vec(R J)/√2, J a quarter turn, T the Biot stress. Tension makes it positive,
+    /// compression negative. `share` of tr T / tr S picks the part wanted: all of it, or only what is positive.
+    #[inline]
+    pub fn geometric_stiffness(
+        &self,
+        lame: Lame,
+        r: Rotation,
+        h: &Matrix2<f64>,
+        share: GeometricShare,
+        mut block: impl FnMut(usize, usize, Matrix2<f64>),
+    ) {
+        let strain = warped_strain(r, h);
+        let trace = 2.0 + strain.trace();
+        // Where the body is crushed to nothing tr S vanishes and the term has no bound; the floor keeps the step finite.
+        let ratio = (2.0 * (lame.mu + lame.lambda)) * strain.trace() / trace.max(SMALLEST_STRETCH_TRACE);
+        let ratio = match share {
+            GeometricShare::All => ratio,
+            GeometricShare::Tensile => ratio.max(0.0),
+        };
+        let quarter = Rotation { c: -r.s, s: r.c };
+        let scaled = 0.5 * self.volume * ratio;
+        let turned = self.gradients.map(|g| quarter.apply(g));
+        for a in 0..N {
+            for b in 0..=a {
+                block(a, b, turned[a] * (scaled * turned[b]).transpose());
+            }
+        }
+    }
+
     /// The warped element force R Ke (Rᵀ x − X), N, given the displacement gradient.
     #[must_use]
     #[inline]
@@ -58,6 +96,18 @@ impl<const N: usize> QuadraturePoint<N> {
         self.gradients.map(|g| stress * g)
     }
 }
+
+/// Which part of G is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GeometricShare {
+    /// All of it: A + G is the exact Hessian.
+    All,
+    /// Where it is positive: A + max(G, 0) is positive definite, and its steps descend.
+    Tensile,
+}
+
+/// Floor of tr S in G: one percent of its value at rest.
+const SMALLEST_STRETCH_TRACE: f64 = 0.02;
 
 /// The strain the element sees once turned back, sym(Rᵀ F) − I with F = I + H.
 ///

@@ -13,11 +13,11 @@ pub fn shape(l: [f64; 3]) -> [f64; NODES] {
     l
 }
 
-/// ∫ Nₐ dA over the area.
-pub const NODAL_WEIGHTS: [f64; NODES] = [1.0 / 3.0; NODES];
-
-/// ∫ Nₐ ds over the length of a side, for the side's two ends.
-pub const SIDE_WEIGHTS: [f64; 2] = [0.5, 0.5];
+/// (∂Nₐ/∂l₂, ∂Nₐ/∂l₃) with l₁ = 1 − l₂ − l₃.
+#[must_use]
+pub fn local_gradients() -> [Vector2<f64>; NODES] {
+    [Vector2::new(-1.0, -1.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)]
+}
 
 /// The one quadrature point of a triangle with these rest corners (counter-clockwise, m) and thickness, m.
 ///
@@ -29,6 +29,7 @@ pub fn quadrature(corners: [Vector2<f64>; NODES], thickness: f64) -> [Quadrature
     let doubled = (b - a).perp(&(c - a));
     let gradient = |side: Vector2<f64>| Vector2::new(-side.y, side.x) / doubled;
     [QuadraturePoint {
+        shape: shape([1.0 / 3.0; 3]),
         gradients: [gradient(c - b), gradient(a - c), gradient(b - a)],
         volume: 0.5 * doubled * thickness,
     }]

@@ -46,6 +46,15 @@ pub enum MeshError {
 pub struct Segment {
     /// Its two ends.
     pub ends: [u32; 2],
+    /// The node between them, if the element has one.
+    pub middle: Option<u32>,
+}
+
+impl Segment {
+    /// All its nodes.
+    pub fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.ends.into_iter().chain(self.middle)
+    }
 }
 
 /// Nodes, triangles and named edges, at rest.
@@ -55,7 +64,7 @@ pub struct Mesh {
     pub nodes: Vec<Vector2<f64>>,
     /// What every triangle is.
     pub element: ElementKind,
-    /// Node numbers, `element.nodes()` a triangle, corners first and counter-clockwise.
+    /// Node numbers, `element.nodes()` a triangle: corners counter-clockwise, then the midpoints of sides 12, 23, 31.
     pub connectivity: Vec<u32>,
     /// Boundary segments by edge name.
     pub edges: BTreeMap<String, Vec<Segment>>,
@@ -67,6 +76,7 @@ impl ElementKind {
     pub fn nodes(self) -> usize {
         match self {
             Self::T3 => 3,
+            Self::T6 => 6,
         }
     }
 }
@@ -100,6 +110,9 @@ impl Mesh {
             }
             if doubled_area < 0.0 {
                 t.swap(1, 2);
+                if element == ElementKind::T6 {
+                    t.swap(3, 5);
+                }
             }
         }
         Ok(Self { nodes, element, connectivity, edges })
@@ -119,7 +132,7 @@ impl Mesh {
     /// The nodes of a named edge, each once; `None` if there is no such edge.
     #[must_use]
     pub fn edge_nodes(&self, name: &str) -> Option<Vec<u32>> {
-        let mut nodes: Vec<u32> = self.edges.get(name)?.iter().flat_map(|s| s.ends).collect();
+        let mut nodes: Vec<u32> = self.edges.get(name)?.iter().flat_map(Segment::nodes).collect();
         nodes.sort_unstable();
         nodes.dedup();
         Some(nodes)
@@ -138,21 +151,6 @@ impl Mesh {
         best.1
     }
 
-    /// The triangle that holds a rest position, with the position's area coordinates there; `None` outside the mesh.
-    #[must_use]
-    pub fn locate(&self, at: Vector2<f64>) -> Option<(usize, [f64; 3])> {
-        // Points on the boundary must not fall out by rounding.
-        const SLACK: f64 = 1e-9;
-        self.triangles().enumerate().find_map(|(triangle, t)| {
-            let [a, b, c] = [t[0], t[1], t[2]].map(|i| self.nodes[i as usize]);
-            let doubled = (b - a).perp(&(c - a));
-            let l2 = (at - a).perp(&(c - a)) / doubled;
-            let l3 = (b - a).perp(&(at - a)) / doubled;
-            let l = [1.0 - l2 - l3, l2, l3];
-            l.iter().all(|&v| v >= -SLACK).then_some((triangle, l))
-        })
-    }
-
     /// The corners of the box around the rest mesh, m.
     #[must_use]
     pub fn bounds(&self) -> (Vector2<f64>, Vector2<f64>) {
@@ -160,13 +158,18 @@ impl Mesh {
         self.nodes.iter().fold((start, -start), |(low, high), p| (low.inf(p), high.sup(p)))
     }
 
+    /// The three sides of a triangle.
+    #[must_use]
+    pub fn sides(triangle: &[u32]) -> [Segment; 3] {
+        [0, 1, 2].map(|i| Segment { ends: [triangle[i], triangle[(i + 1) % 3]], middle: triangle.get(3 + i).copied() })
+    }
+
     /// The sides that belong to one triangle only: the outline, each running counter-clockwise around the body.
     #[must_use]
     pub fn outline(&self) -> Vec<Segment> {
-        let mut sides: Vec<[u32; 2]> =
-            self.triangles().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).collect();
-        let key = |s: &[u32; 2]| (s[0].min(s[1]), s[0].max(s[1]));
+        let mut sides: Vec<Segment> = self.triangles().flat_map(Self::sides).collect();
+        let key = |s: &Segment| (s.ends[0].min(s.ends[1]), s.ends[0].max(s.ends[1]));
         sides.sort_unstable_by_key(key);
-        sides.chunk_by(|a, b| key(a) == key(b)).filter(|same| same.len() == 1).map(|s| Segment { ends: s[0] }).collect()
+        sides.chunk_by(|a, b| key(a) == key(b)).filter(|same| same.len() == 1).map(|same| same[0]).collect()
     }
 }

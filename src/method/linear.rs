@@ -3,15 +3,16 @@
 
 use nalgebra::Vector2;
 
-use super::{Frame, FrameError, Method};
+use super::status::{Watch, farthest};
+use super::{Frame, FrameError, Method, Verdict};
 use crate::assembly::System;
 use crate::rotation::Rotation;
 
 pub(super) const ABOUT: &str = "Linear FEM: one solve, right only while rotations stay small; beams swell beyond.";
 
 /// The warped frame with every rotation the identity.
-#[derive(Clone, Copy, Debug)]
-pub struct Linear;
+#[derive(Clone, Debug, Default)]
+pub struct Linear(Watch);
 
 impl Method for Linear {
     fn rotate(&self, _: &System, _: &[Vector2<f64>], r: &mut [Rotation]) {
@@ -22,7 +23,11 @@ impl Method for Linear {
         false
     }
 
-    fn solve(&self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
-        frame.step_with_warped_stiffness()
+    fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
+        frame.step_with_warped_stiffness().map(|step| self.0.stepped(step))
+    }
+
+    fn judge(&mut self, frame: &mut Frame<'_>, residual: f64, tolerance: f64) -> Verdict {
+        self.0.judge(residual, tolerance, farthest(frame.system, frame.u))
     }
 }

@@ -5,7 +5,8 @@
 
 use nalgebra::Vector2;
 
-use super::{Frame, FrameError, Method};
+use super::status::{Watch, farthest};
+use super::{Frame, FrameError, Method, Verdict};
 use crate::assembly::System;
 use crate::rotation::Rotation;
 
@@ -13,8 +14,8 @@ pub(super) const ABOUT: &str =
     "Warped stiffness: the article's iteration R K (Rᵀ x − X) = f. Large rotations, but it diverges under large loads.";
 
 /// The article's iteration.
-#[derive(Clone, Copy, Debug)]
-pub struct Warped;
+#[derive(Clone, Debug, Default)]
+pub struct Warped(Watch);
 
 impl Method for Warped {
     fn rotate(&self, system: &System, u: &[Vector2<f64>], r: &mut [Rotation]) {
@@ -25,7 +26,15 @@ impl Method for Warped {
         true
     }
 
-    fn solve(&self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
-        frame.step_with_warped_stiffness()
+    fn step_ratio(&self) -> Option<f64> {
+        self.0.step_ratio()
+    }
+
+    fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
+        frame.step_with_warped_stiffness().map(|step| self.0.stepped(step))
+    }
+
+    fn judge(&mut self, frame: &mut Frame<'_>, residual: f64, tolerance: f64) -> Verdict {
+        self.0.judge(residual, tolerance, farthest(frame.system, frame.u))
     }
 }

@@ -65,6 +65,8 @@ pub const DENSITY: Limit = Limit::new("density", "kg/m³", 0.0, 1e6);
 pub const THICKNESS: Limit = Limit::new("thickness", "m", 1e-6, 1e6);
 /// Magnitude of a force.
 pub const FORCE: Limit = Limit::new("force", "N", 0.0, 1e15);
+/// A moment.
+pub const MOMENT: Limit = Limit::new("moment", "N m", -1e15, 1e15);
 /// Direction of a force or of gravity, from the x axis, counter-clockwise.
 pub const DIRECTION: Limit = Limit::new("direction", "°", -180.0, 180.0);
 /// Magnitude of gravity.

@@ -44,7 +44,7 @@ impl Place {
     }
 }
 
-/// A dead load: it keeps its direction as the body turns.
+/// A load. Forces and gravity are dead: they keep their direction as the body turns; a moment turns with its edge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "LoadTable", into = "LoadTable")]
 pub enum Load {
@@ -54,6 +54,13 @@ pub enum Load {
         place: Place,
         /// Its components, N.
         force: [f64; 2],
+    },
+    /// A moment, N m, positive counter-clockwise, on a straight edge; it turns with the edge.
+    Moment {
+        /// The edge.
+        edge: String,
+        /// N m.
+        moment: f64,
     },
     /// The weight of the body under this acceleration, m/s².
     Gravity {
@@ -71,6 +78,9 @@ impl Load {
             Self::Force { place, force } => {
                 place.validate(key)?;
                 magnitude(format!("{key}.force"), limits::FORCE, force)
+            }
+            Self::Moment { moment, .. } => {
+                limits::MOMENT.check(*moment).map_err(|message| Invalid::new(format!("{key}.moment"), message))
             }
             Self::Gravity { acceleration } => {
                 magnitude(format!("{key}.acceleration"), limits::ACCELERATION, acceleration)
@@ -92,6 +102,8 @@ struct LoadTable {
     force: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     acceleration: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    moment: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -99,31 +111,37 @@ struct LoadTable {
 enum LoadKind {
     Force,
     Gravity,
+    Moment,
 }
 
 impl TryFrom<LoadTable> for Load {
     type Error = String;
 
     fn try_from(table: LoadTable) -> Result<Self, String> {
-        let LoadTable { kind, edge, at, force, acceleration } = table;
-        match (kind, force, acceleration) {
-            (LoadKind::Force, Some(force), None) => Ok(Self::Force { place: Place::new(edge, at)?, force }),
+        let LoadTable { kind, edge, at, force, acceleration, moment } = table;
+        match (kind, force, acceleration, moment) {
+            (LoadKind::Force, Some(force), None, None) => Ok(Self::Force { place: Place::new(edge, at)?, force }),
             (LoadKind::Force, ..) => {
                 Err("a load of kind \"force\" has the keys edge or at, and force = [fx, fy] in N".to_owned())
             }
-            (LoadKind::Gravity, None, Some(acceleration)) if edge.is_none() && at.is_none() => {
+            (LoadKind::Gravity, None, Some(acceleration), None) if edge.is_none() && at.is_none() => {
                 Ok(Self::Gravity { acceleration })
             }
             (LoadKind::Gravity, ..) => {
                 Err("a load of kind \"gravity\" has the one key acceleration = [ax, ay] in m/s²".to_owned())
             }
+            (LoadKind::Moment, None, None, Some(moment)) if at.is_none() => match edge {
+                Some(edge) => Ok(Self::Moment { edge, moment }),
+                None => Err("a load of kind \"moment\" has the keys edge and moment in N m, got no edge".to_owned()),
+            },
+            (LoadKind::Moment, ..) => Err("a load of kind \"moment\" has the keys edge, and moment in N m".to_owned()),
         }
     }
 }
 
 impl From<Load> for LoadTable {
     fn from(load: Load) -> Self {
-        let empty = |kind| Self { kind, edge: None, at: None, force: None, acceleration: None };
+        let empty = |kind| Self { kind, edge: None, at: None, force: None, acceleration: None, moment: None };
         match load {
             Load::Force { place, force } => {
                 let (edge, at) = match place {
@@ -132,6 +150,7 @@ impl From<Load> for LoadTable {
                 };
                 Self { edge, at, force: Some(force), ..empty(LoadKind::Force) }
             }
+            Load::Moment { edge, moment } => Self { edge: Some(edge), moment: Some(moment), ..empty(LoadKind::Moment) },
             Load::Gravity { acceleration } => Self { acceleration: Some(acceleration), ..empty(LoadKind::Gravity) },
         }
     }

@@ -81,14 +81,20 @@ pub enum ElementKind {
     /// Three nodes, constant strain.
     #[default]
     T3,
+    /// Six nodes, linear strain, curved edges.
+    T6,
 }
 
 impl ElementKind {
+    /// Every element there is.
+    pub const ALL: [Self; 2] = [Self::T3, Self::T6];
+
     /// The name scene files use.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
             Self::T3 => "t3",
+            Self::T6 => "t6",
         }
     }
 }
@@ -225,8 +231,10 @@ pub enum MethodKind {
     /// Small-rotation FEM, one solve.
     Linear,
     /// The article's iteration.
-    #[default]
     Warped,
+    /// Newton's method with the exact tangent.
+    #[default]
+    Newton,
 }
 
 impl MethodKind {
@@ -236,6 +244,7 @@ impl MethodKind {
         match self {
             Self::Linear => "linear",
             Self::Warped => "warped",
+            Self::Newton => "newton",
         }
     }
 }

@@ -4,20 +4,17 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::assembly::System;
-use crate::method::{Frame, FrameError, Profile, Workspace, timed};
+use crate::method::{Frame, FrameError, Method, Profile, Verdict, Workspace, fixed_point_rho, is_stable, timed};
 use crate::rotation::Rotation;
 use crate::scene::{Invalid, MethodKind, Scene};
 use crate::solver::SolverError;
 
-mod convergence;
 mod field;
 mod solution;
 
-pub use convergence::{Reason, Status};
+pub use crate::method::{Reason, Status};
 pub use field::Field;
 pub use solution::{Energy, ProbeResult, Reaction, Solution};
-
-use convergence::Watch;
 
 /// Why a scene cannot be simulated.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -30,11 +27,22 @@ pub enum SimulationError {
     Solver(#[from] SolverError),
 }
 
+/// What is known of a result whatever method found it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Certificate {
+    /// Whether the exact tangent is positive definite there; `None` for linear theory and before the end.
+    pub stable: Option<bool>,
+    /// ρ = |λ|max(A⁻¹G): the warped iteration converges here if it is below 1. `None` for linear theory, before the
+    /// end, and where A cannot be factorized.
+    pub fixed_point_rho: Option<f64>,
+}
+
 /// A scene in motion towards its equilibrium.
 #[derive(Debug)]
 pub struct Simulation {
     system: System,
-    method: MethodKind,
+    kind: MethodKind,
+    method: Box<dyn Method>,
     tolerance: f64,
     max_iterations: u32,
     workspace: Workspace,
@@ -42,13 +50,14 @@ pub struct Simulation {
     u: Vec<Vector2<f64>>,
     previous_u: Vec<Vector2<f64>>,
     r: Vec<Rotation>,
+    external_force: Vec<Vector2<f64>>,
     internal_force: Vec<Vector2<f64>>,
     imbalance: Vec<Vector2<f64>>,
     magnitude: Vec<Vector2<f64>>,
     residual: f64,
     iterations: u32,
     status: Status,
-    watch: Watch,
+    certificate: Certificate,
     profile: Profile,
     last_frame: Profile,
 }
@@ -71,22 +80,24 @@ impl Simulation {
         let nodes = system.mesh.nodes.len();
         let points = system.elements.point_count();
         let zero = vec![Vector2::zeros(); nodes];
-        let (low, high) = system.mesh.bounds();
+        let kind = scene.solver.method;
         let mut simulation = Self {
-            method: scene.solver.method,
+            kind,
+            method: (kind.entry().start)(),
             tolerance: scene.solver.tolerance,
             max_iterations: scene.solver.max_iterations,
             workspace,
             u: zero.clone(),
             previous_u: zero.clone(),
             r: vec![Rotation::IDENTITY; points],
+            external_force: zero.clone(),
             internal_force: zero.clone(),
             imbalance: zero.clone(),
             magnitude: zero,
             residual: 0.0,
             iterations: 0,
             status: Status::Running,
-            watch: Watch::new((high - low).norm()),
+            certificate: Certificate::default(),
             profile: Profile::default(),
             last_frame: Profile::default(),
             system,
@@ -116,8 +127,8 @@ impl Simulation {
         std::mem::swap(&mut self.system, &mut system);
         self.tolerance = scene.solver.tolerance;
         self.max_iterations = scene.solver.max_iterations;
-        if matches!(self.status, Status::Diverged(_)) || scene.solver.method != self.method {
-            self.method = scene.solver.method;
+        if matches!(self.status, Status::Diverged(_)) || scene.solver.method != self.kind {
+            self.kind = scene.solver.method;
             self.reset();
         } else {
             self.begin();
@@ -129,12 +140,16 @@ impl Simulation {
     fn begin(&mut self) {
         self.iterations = 0;
         self.status = Status::Running;
-        self.watch.restart();
+        self.certificate = Certificate::default();
+        self.method = (self.kind.entry().start)();
         self.profile = Profile::default();
         self.last_frame = Profile::default();
         let mut unmeasured = Profile::default();
         self.measure(&mut unmeasured);
-        self.judge();
+        let verdict = self.with_method(&mut unmeasured, |method, frame, residual, tolerance| {
+            method.judge(frame, residual, tolerance)
+        });
+        self.follow(verdict, &mut unmeasured);
     }
 
     /// One frame: assemble, factorize, solve, and the rotations and residual of the new state. Does nothing once the
@@ -145,27 +160,21 @@ impl Simulation {
         }
         let mut profile = Profile::default();
         self.previous_u.copy_from_slice(&self.u);
-        let mut frame = Frame {
-            system: &self.system,
-            r: &self.r,
-            imbalance: &self.imbalance,
-            u: &mut self.u,
-            workspace: &mut self.workspace,
-            profile: &mut profile,
-        };
-        let solved = self.method.method().solve(&mut frame);
+        let solved = self.with_method(&mut profile, |method, frame, _, _| method.solve(frame));
         self.iterations += 1;
-        match solved {
-            Ok(()) => {
-                self.measure(&mut profile);
-                if self.residual.is_finite() {
-                    self.judge();
-                } else {
-                    self.abandon(&mut profile, Reason::Frame(FrameError::NotFinite));
-                }
-            }
-            Err(error) => self.abandon(&mut profile, Reason::Frame(error)),
+        let measured = solved.and_then(|()| {
+            self.measure(&mut profile);
+            if self.residual.is_finite() { Ok(()) } else { Err(FrameError::NotFinite) }
+        });
+        if measured.is_err() {
+            self.u.copy_from_slice(&self.previous_u);
+            self.measure(&mut profile);
         }
+        let verdict = self.with_method(&mut profile, |method, frame, residual, tolerance| match measured {
+            Ok(()) => method.judge(frame, residual, tolerance),
+            Err(error) => method.recover(frame, error),
+        });
+        self.follow(verdict, &mut profile);
         self.profile.add(&profile);
         self.last_frame = profile;
         &self.status
@@ -179,12 +188,63 @@ impl Simulation {
         &self.status
     }
 
+    /// Lets the method work on the current state.
+    fn with_method<T>(
+        &mut self,
+        profile: &mut Profile,
+        work: impl FnOnce(&mut dyn Method, &mut Frame<'_>, f64, f64) -> T,
+    ) -> T {
+        let mut frame = Frame {
+            system: &self.system,
+            r: &self.r,
+            imbalance: &self.imbalance,
+            u: &mut self.u,
+            workspace: &mut self.workspace,
+            profile,
+        };
+        work(self.method.as_mut(), &mut frame, self.residual, self.tolerance)
+    }
+
+    /// Does what the method's verdict asks for.
+    fn follow(&mut self, verdict: Verdict, profile: &mut Profile) {
+        match verdict {
+            Verdict::Continue => {}
+            Verdict::Changed => self.measure(profile),
+            Verdict::Converged => self.status = Status::Converged,
+            Verdict::Stop(reason) => self.status = reason.status(),
+        }
+        if self.status == Status::Running && self.iterations >= self.max_iterations {
+            self.status = Reason::IterationLimit(self.max_iterations).status();
+        }
+        if self.status != Status::Running {
+            self.certify();
+        }
+    }
+
+    /// What is known of the final state.
+    fn certify(&mut self) {
+        if self.method.corotates() {
+            let Self { system, u, r, workspace, .. } = self;
+            self.certificate = Certificate {
+                fixed_point_rho: fixed_point_rho(system, u, r, workspace),
+                stable: Some(is_stable(system, u, r, workspace)),
+            };
+        }
+    }
+
     /// Rotations, forces and residual of the current state.
     fn measure(&mut self, profile: &mut Profile) {
-        timed(&mut profile.rotate, || self.method.method().rotate(&self.system, &self.u, &mut self.r));
+        timed(&mut profile.rotate, || self.method.rotate(&self.system, &self.u, &mut self.r));
         timed(&mut profile.assemble, || {
             self.system.internal_force(&self.u, &self.r, &mut self.internal_force, &mut self.magnitude);
-            let forces = self.system.external_force.iter().zip(&self.internal_force);
+            // Linear theory knows the loads at rest only.
+            if self.method.corotates() {
+                self.system.external_force(&self.u, self.method.load_factor(), &mut self.external_force);
+            } else {
+                let rest = vec![Vector2::zeros(); self.u.len()];
+                self.system.external_force(&rest, self.method.load_factor(), &mut self.external_force);
+            }
+            let forces = self.external_force.iter().zip(&self.internal_force);
             for (imbalance, (external, internal)) in self.imbalance.iter_mut().zip(forces) {
                 *imbalance = external - internal;
             }
@@ -204,28 +264,7 @@ impl Simulation {
         if imbalance == 0.0 {
             return 0.0;
         }
-        imbalance / norm(&self.magnitude).max(norm(&self.system.external_force))
-    }
-
-    fn judge(&mut self) {
-        if self.residual <= self.tolerance {
-            self.status = Status::Converged;
-            return;
-        }
-        let step = self.u.iter().zip(&self.previous_u).map(|(a, b)| (a - b).norm_squared()).sum::<f64>().sqrt();
-        let farthest = self.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
-        if let Some(reason) = self.watch.observe(self.residual, step, farthest) {
-            self.status = reason.status();
-        } else if self.iterations >= self.max_iterations {
-            self.status = Status::NotConverged(Reason::IterationLimit(self.max_iterations));
-        }
-    }
-
-    /// Ends with the last finite state.
-    fn abandon(&mut self, profile: &mut Profile, reason: Reason) {
-        self.u.copy_from_slice(&self.previous_u);
-        self.measure(profile);
-        self.status = reason.status();
+        imbalance / norm(&self.magnitude).max(norm(&self.external_force))
     }
 
     /// The equations of the scene.
@@ -237,7 +276,19 @@ impl Simulation {
     /// The method that steps.
     #[must_use]
     pub fn method(&self) -> MethodKind {
-        self.method
+        self.kind
+    }
+
+    /// What is known of the final state.
+    #[must_use]
+    pub fn certificate(&self) -> Certificate {
+        self.certificate
+    }
+
+    /// Share of the load that is on the body, and load steps taken so far.
+    #[must_use]
+    pub fn load_stepping(&self) -> (f64, u32) {
+        (self.method.load_factor(), self.method.load_steps())
     }
 
     /// Displacement x − X of every node, m.
@@ -273,7 +324,7 @@ impl Simulation {
     /// Length of the last step over that of the one before: below 1 the iteration contracts.
     #[must_use]
     pub fn step_ratio(&self) -> Option<f64> {
-        self.watch.step_ratio()
+        self.method.step_ratio()
     }
 
     /// Time of the last frame, by stage.

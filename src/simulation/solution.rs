@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::field::largest_principal;
-use super::{Simulation, Status};
+use super::{Certificate, Simulation, Status};
 use crate::method::Profile;
 use crate::rotation::polar;
 
@@ -23,7 +23,7 @@ pub struct ProbeResult {
 pub struct Energy {
     /// Stored in the body.
     pub elastic: f64,
-    /// Work f_ext · u of the dead loads.
+    /// Work of the loads, from rest.
     pub external: f64,
 }
 
@@ -45,8 +45,12 @@ pub struct Solution {
     pub status: Status,
     /// Solves taken.
     pub iterations: u32,
+    /// Load steps taken.
+    pub load_steps: u32,
     /// ‖f_ext − f_int‖ / ‖Σ|fₑ|‖.
     pub residual: f64,
+    /// Stability, and ρ.
+    pub certificate: Certificate,
     /// Largest magnitude of the polar rotation, degrees.
     pub max_rotation_deg: f64,
     /// Largest magnitude of a principal strain.
@@ -90,14 +94,16 @@ impl Simulation {
             dofs: system.dofs(),
             status: self.status.clone(),
             iterations: self.iterations,
+            load_steps: self.method.load_steps(),
             residual: self.residual,
+            certificate: self.certificate,
             max_rotation_deg: max_rotation.to_degrees(),
             max_strain,
             inverted_elements: inverted,
             probes: probes.collect(),
             energy: Energy {
                 elastic: system.elements.energy(system.lame, &self.u, &self.r),
-                external: system.external_force.iter().zip(&self.u).map(|(f, u)| f.dot(u)).sum(),
+                external: -system.load_potential(&self.u, self.method.load_factor()),
             },
             reaction: self.reaction(),
             time: self.profile,

@@ -1,6 +1,9 @@
 //! When an iteration is over: converged, out of iterations, or going nowhere.
 
-use crate::method::FrameError;
+use nalgebra::Vector2;
+
+use super::{FrameError, Verdict};
+use crate::assembly::System;
 
 /// Where a simulation stands.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,12 +44,16 @@ pub enum Reason {
     RanAway(f64),
     /// A frame gave no state.
     Frame(FrameError),
+    /// No load step, however small, and no descent led on.
+    Stuck,
 }
 
 impl Reason {
-    pub(super) fn status(self) -> Status {
+    /// The status it leads to.
+    #[must_use]
+    pub fn status(self) -> Status {
         match self {
-            Self::IterationLimit(_) | Self::Stagnated(_) => Status::NotConverged(self),
+            Self::IterationLimit(_) | Self::Stagnated(_) | Self::Stuck => Status::NotConverged(self),
             Self::Wanders(_) | Self::RanAway(_) | Self::Frame(_) => Status::Diverged(self),
         }
     }
@@ -68,12 +75,13 @@ impl std::fmt::Display for Reason {
             Self::RanAway(sizes) => {
                 write!(f, "the body has gone more than {sizes} times its size away; lower the load")
             }
+            Self::Stuck => write!(f, "no load step, however small, and no descent leads on from here"),
             Self::Frame(error) => write!(f, "{error}; lower the load"),
         }
     }
 }
 
-/// Iterations without progress after which an iteration is called off. Longer sees slower convergence through, and
+/// Iterations without progress after which a fixed-point iteration is called off. Longer sees slower convergence through, and
 /// keeps users of a hopeless load waiting longer.
 const PATIENCE: u32 = 30;
 /// A new best residual counts as progress if it is this much below the old one.
@@ -84,47 +92,52 @@ const ROUNDING: f64 = 1e-6;
 /// slender beam under a large load is absurdly long, and still what was asked for: so not too small.
 const FARTHEST: f64 = 1e6;
 
-/// Watches residuals and steps go by.
-#[derive(Clone, Debug)]
+/// Watches the residuals and steps of a fixed-point iteration go by.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Watch {
-    size: f64,
-    best: f64,
+    best: Option<f64>,
     waiting: u32,
     last_step: f64,
     ratio: Option<f64>,
 }
 
 impl Watch {
-    pub(super) fn new(size: f64) -> Self {
-        Self { size, best: f64::INFINITY, waiting: 0, last_step: 0.0, ratio: None }
-    }
-
-    pub(super) fn restart(&mut self) {
-        *self = Self::new(self.size);
-    }
-
     pub(super) fn step_ratio(&self) -> Option<f64> {
         self.ratio
     }
 
-    /// Takes a frame's residual, step length and largest displacement; says if the iteration should be called off.
-    pub(super) fn observe(&mut self, residual: f64, step: f64, farthest: f64) -> Option<Reason> {
+    /// Takes the length of a step.
+    pub(super) fn stepped(&mut self, step: f64) {
         self.ratio = (self.last_step > 0.0).then(|| step / self.last_step).filter(|r| r.is_finite());
         self.last_step = step;
-        if residual < PROGRESS * self.best {
-            self.best = residual;
+    }
+
+    /// Judges a state by its residual and by its largest displacement over the size of the body.
+    pub(super) fn judge(&mut self, residual: f64, tolerance: f64, farthest: f64) -> Verdict {
+        if residual <= tolerance {
+            return Verdict::Converged;
+        }
+        let best = *self.best.get_or_insert(f64::INFINITY);
+        if residual < PROGRESS * best {
+            self.best = Some(residual);
             self.waiting = 0;
         } else {
             self.waiting += 1;
         }
-        if farthest > FARTHEST * self.size {
-            Some(Reason::RanAway(FARTHEST))
+        if farthest > FARTHEST {
+            Verdict::Stop(Reason::RanAway(FARTHEST))
         } else if self.waiting < PATIENCE {
-            None
-        } else if self.best < ROUNDING {
-            Some(Reason::Stagnated(self.waiting))
+            Verdict::Continue
+        } else if best < ROUNDING {
+            Verdict::Stop(Reason::Stagnated(self.waiting))
         } else {
-            Some(Reason::Wanders(self.waiting))
+            Verdict::Stop(Reason::Wanders(self.waiting))
         }
     }
+}
+
+/// The largest displacement over the size of the body at rest.
+pub(super) fn farthest(system: &System, u: &[Vector2<f64>]) -> f64 {
+    let (low, high) = system.mesh.bounds();
+    u.iter().map(|u| u.norm()).fold(0.0, f64::max) / (high - low).norm()
 }
