@@ -66,3 +66,4 @@ pub mod rotation;
 pub mod scene;
 pub mod simulation;
 pub mod solver;
+pub mod truth;

@@ -103,7 +103,7 @@ fn typed_values_take_effect_also_beyond_the_slider() {
     assert_eq!((m.young, m.poisson, m.density, m.thickness), (2e6, 0.45, 1200.0, 0.2));
     type_into(&mut harness, "Cells along", "40");
     type_into(&mut harness, "Cells across", "3");
-    assert_eq!(harness.state().scene().beam.cells, [40, 3]);
+    assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, [40, 3]);
     assert_eq!(harness.state().simulation().system().mesh.triangle_count(), 240);
 }
 

@@ -117,7 +117,7 @@ fn the_body_is_drawn_where_the_solver_says() {
             .zip(lab.simulation().displacement())
             .map(|(x, u)| x + u)
             .collect();
-        if lab.scene().beam.element == warpbeam::scene::ElementKind::T3 {
+        if lab.scene().element() == warpbeam::scene::ElementKind::T3 {
             assert_eq!(positions, frame.positions, "{id}: what is drawn is not what was solved");
         }
 

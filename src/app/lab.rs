@@ -378,7 +378,7 @@ impl Lab {
     /// What is wrong with the scene. The lab is unchanged then.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         self.simulation.change_scene(&scene)?;
-        if self.scene.beam != scene.beam {
+        if self.scene.beam != scene.beam || self.scene.mesh != scene.mesh {
             self.drawing = Drawing::new(&self.simulation.system().mesh);
         }
         self.scene = scene;

@@ -5,7 +5,7 @@ use egui::{Button, ComboBox, Grid, RichText, ScrollArea, Ui};
 use super::field::{Messages, NumberField, show_message};
 use super::format;
 use crate::method::METHODS;
-use crate::scene::{Load, Place, Plane, Scene, limits, registry};
+use crate::scene::{ElementKind, Load, Place, Plane, Scene, limits, registry};
 use crate::simulation::{Field, Simulation, Status};
 
 /// What the panel shows.
@@ -96,7 +96,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, view:
         controls(ui, shown, &mut actions);
         result(ui, shown);
         section(ui, "Load");
-        load(ui, shown.scene, state, &mut actions);
+        load(ui, shown, state, &mut actions);
         section(ui, "Material");
         material(ui, shown.scene, state, &mut actions);
         section(ui, "Mesh and method");
@@ -238,7 +238,8 @@ fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
     [magnitude * c, magnitude * s]
 }
 
-fn load(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Action>) {
+fn load(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let scene = shown.scene;
     let force = scene.loads.iter().find_map(|l| match l {
         Load::Force { force, .. } => Some(*force),
         _ => None,
@@ -251,7 +252,9 @@ fn load(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Ac
     let direction = direction.or(state.force_direction).unwrap_or(DOWN);
     let material = &scene.material;
     // A force that strains the whole section by 1, rounded up: as far as anything can be seen.
-    let largest = (material.young * material.thickness * scene.beam.height).clamp(1e-6, 1e14);
+    let (low, high) = shown.simulation.system().mesh.bounds();
+    let height = (high - low).min();
+    let largest = (material.young * material.thickness * height).clamp(1e-6, 1e14);
     let largest = 10f64.powf(largest.log10().ceil());
     let field = NumberField {
         label: "Force",
@@ -411,9 +414,12 @@ fn mesh_and_method(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: 
             logarithmic: Some(1.0),
             whole: true,
         };
-        if let Some(new) = field.show(ui, &mut state.messages, f64::from(scene.beam.cells[axis])) {
+        let Some(beam) = &scene.beam else { continue };
+        if let Some(new) = field.show(ui, &mut state.messages, f64::from(beam.cells[axis])) {
             let mut scene = Box::new(scene.clone());
-            scene.beam.cells[axis] = new as u32;
+            if let Some(beam) = &mut scene.beam {
+                beam.cells[axis] = new as u32;
+            }
             actions.push(Action::Edit(label, scene));
         }
     }
@@ -435,9 +441,23 @@ fn mesh_and_method(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: 
             .response
             .labelled_by(label.id)
             .on_hover_text(scene.solver.method.entry().about);
-        ui.weak(format!("element {}", scene.beam.element.id()));
     });
     show_message(ui, &state.messages, "Method");
+    ui.horizontal(|ui| {
+        ui.label("Element");
+        for (element, tip) in [
+            (ElementKind::T3, "Three nodes, constant strain: cheap, and too stiff in bending."),
+            (ElementKind::T6, "Six nodes, linear strain: bends as it should."),
+        ] {
+            let selected = scene.element() == element;
+            if ui.radio(selected, element.id()).on_hover_text(tip).clicked() && !selected {
+                let mut scene = Box::new(scene.clone());
+                scene.set_element(element);
+                actions.push(Action::Edit("Element", scene));
+            }
+        }
+    });
+    show_message(ui, &state.messages, "Element");
 }
 
 fn view_options(

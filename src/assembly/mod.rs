@@ -48,7 +48,13 @@ impl System {
     /// The key that is wrong and what was expected there.
     pub fn new(scene: &Scene) -> Result<Self, Invalid> {
         scene.validate()?;
-        Self::with_mesh(scene, Mesh::beam(&scene.beam).map_err(|e| Invalid::new("beam", e.to_string()))?)
+        let mesh = match (&scene.beam, &scene.mesh) {
+            (Some(beam), _) => Mesh::beam(beam).map_err(|e| Invalid::new("beam", e.to_string()))?,
+            (None, Some(mesh)) => Mesh::from_gmsh(&mesh.text, mesh.element)
+                .map_err(|e| Invalid::new("mesh.file", format!("{}: {e}", mesh.file)))?,
+            (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither")),
+        };
+        Self::with_mesh(scene, mesh)
     }
 
     /// [`Self::new`] on another mesh than the scene's own, which has the edges that the scene names.

@@ -35,7 +35,7 @@ pub(super) fn text(scene: &Scene, solution: &Solution) -> String {
         text,
         "{}: element {}, method {}, {} unknowns",
         scene.name,
-        scene.beam.element.id(),
+        scene.element().id(),
         scene.solver.method.id(),
         solution.dofs
     );
@@ -103,7 +103,7 @@ pub(super) fn json(scene: &Scene, solution: &Solution) -> String {
     let time = &solution.time;
     let object = json!({
         "scene": scene.name,
-        "element": scene.beam.element.id(),
+        "element": scene.element().id(),
         "method": scene.solver.method.id(),
         "dofs": solution.dofs,
         "status": solution.status.id(),

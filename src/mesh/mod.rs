@@ -9,6 +9,9 @@ use crate::rotation::affine::DEGENERATE;
 use crate::scene::ElementKind;
 
 mod beam;
+mod gmsh;
+
+pub use gmsh::GmshError;
 
 /// A mesh that cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]

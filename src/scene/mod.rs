@@ -29,8 +29,12 @@ pub struct Scene {
     /// What is computed.
     #[serde(default)]
     pub analysis: Analysis,
-    /// The meshed rectangle.
-    pub beam: Beam,
+    /// The meshed rectangle …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beam: Option<Beam>,
+    /// … or a mesh from a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshFile>,
     /// The elastic material.
     pub material: Material,
     /// Where nodes are held.
@@ -72,6 +76,20 @@ pub struct Beam {
     /// Which way cells are cut.
     #[serde(default)]
     pub diagonals: Diagonals,
+}
+
+/// A mesh from a Gmsh file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshFile {
+    /// The file, relative to the scene file. Its physical curves name the edges.
+    pub file: String,
+    /// The element every triangle becomes.
+    #[serde(default)]
+    pub element: ElementKind,
+    /// What is in the file; read when the scene is opened.
+    #[serde(skip)]
+    pub text: String,
 }
 
 /// The elements there are.
@@ -250,6 +268,23 @@ impl MethodKind {
 }
 
 impl Scene {
+    /// The element of its mesh.
+    #[must_use]
+    pub fn element(&self) -> ElementKind {
+        let beam = self.beam.as_ref().map(|b| b.element);
+        beam.or(self.mesh.as_ref().map(|m| m.element)).unwrap_or_default()
+    }
+
+    /// Makes every triangle of its mesh this element.
+    pub fn set_element(&mut self, element: ElementKind) {
+        if let Some(beam) = &mut self.beam {
+            beam.element = element;
+        }
+        if let Some(mesh) = &mut self.mesh {
+            mesh.element = element;
+        }
+    }
+
     /// Reads a scene from TOML text; `file` names it in errors.
     ///
     /// # Errors
@@ -271,31 +306,14 @@ impl Scene {
     /// # Errors
     /// The first key that is wrong and what was expected there.
     pub fn validate(&self) -> Result<(), Invalid> {
-        let check = |key: &str, limit: limits::Limit, value: f64| {
-            limit.check(value).map_err(|message| Invalid::new(key, message))
-        };
         if self.name.trim().is_empty() {
             return Err(Invalid::new("name", "expected a title, got an empty string"));
         }
-        check("beam.length", limits::LENGTH, self.beam.length)?;
-        check("beam.height", limits::HEIGHT, self.beam.height)?;
-        for cells in self.beam.cells {
-            check("beam.cells", limits::CELLS, f64::from(cells))?;
-        }
-        let total = f64::from(self.beam.cells[0]) * f64::from(self.beam.cells[1]);
-        limits::TOTAL_CELLS
-            .check(total)
-            .map_err(|message| Invalid::new("beam.cells", format!("{message} cells in all")))?;
-        let aspect = self.beam.cell_aspect();
-        if !(1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect) {
-            return Err(Invalid::new(
-                "beam.cells",
-                format!(
-                    "expected cells at most {} times as long as high or as high as long, got {}",
-                    limits::number(MAX_CELL_ASPECT),
-                    limits::number(aspect)
-                ),
-            ));
+        match (&self.beam, &self.mesh) {
+            (Some(beam), None) => beam.validate()?,
+            (None, Some(_)) => {}
+            (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither")),
+            (Some(_), Some(_)) => return Err(Invalid::new("mesh", "expected [beam] or [mesh], got both")),
         }
         check("material.young", limits::YOUNG, self.material.young)?;
         check("material.poisson", self.material.plane.poisson_limit(), self.material.poisson)?;
@@ -322,6 +340,10 @@ impl Scene {
     }
 }
 
+fn check(key: &str, limit: limits::Limit, value: f64) -> Result<(), Invalid> {
+    limit.check(value).map_err(|message| Invalid::new(key, message))
+}
+
 fn validate_place(key: &str, place: Result<Place, String>) -> Result<(), Invalid> {
     place.map_err(|message| Invalid::new(key, message))?.validate(key)
 }
@@ -330,6 +352,28 @@ fn validate_place(key: &str, place: Result<Place, String>) -> Result<(), Invalid
 const MAX_CELL_ASPECT: f64 = 1e5;
 
 impl Beam {
+    fn validate(&self) -> Result<(), Invalid> {
+        check("beam.length", limits::LENGTH, self.length)?;
+        check("beam.height", limits::HEIGHT, self.height)?;
+        for cells in self.cells {
+            check("beam.cells", limits::CELLS, f64::from(cells))?;
+        }
+        let total = f64::from(self.cells[0]) * f64::from(self.cells[1]);
+        limits::TOTAL_CELLS
+            .check(total)
+            .map_err(|message| Invalid::new("beam.cells", format!("{message} cells in all")))?;
+        let aspect = self.cell_aspect();
+        if (1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect) {
+            return Ok(());
+        }
+        let most = limits::number(MAX_CELL_ASPECT);
+        let message = format!(
+            "expected cells at most {most} times as long as high or as high as long, got {}",
+            limits::number(aspect)
+        );
+        Err(Invalid::new("beam.cells", message))
+    }
+
     /// Length over height of one cell.
     #[must_use]
     pub fn cell_aspect(&self) -> f64 {

@@ -11,6 +11,9 @@ use super::{Scene, registry};
 /// Scene files are small; anything larger is refused before it is read.
 const MAX_FILE_BYTES: u64 = 4 << 20;
 
+/// Room for the largest mesh that is solved.
+const MAX_MESH_BYTES: u64 = 256 << 20;
+
 /// Where a scene came from: its text and the assignments made to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
@@ -68,7 +71,8 @@ pub(super) fn parse(text: &str, file: &Path, assignments: &[String]) -> Result<S
                 .map_err(|e| failed(format!("{} (got {key} = {value})", e.message().trim().replace('\n', ", "))))?;
         }
     }
-    scene.validate().map_err(|invalid| {
+    let valid = scene.validate().and_then(|()| read_mesh(&mut scene, file));
+    valid.map_err(|invalid| {
         let blamed = assignments.iter().rev().find(|a| a.split('=').next().is_some_and(|k| same_key(k, &invalid.key)));
         match blamed {
             Some(assignment) => SceneError::Set { assignment: assignment.clone(), message: invalid.message },
@@ -76,6 +80,25 @@ pub(super) fn parse(text: &str, file: &Path, assignments: &[String]) -> Result<S
         }
     })?;
     Ok(scene)
+}
+
+/// Reads the mesh file of a scene, relative to the scene's own file; the meshes of built-in scenes are built in.
+fn read_mesh(scene: &mut Scene, file: &Path) -> Result<(), Invalid> {
+    const KEY: &str = "mesh.file";
+    let Some(mesh) = &mut scene.mesh else { return Ok(()) };
+    let path = file.parent().unwrap_or(Path::new("")).join(&mesh.file);
+    mesh.text = match (registry::mesh(&mesh.file), path.is_file()) {
+        (Some(text), false) => text.to_owned(),
+        _ => {
+            let failed = |reason: String| Invalid::new(KEY, format!("{}: {reason}", path.display()));
+            let size = std::fs::metadata(&path).map_err(|e| failed(e.to_string()))?.len();
+            if size > MAX_MESH_BYTES {
+                return Err(failed(format!("expected at most {MAX_MESH_BYTES} bytes, got {size}")));
+            }
+            std::fs::read_to_string(&path).map_err(|e| failed(format!("{e}; expected Gmsh format 4.1, ASCII")))?
+        }
+    };
+    Ok(())
 }
 
 /// `Invalid` with the line its key is written on, if it is.

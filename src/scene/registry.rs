@@ -17,7 +17,31 @@ macro_rules! built_in {
 }
 
 /// Every built-in scene; the first is the default.
-pub const BUILT_IN: &[BuiltIn] = built_in!["article", "cantilever", "gravity", "bridge", "stretch", "shear"];
+pub const BUILT_IN: &[BuiltIn] = built_in![
+    "article",
+    "cantilever",
+    "gravity",
+    "bridge",
+    "stretch",
+    "shear",
+    "elastica",
+    "roll-up",
+    "incline",
+    "column",
+    "cook",
+    "bracket",
+];
+
+/// The mesh files of built-in scenes, as the scenes name them.
+const MESHES: &[(&str, &str)] = &[
+    ("../meshes/cook.msh", include_str!("../../assets/meshes/cook.msh")),
+    ("../meshes/bracket.msh", include_str!("../../assets/meshes/bracket.msh")),
+];
+
+/// A mesh file of a built-in scene.
+pub(super) fn mesh(file: &str) -> Option<&'static str> {
+    MESHES.iter().find(|(name, _)| *name == file).map(|(_, text)| *text)
+}
 
 /// The scene shown when none is named.
 pub const DEFAULT: &str = "article";

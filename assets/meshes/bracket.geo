@@ -1,0 +1,25 @@
+// An L-shaped bracket with a rounded inner corner, m. Mesh: gmsh -2 -order 2 -format msh41 bracket.geo
+SetFactory("Built-in");
+Mesh.MeshSizeMin = 0.1;
+Mesh.MeshSizeMax = 0.12;
+Point(1) = {0, 0, 0};
+Point(2) = {1.2, 0, 0};
+Point(3) = {1.2, 0.3, 0};
+Point(4) = {0.5, 0.3, 0};
+Point(5) = {0.5, 0.5, 0};
+Point(6) = {0.3, 0.5, 0};
+Point(7) = {0.3, 1.2, 0};
+Point(8) = {0, 1.2, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Circle(4) = {4, 5, 6};
+Line(5) = {6, 7};
+Line(6) = {7, 8};
+Line(7) = {8, 1};
+Curve Loop(1) = {1, 2, 3, 4, 5, 6, 7};
+Plane Surface(1) = {1};
+Physical Curve("wall") = {6};
+Physical Curve("end") = {2};
+Physical Curve("fillet") = {4};
+Physical Surface("bracket") = {1};

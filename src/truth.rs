@@ -1,0 +1,264 @@
+//! What errors are measured against: beam theories solved as ordinary differential equations, independently of any mesh.
+//!
+//! - the **elastica** (Euler 1744): inextensible, no shear;
+//! - the **geometrically exact beam** (Reissner 1972): it stretches and shears too, with the shear area 5/6 of the
+//!   section;
+//! - linear beam theory, P L³/3EI and its companions.
+//!
+//! A clamped beam of length L carries a dead tip force, a tip moment and a weight per rest length. With s the rest arc
+//! length, θ the section's angle, n the section force, M the bending moment:
+//!
+//! x′ = (1 + ε) t + γ m,  θ′ = M / EI,  M′ = −x′ × n,  n(s) = F + q (L − s),
+//!
+//! t = (cos θ, sin θ), m = (−sin θ, cos θ), ε = n·t / EA, γ = n·m / GA (both 0 for the elastica), θ(0) = 0, M(L) = M_tip.
+//! Solved by multiple shooting with RK4, following the load up from zero.
+
+use nalgebra::{DMatrix, DVector, Vector2};
+
+use crate::scene::{Axis, Load, Place, Plane, Scene};
+
+/// A clamped beam and its loads. Any consistent units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClampedBeam {
+    /// Length L at rest.
+    pub length: f64,
+    /// Bending stiffness EI.
+    pub bending: f64,
+    /// 1/EA: 0 makes it inextensible.
+    pub stretch_compliance: f64,
+    /// 1/GA: 0 makes it unshearable.
+    pub shear_compliance: f64,
+    /// Dead force at the tip, F.
+    pub tip_force: Vector2<f64>,
+    /// Moment at the tip, counter-clockwise.
+    pub tip_moment: f64,
+    /// Weight per rest length, q.
+    pub weight: Vector2<f64>,
+}
+
+/// Where the tip of a beam is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tip {
+    /// Its position; the clamp is at the origin and the beam rests along x.
+    pub x: Vector2<f64>,
+    /// The section's angle there, rad.
+    pub angle: f64,
+}
+
+/// Pieces of the beam that are shot over separately: each stays well-conditioned under large loads.
+const SEGMENTS: usize = 32;
+/// RK4 steps a piece.
+const STEPS: usize = 24;
+/// Newton iterations a load step may take.
+const MAX_ITERATIONS: u32 = 20;
+/// The share of the load in the first step, of a load that is one in these units.
+const SMALLEST_LOAD_STEP: f64 = 1e-4;
+
+/// θ and M at a point, and the way from the start of the piece to it.
+#[derive(Clone, Copy)]
+struct State {
+    theta: f64,
+    moment: f64,
+    x: Vector2<f64>,
+}
+
+impl ClampedBeam {
+    /// Derivatives with respect to s, for a load factor.
+    fn derivative(&self, s: f64, state: &State, factor: f64) -> State {
+        let n = (self.tip_force + self.weight * (self.length - s)) * factor;
+        let (sin, cos) = state.theta.sin_cos();
+        let (t, m) = (Vector2::new(cos, sin), Vector2::new(-sin, cos));
+        let x = t * (1.0 + n.dot(&t) * self.stretch_compliance) + m * (n.dot(&m) * self.shear_compliance);
+        State { theta: state.moment / self.bending, moment: -x.perp(&n), x }
+    }
+
+    /// Over one piece, from θ and M at its start.
+    fn shoot(&self, piece: usize, theta: f64, moment: f64, factor: f64) -> State {
+        let h = self.length / (SEGMENTS * STEPS) as f64;
+        let mut state = State { theta, moment, x: Vector2::zeros() };
+        for step in 0..STEPS {
+            let s = (piece * STEPS + step) as f64 * h;
+            let at = |k: &State, share: f64| State {
+                theta: state.theta + share * k.theta,
+                moment: state.moment + share * k.moment,
+                x: state.x + k.x * share,
+            };
+            let k1 = self.derivative(s, &state, factor);
+            let k2 = self.derivative(s + 0.5 * h, &at(&k1, 0.5 * h), factor);
+            let k3 = self.derivative(s + 0.5 * h, &at(&k2, 0.5 * h), factor);
+            let k4 = self.derivative(s + h, &at(&k3, h), factor);
+            let mean = |a: f64, b: f64, c: f64, d: f64| h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+            state = State {
+                theta: state.theta + mean(k1.theta, k2.theta, k3.theta, k4.theta),
+                moment: state.moment + mean(k1.moment, k2.moment, k3.moment, k4.moment),
+                x: state.x + (k1.x + k2.x * 2.0 + k3.x * 2.0 + k4.x) * (h / 6.0),
+            };
+        }
+        state
+    }
+
+    /// One Newton step of multiple shooting on the unknowns θₖ, Mₖ; returns the scaled size of the step.
+    fn newton_step(&self, unknowns: &mut DVector<f64>, factor: f64) -> Option<f64> {
+        const DIFFERENCE: f64 = 1e-7;
+        let scale = self.bending / self.length;
+        let n = 2 * SEGMENTS;
+        let (mut jacobian, mut residual) = (DMatrix::zeros(n, n), DVector::zeros(n));
+        // θ₀ = 0 stands in for the first unknown; row k says that piece k − 1 ends where piece k begins.
+        jacobian[(0, 0)] = 1.0;
+        residual[0] = unknowns[0];
+        for piece in 0..SEGMENTS {
+            let (theta, moment) = (unknowns[2 * piece], unknowns[2 * piece + 1] * scale);
+            let end = self.shoot(piece, theta, moment, factor);
+            let by_theta = self.shoot(piece, theta + DIFFERENCE, moment, factor);
+            let by_moment = self.shoot(piece, theta, moment + DIFFERENCE * scale, factor);
+            // Rows 2k+1 (θ) and 2k+2 (M) of the next piece's start; of the last piece only M, at the tip.
+            let last = piece + 1 == SEGMENTS;
+            let row = 2 * piece + 1;
+            if !last {
+                residual[row] = end.theta - unknowns[2 * piece + 2];
+                jacobian[(row, 2 * piece)] = (by_theta.theta - end.theta) / DIFFERENCE;
+                jacobian[(row, 2 * piece + 1)] = (by_moment.theta - end.theta) / DIFFERENCE;
+                jacobian[(row, 2 * piece + 2)] = -1.0;
+            }
+            let row = if last { row } else { row + 1 };
+            let target = if last { factor * self.tip_moment / scale } else { unknowns[2 * piece + 3] };
+            residual[row] = end.moment / scale - target;
+            jacobian[(row, 2 * piece)] = (by_theta.moment - end.moment) / (DIFFERENCE * scale);
+            jacobian[(row, 2 * piece + 1)] = (by_moment.moment - end.moment) / (DIFFERENCE * scale);
+            if !last {
+                jacobian[(row, 2 * piece + 3)] = -1.0;
+            }
+        }
+        let step = jacobian.lu().solve(&residual)?;
+        *unknowns -= &step;
+        let size = step.amax();
+        size.is_finite().then_some(size)
+    }
+
+    /// The tip of the equilibrium that grows out of the straight beam; `None` where it cannot be followed.
+    #[must_use]
+    pub fn tip(&self) -> Option<Tip> {
+        let mut unknowns = DVector::zeros(2 * SEGMENTS);
+        let (mut reached, mut step) = (0.0_f64, 1.0 / 16.0_f64);
+        while reached < 1.0 {
+            let target = (reached + step).min(1.0);
+            let mut trial = unknowns.clone();
+            let mut converged = false;
+            for _ in 0..MAX_ITERATIONS {
+                match self.newton_step(&mut trial, target) {
+                    // Angles a quarter turn away from the last load step's belong to another equilibrium.
+                    Some(size) if size < 1e-11 => {
+                        converged = (&trial - &unknowns).iter().step_by(2).all(|d| d.abs() < 0.8);
+                        break;
+                    }
+                    Some(size) if size < 1e3 => {}
+                    _ => break,
+                }
+            }
+            if converged {
+                unknowns = trial;
+                reached = target;
+                step *= 1.5;
+            } else {
+                step *= 0.4;
+                if step < SMALLEST_LOAD_STEP {
+                    return None;
+                }
+            }
+        }
+        let scale = self.bending / self.length;
+        let mut tip = Tip { x: Vector2::zeros(), angle: 0.0 };
+        for piece in 0..SEGMENTS {
+            let end = self.shoot(piece, unknowns[2 * piece], unknowns[2 * piece + 1] * scale, 1.0);
+            tip = Tip { x: tip.x + end.x, angle: end.theta };
+        }
+        Some(tip)
+    }
+
+    /// The same beam without stretch and shear: the elastica.
+    #[must_use]
+    pub fn elastica(self) -> Self {
+        Self { stretch_compliance: 0.0, shear_compliance: 0.0, ..self }
+    }
+
+    /// The tip's displacement in linear beam theory: P L³/3EI, q L⁴/8EI, M L²/2EI across, F L/EA and q L²/2EA along, and
+    /// the shear's P L/GA and q L²/2GA.
+    #[must_use]
+    pub fn linear_tip_displacement(&self) -> Vector2<f64> {
+        let (l, f, q) = (self.length, self.tip_force, self.weight);
+        let bending = (f.y * l.powi(3) / 3.0 + q.y * l.powi(4) / 8.0 + self.tip_moment * l * l / 2.0) / self.bending;
+        let total = f * l + q * (l * l / 2.0);
+        Vector2::new(total.x * self.stretch_compliance, bending + total.y * self.shear_compliance)
+    }
+}
+
+/// A scene whose right edge has a known displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Truth {
+    /// Clamped left, loaded on the right edge or by its weight: the geometrically exact beam.
+    Cantilever(ClampedBeam),
+    /// Pulled along its axis, free to thin: P L / (E A).
+    Bar {
+        /// Displacement of the right edge along x, m.
+        stretch: f64,
+    },
+}
+
+impl Truth {
+    /// The truth of a scene, if there is one.
+    ///
+    /// A rectangle clamped on its left edge whose loads are forces and moments on the right edge, and gravity; or one
+    /// held there along its axis only (and in one point against sliding across), pulled along the axis.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Option<Self> {
+        const SHEAR_AREA: f64 = 5.0 / 6.0;
+        let beam = scene.beam.as_ref()?;
+        let m = &scene.material;
+        let young = match m.plane {
+            Plane::Stress => m.young,
+            Plane::Strain => m.young / (1.0 - m.poisson * m.poisson),
+        };
+        let area = beam.height * m.thickness;
+        let shear = m.young / (2.0 * (1.0 + m.poisson));
+        let mut clamped = ClampedBeam {
+            length: beam.length,
+            bending: young * m.thickness * beam.height.powi(3) / 12.0,
+            stretch_compliance: 1.0 / (young * area),
+            shear_compliance: 1.0 / (SHEAR_AREA * shear * area),
+            tip_force: Vector2::zeros(),
+            tip_moment: 0.0,
+            weight: Vector2::zeros(),
+        };
+        for load in &scene.loads {
+            match load {
+                Load::Force { place: Place::Edge(edge), force } if edge == "right" => {
+                    clamped.tip_force += Vector2::from(*force);
+                }
+                Load::Gravity { acceleration } => {
+                    clamped.weight += Vector2::from(*acceleration) * (m.density * area);
+                }
+                Load::Moment { edge, moment } if edge == "right" => clamped.tip_moment += moment,
+                _ => return None,
+            }
+        }
+        let left = |axes: &[Axis]| {
+            scene.supports.iter().any(|s| s.edge.as_deref() == Some("left") && axes.iter().all(|a| s.fix.contains(a)))
+        };
+        if scene.supports.len() == 1 && left(&[Axis::X, Axis::Y]) {
+            return Some(Self::Cantilever(clamped));
+        }
+        let axial = clamped.tip_force.y == 0.0 && clamped.tip_moment == 0.0 && clamped.weight == Vector2::zeros();
+        let point = scene.supports.iter().any(|s| s.at.is_some() && s.fix == [Axis::Y]);
+        (scene.supports.len() == 2 && left(&[Axis::X]) && point && axial)
+            .then(|| Self::Bar { stretch: clamped.tip_force.x * beam.length * clamped.stretch_compliance })
+    }
+
+    /// The true displacement of the right edge's middle, m; `None` where the equilibrium cannot be followed.
+    #[must_use]
+    pub fn tip_displacement(&self) -> Option<Vector2<f64>> {
+        match self {
+            Self::Cantilever(beam) => beam.tip().map(|tip| tip.x - Vector2::new(beam.length, 0.0)),
+            Self::Bar { stretch } => Some(Vector2::new(*stretch, 0.0)),
+        }
+    }
+}
