@@ -11,7 +11,7 @@
 //! while *beam.status() == Status::Running {
 //!     beam.step(); // one frame: rotations → assemble → factorize → solve → update
 //! }
-//! let tip = &beam.solution().probes[0];
+//! let tip = &beam.solution(None).probes[0];
 //! assert!((tip.u.y + 1.869).abs() < 1e-3, "the tip went down by {} m", -tip.u.y);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -21,7 +21,7 @@ fn solved(scene: &Scene) -> Simulation {
 }
 
 fn solution(scene: &Scene) -> Solution {
-    solved(scene).solution()
+    solved(scene).solution(None)
 }
 
 fn with_method(mut scene: Scene, method: MethodKind) -> Scene {
@@ -36,7 +36,7 @@ fn reactions_balance_the_loads() {
         for entry in METHODS {
             let scene = with_method(scene(id), entry.kind);
             let simulation = solved(&scene);
-            let reaction = simulation.solution().reaction;
+            let reaction = simulation.solution(None).reaction;
             let system = simulation.system();
             let total: Vector2<f64> = system.dead_force.iter().sum();
             let scale = total.norm().max(1e-9);
@@ -256,7 +256,7 @@ fn too_large_a_load_diverges_in_words_and_recovers() {
     simulation.change_scene(&scene("cantilever")).unwrap();
     assert_eq!(*simulation.solve(), Status::Converged);
     let fresh = solved(&scene("cantilever"));
-    let difference = (simulation.solution().probes[0].u - fresh.solution().probes[0].u).norm();
+    let difference = (simulation.solution(None).probes[0].u - fresh.solution(None).probes[0].u).norm();
     assert!(difference < 1e-6, "{difference}");
 }
 
@@ -285,7 +285,7 @@ fn extremes_stay_finite() {
                 let mut simulation = Simulation::new(&scene).unwrap();
                 simulation.solve();
                 assert_ne!(*simulation.status(), Status::Running);
-                let s = simulation.solution();
+                let s = simulation.solution(None);
                 let numbers = [
                     s.residual,
                     s.max_strain,

@@ -39,7 +39,7 @@ fn force(lab: &Lab) -> [f64; 2] {
 }
 
 fn tip(lab: &Lab) -> [f64; 2] {
-    lab.simulation().solution().probes[0].u.into()
+    lab.simulation().solution(None).probes[0].u.into()
 }
 
 /// Types a number into the field of this label.

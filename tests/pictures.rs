@@ -145,7 +145,7 @@ fn the_body_is_drawn_where_the_solver_says() {
         assert!(seen as f64 >= 0.9 * large as f64, "{id}: {seen} of {large} triangles have their colour");
 
         // The tip: just inside the body is body, just outside is background. The outline between them is 1.2 wide.
-        let probe = lab.simulation().solution().probes[0].clone();
+        let probe = lab.simulation().solution(None).probes[0].clone();
         let tip = project(&camera, rect, probe.x);
         let mesh = &lab.simulation().system().mesh;
         let centre = positions.iter().sum::<Vector2<f64>>() / positions.len() as f64;

@@ -13,6 +13,8 @@ use crate::scene::{Axis, ElementKind, Invalid, Load, Place, Scene};
 pub struct NodalProbe {
     /// What it is called.
     pub name: String,
+    /// The edge it averages over, if it is one.
+    pub edge: Option<String>,
     /// Node and weight.
     pub weights: Vec<(u32, f64)>,
 }
@@ -132,7 +134,7 @@ pub(super) fn probes(scene: &Scene, mesh: &Mesh) -> Result<Vec<NodalProbe>, Inva
                 Invalid::new(format!("{key}.at"), format!("expected a point of the body, got {at:?} outside it"))
             })?,
         };
-        Ok(NodalProbe { name: probe.name.clone(), weights })
+        Ok(NodalProbe { name: probe.name.clone(), edge: probe.edge.clone(), weights })
     };
     scene.probes.iter().enumerate().map(probe).collect()
 }

@@ -12,6 +12,7 @@ use crate::export::{self, ExportError, Format};
 use crate::render::RenderError;
 use crate::scene::{self, Scene, SceneError, registry};
 use crate::simulation::{Simulation, SimulationError, Status};
+use crate::truth::Truth;
 
 mod report;
 
@@ -195,7 +196,7 @@ fn solve(source: &scene::Source, json: bool, out: Option<&std::path::Path>) -> R
     if let Some(path) = out {
         export::write(&simulation, path)?;
     }
-    let solution = simulation.solution();
+    let solution = simulation.solution(Truth::of(&scene).as_ref());
     report::print(&if json { report::json(&scene, &solution) } else { report::text(&scene, &solution) });
     Ok(exit_code(&status))
 }

@@ -59,6 +59,9 @@ pub(super) fn text(scene: &Scene, solution: &Solution) -> String {
             "{}: at ({:.6}, {:.6}) m, moved by ({:.6}, {:.6}) m",
             probe.name, probe.x.x, probe.x.y, probe.u.x, probe.u.y
         );
+        if let (Some(truth), Some(error)) = (probe.truth, probe.error_percent()) {
+            let _ = writeln!(text, "  beam theory: ({:.6}, {:.6}) m, error {error:.3} %", truth.x, truth.y);
+        }
     }
     let _ = writeln!(
         text,
@@ -98,7 +101,15 @@ pub(super) fn json(scene: &Scene, solution: &Solution) -> String {
     let probes: Vec<Value> = solution
         .probes
         .iter()
-        .map(|p| json!({ "name": p.name, "x": pair(&p.x), "u": pair(&p.u), "truth_u": null, "error_percent": null }))
+        .map(|p| {
+            json!({
+                "name": p.name,
+                "x": pair(&p.x),
+                "u": pair(&p.u),
+                "truth_u": p.truth.map(|t| pair(&t)),
+                "error_percent": p.error_percent().map(number),
+            })
+        })
         .collect();
     let time = &solution.time;
     let object = json!({

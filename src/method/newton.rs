@@ -18,8 +18,12 @@ use crate::rotation::Rotation;
 pub(super) const ABOUT: &str =
     "Newton with the exact tangent A + G: an exact, stable equilibrium in a few solves, also under large loads.";
 
-/// Full steps a load step may take. The ordinary count is 5 to 9.
+/// Full steps a load step may take before it must be close. The ordinary count is 5 to 9.
 const MAX_STEPS: u32 = 15;
+/// A relative residual this small is close: convergence is quadratic from here …
+const CLOSE: f64 = 1e-2;
+/// … and gets this many steps more.
+const LAST_STEPS: u32 = 6;
 /// A step this many sizes of the body long is a failure: the linear solution of a slender beam under a moderate load
 /// is shorter.
 const LONGEST_STEP: f64 = 20.0;
@@ -215,7 +219,8 @@ impl Method for Newton {
         let too_long = self.last_step / nodes > LONGEST_STEP * (high - low).norm();
         let hopeless =
             self.steps > 1 && (too_long || self.worse >= PATIENCE || farthest(frame.system, frame.u) > LONGEST_STEP);
-        if self.steps >= MAX_STEPS || hopeless { self.give_up_load_step(frame) } else { Verdict::Continue }
+        let late = self.steps >= MAX_STEPS + if residual < CLOSE { LAST_STEPS } else { 0 };
+        if late || hopeless { self.give_up_load_step(frame) } else { Verdict::Continue }
     }
 
     fn recover(&mut self, frame: &mut Frame<'_>, error: FrameError) -> Verdict {

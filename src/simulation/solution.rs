@@ -6,6 +6,7 @@ use super::field::largest_principal;
 use super::{Certificate, Simulation, Status};
 use crate::method::Profile;
 use crate::rotation::polar;
+use crate::truth::Truth;
 
 /// A probe's result.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,17 @@ pub struct ProbeResult {
     pub x: Vector2<f64>,
     /// Displacement, m.
     pub u: Vector2<f64>,
+    /// The true displacement, m, where the scene has one and the probe is the right edge.
+    pub truth: Option<Vector2<f64>>,
+}
+
+impl ProbeResult {
+    /// The distance from the truth over the length of the true displacement, percent.
+    #[must_use]
+    pub fn error_percent(&self) -> Option<f64> {
+        let truth = self.truth.filter(|t| t.norm() > 0.0)?;
+        Some(100.0 * (self.u - truth).norm() / truth.norm())
+    }
 }
 
 /// Energies, J.
@@ -68,9 +80,9 @@ pub struct Solution {
 }
 
 impl Simulation {
-    /// The numbers of the current state.
+    /// The numbers of the current state, beside the truth of its scene, if it has one.
     #[must_use]
-    pub fn solution(&self) -> Solution {
+    pub fn solution(&self, truth: Option<&Truth>) -> Solution {
         let system = &self.system;
         let mut max_rotation: f64 = 0.0;
         let mut max_strain: f64 = 0.0;
@@ -86,9 +98,11 @@ impl Simulation {
             max_rotation = max_rotation.max(polar(&f).map_or(0.0, |r| r.angle().abs()));
             max_strain = max_strain.max(largest_principal(strain));
         });
+        let truth = truth.and_then(|t| t.tip_displacement());
         let probes = system.probes.iter().map(|probe| {
             let u = probe.mean(&self.u);
-            ProbeResult { name: probe.name.clone(), x: probe.mean(&system.mesh.nodes) + u, u }
+            let truth = truth.filter(|_| probe.edge.as_deref() == Some("right"));
+            ProbeResult { name: probe.name.clone(), x: probe.mean(&system.mesh.nodes) + u, u, truth }
         });
         Solution {
             dofs: system.dofs(),

@@ -53,3 +53,48 @@ pub fn solve_json(args: &[&str]) -> serde_json::Value {
     assert_eq!(output.status.code(), Some(0), "{args:?}: {}", stderr(&output));
     serde_json::from_slice(&output.stdout).unwrap()
 }
+
+/// A row of `tests/data/cantilever.csv`, in units of the length.
+#[derive(Debug)]
+pub struct Row {
+    pub gravity: bool,
+    pub length_over_height: f64,
+    pub alpha: f64,
+    /// Of the load, rad.
+    pub angle: f64,
+    pub elastica: nalgebra::Vector2<f64>,
+    pub reissner: nalgebra::Vector2<f64>,
+    pub reissner_angle: f64,
+}
+
+/// The reference table of clamped beams.
+pub fn cantilever_table() -> Vec<Row> {
+    let text = include_str!("../data/cantilever.csv");
+    text.lines()
+        .filter(|line| !line.starts_with('#'))
+        .skip(1)
+        .map(|line| {
+            let (kind, numbers) = line.split_once(',').unwrap();
+            let v: Vec<f64> = numbers.split(',').map(|n| n.parse().unwrap()).collect();
+            Row {
+                gravity: kind == "gravity",
+                length_over_height: v[0],
+                alpha: v[1],
+                angle: v[2].to_radians(),
+                elastica: nalgebra::Vector2::new(v[3], v[4]),
+                reissner: nalgebra::Vector2::new(v[5], v[6]),
+                reissner_angle: v[7],
+            }
+        })
+        .collect()
+}
+
+/// A cantilever of height 1 and thickness 1 under the tip load α = P L² / (E I), pulled down.
+pub fn cantilever(length_over_height: f64, alpha: f64, set: &[&str]) -> Scene {
+    let length = length_over_height;
+    let force = alpha * 1e6 / 12.0 / (length * length);
+    let mut all = vec![format!("beam.length={length}"), format!("load.0.force=[0,{}]", -force)];
+    all.extend(set.iter().map(|s| (*s).to_owned()));
+    let all: Vec<&str> = all.iter().map(String::as_str).collect();
+    scene_with("elastica", &all)
+}

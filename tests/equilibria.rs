@@ -1,0 +1,225 @@
+//! Exact equilibria: six-node triangles, Newton, certificates, and the numbers they must reach.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use common::{cantilever, cantilever_table, scene, scene_with};
+use nalgebra::Vector2;
+use warpbeam::assembly::System;
+use warpbeam::mesh::Mesh;
+use warpbeam::scene::{Beam, Diagonals, ElementKind, Load, MethodKind, Place, Scene};
+use warpbeam::simulation::{Simulation, Status};
+
+fn solved(scene: &Scene) -> Simulation {
+    let mut simulation = Simulation::new(scene).unwrap();
+    let status = simulation.solve().clone();
+    assert_eq!(status, Status::Converged, "{}: residual {:e}", scene.name, simulation.residual());
+    simulation
+}
+
+fn tip(simulation: &Simulation) -> Vector2<f64> {
+    simulation.solution(None).probes[0].x
+}
+
+/// Every row of the table with T6 20×1, and the slender ones with 40×2.
+#[test]
+fn the_reference_table_is_met() {
+    let mut worst = [0.0f64; 3];
+    for row in cantilever_table() {
+        let moderate = row.length_over_height == 50.0 && row.alpha <= 10.0;
+        for (cells, bound, slot) in
+            [("[20,1]", if moderate { 0.003 } else { 0.01 }, usize::from(moderate)), ("[40,2]", 0.0005, 2)]
+        {
+            if slot == 2 && !moderate {
+                continue;
+            }
+            let length = row.length_over_height;
+            let mut scene = cantilever(length, row.alpha, &[&format!("beam.cells={cells}")]);
+            let direction = Vector2::new(row.angle.cos(), row.angle.sin());
+            // EI = 1e6/12; the weight per length is ρ g with ρ = 1000.
+            let per_length = row.alpha * 1e6 / 12.0 / length.powi(3);
+            scene.loads = if row.gravity {
+                vec![Load::Gravity { acceleration: (direction * per_length / 1000.0).into() }]
+            } else {
+                vec![Load::Force { place: Place::edge("right"), force: (direction * per_length * length).into() }]
+            };
+            let error = (tip(&solved(&scene)) / length - row.reissner).norm();
+            worst[slot] = worst[slot].max(error);
+            assert!(error <= bound, "{cells} {row:?}: {:.4} % of L", 100.0 * error);
+        }
+    }
+    println!(
+        "worst errors, % of L: 20×1 {:.3}, 20×1 slender {:.3}, 40×2 slender {:.4}",
+        100.0 * worst[0],
+        100.0 * worst[1],
+        100.0 * worst[2]
+    );
+}
+
+/// Solves from rest, all of the load at once, within the bounds.
+#[test]
+fn newton_needs_few_solves() {
+    let mut most = [0; 4];
+    for nu in ["0", "0.3", "0.49"] {
+        for (class, lengths, alphas, bound) in [
+            (0, &[10.0, 20.0, 50.0][..], &[0.01, 0.1, 1.0, 3.0, 10.0][..], 9),
+            (1, &[500.0], &[0.01, 0.1, 1.0, 3.0, 10.0], 15),
+            (2, &[10.0, 20.0, 50.0], &[100.0], 40),
+            (3, &[10.0, 20.0, 50.0], &[1000.0], 80),
+        ] {
+            for &length in lengths {
+                for &alpha in alphas {
+                    let scene = cantilever(length, alpha, &[&format!("material.poisson={nu}")]);
+                    let simulation = solved(&scene);
+                    let solves = simulation.iterations();
+                    most[class] = most[class].max(solves);
+                    assert!(solves <= bound, "L/H {length}, α {alpha}, ν {nu}: {solves} solves");
+                    assert_eq!(simulation.certificate().stable, Some(true));
+                }
+            }
+        }
+    }
+    println!("most solves: α ≤ 10 {}, L/H = 500 {}, α = 100 {}, α = 1000 {}", most[0], most[1], most[2], most[3]);
+}
+
+/// The whole box: every case ends certified.
+#[test]
+fn every_case_of_the_box_is_certified() {
+    let mut missed = Vec::new();
+    for length in [5.0, 10.0, 50.0, 500.0] {
+        for nu in ["0", "0.3", "0.49"] {
+            for plane in ["stress", "strain"] {
+                for (element, cells) in [("t3", "[80,4]"), ("t6", "[20,1]")] {
+                    for alpha in [0.01, 1.0, 10.0, 30.0, 100.0, 1000.0] {
+                        let set = [
+                            format!("material.poisson={nu}"),
+                            format!("material.plane={plane}"),
+                            format!("beam.element={element}"),
+                            format!("beam.cells={cells}"),
+                            "solver.max_iterations=500".to_owned(),
+                        ];
+                        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+                        let mut simulation = Simulation::new(&cantilever(length, alpha, &set)).unwrap();
+                        let status = simulation.solve().clone();
+                        assert!(simulation.displacement().iter().all(|u| u.x.is_finite() && u.y.is_finite()));
+                        if status != Status::Converged || simulation.certificate().stable != Some(true) {
+                            missed.push(format!(
+                                "L/H {length} ν {nu} {plane} {element} α {alpha}: {status:?} after {}",
+                                simulation.iterations()
+                            ));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(missed.is_empty(), "{} missed: {missed:#?}", missed.len());
+}
+
+/// An end moment of 2πEI/L closes the beam to a circle.
+#[test]
+fn the_beam_rolls_up_to_a_circle() {
+    let simulation = solved(&scene("roll-up"));
+    let gap = tip(&simulation).norm() / 50.0;
+    assert!(gap < 0.005, "{gap}");
+    assert!(simulation.iterations() <= 30, "{} solves", simulation.iterations());
+    assert_eq!(simulation.certificate().stable, Some(true));
+    println!("gap {:.3} % of L after {} solves", 100.0 * gap, simulation.iterations());
+}
+
+/// Compression through buckling: the side load decides, and the equilibrium found is the buckled, stable one.
+#[test]
+fn the_column_buckles() {
+    let simulation = solved(&scene("column"));
+    assert_eq!(simulation.certificate().stable, Some(true));
+    assert!(tip(&simulation).y > 5.0);
+    let other = solved(&scene_with("column", &["load.0.force=[-700,-2]"]));
+    // The mirror image, but for the mesh's diagonals, which have none.
+    let mirrored = Vector2::new(tip(&simulation).x, -tip(&simulation).y);
+    assert!((tip(&other) - mirrored).norm() < 0.002 * 20.0, "{} {mirrored}", tip(&other));
+    // Without a side load the straight column is an equilibrium, and reported as what it is.
+    let mut straight =
+        Simulation::new(&scene_with("column", &["load.0.force=[-700,0]", "beam.diagonals=same"])).unwrap();
+    straight.solve();
+    let result = (straight.status().clone(), straight.certificate().stable);
+    assert!(matches!(result, (Status::Converged, Some(_))), "{result:?}");
+}
+
+/// ρ says which loads `warped` converges for.
+#[test]
+fn rho_predicts_where_the_warped_iteration_converges() {
+    let (mut below, mut above) = (0, 0);
+    for length in [10.0, 50.0] {
+        for alpha in [0.5, 1.0, 2.0, 2.5, 4.0, 5.0, 7.0, 10.0, 20.0] {
+            let scene = cantilever(length, alpha, &["solver.max_iterations=1000", "solver.tolerance=1e-7"]);
+            let rho = solved(&scene).certificate().fixed_point_rho.unwrap();
+            let mut warped = scene.clone();
+            warped.solver.method = MethodKind::Warped;
+            let mut simulation = Simulation::new(&warped).unwrap();
+            let converged = *simulation.solve() == Status::Converged;
+            assert_eq!(converged, rho < 1.0, "L/H {length}, α {alpha}: ρ = {rho}, {:?}", simulation.status());
+            if rho < 1.0 {
+                below += 1
+            } else {
+                above += 1
+            }
+            // And ρ is the rate at which its steps shrink.
+            if rho < 0.9 {
+                let ratio = simulation.step_ratio().unwrap();
+                assert!((ratio - rho).abs() < 0.2 * rho + 0.05, "α {alpha}: ratio {ratio}, ρ {rho}");
+            }
+        }
+    }
+    assert!(below >= 6 && above >= 6, "{below} below 1, {above} above");
+}
+
+/// A warped result is an exact equilibrium: Newton, from rest, finds the same.
+#[test]
+fn warped_and_newton_agree_where_both_converge() {
+    for id in ["article", "cantilever", "gravity", "bridge", "stretch", "shear"] {
+        let mut newton = scene_with(id, &["solver.tolerance=1e-11", "solver.max_iterations=500"]);
+        let warped = solved(&newton);
+        newton.solver.method = MethodKind::Newton;
+        let newton = solved(&newton);
+        for (a, b) in warped.displacement().iter().zip(newton.displacement()) {
+            assert!((a - b).norm() < 1e-7, "{id}: {a} {b}");
+        }
+        assert!(newton.iterations() < warped.iterations() || id == "stretch", "{id}");
+        assert_eq!(warped.certificate().stable, Some(true));
+    }
+}
+
+/// Cook's membrane on meshes of n × n cells: the middle of the loaded edge rises by 23.96.
+#[test]
+fn cooks_membrane_converges() {
+    let middle = |element: ElementKind, n: u32| {
+        let mut scene = scene_with("cook", &[&format!("mesh.element={}", element.id())]);
+        // A unit square, mapped.
+        let beam = Beam { length: 1.0, height: 1.0, cells: [n, n], element, diagonals: Diagonals::Alternating };
+        let mut mesh = Mesh::beam(&beam).unwrap();
+        for x in &mut mesh.nodes {
+            let (a, b) = (x.x, x.y + 0.5);
+            let (low, high) = (44.0 * a, 44.0 + 16.0 * a);
+            *x = Vector2::new(48.0 * a, low + b * (high - low));
+        }
+        for (from, to) in [("left", "clamp"), ("right", "end")] {
+            let edge = mesh.edges.remove(from).unwrap();
+            mesh.edges.insert(to.to_owned(), edge);
+        }
+        scene.mesh = None;
+        scene.beam = Some(beam);
+        let system = System::with_mesh(&scene, mesh).unwrap();
+        let mut simulation = Simulation::with_system(&scene, system).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        simulation.solution(None).probes[0].u.y
+    };
+    let t3: Vec<f64> = [8, 16, 32, 64].map(|n| middle(ElementKind::T3, n)).to_vec();
+    let t6: Vec<f64> = [4, 8, 16, 32].map(|n| middle(ElementKind::T6, n)).to_vec();
+    println!("Cook's membrane: T3 {t3:?}, T6 {t6:?}");
+    for values in [&t3, &t6] {
+        let errors: Vec<f64> = values.iter().map(|v| (v - 23.96).abs()).collect();
+        assert!(errors.windows(2).all(|w| w[1] < 0.7 * w[0] || w[1] < 0.01), "{values:?}");
+    }
+    assert!((t6[3] - 23.96).abs() < 0.01, "{t6:?}");
+    assert!((t3[3] - 23.96).abs() < 0.15, "{t3:?}");
+}
