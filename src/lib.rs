@@ -26,8 +26,10 @@
 //! | `R`, `S` | polar factors F = R S; R a proper rotation, S symmetric | 2 × 2 |
 //! | `E`, `ν`, `ρ`, `t` | Young's modulus Pa, Poisson ratio, density kg/m³, thickness m | scalars |
 //! | `λ`, `μ` | Lamé constants of the plane problem | Pa |
-//! | `Ke` | linear element stiffness ∫ Bᵀ C B t dA | 6 × 6 for `t3`, N/m |
+//! | `Ke` | linear element stiffness ∫ Bᵀ C B t dA | 6 × 6 (`t3`), 12 × 12 (`t6`), N/m |
 //! | `A` | warped stiffness Σ R Ke Rᵀ | 2n × 2n, sparse, N/m |
+//! | `G` | geometric part of the exact tangent A + G | as `A` |
+//! | `ρ` | error factor of the warped iteration, largest eigenvalue of A⁻¹G in magnitude | scalar |
 //! | `f_ext`, `f_int` | external force, and Σ R Ke (Rᵀ x − X) | n × 2, N |
 //!
 //! # The frame
@@ -37,7 +39,7 @@
 //! ```
 //!
 //! Data flows one way, and the modules say so: [`scene`] → [`mesh`] → [`element`] → [`assembly`] → [`solver`] →
-//! [`method`] → [`simulation`] → the app. Without the feature `app` (on by default) there is no window, no GPU and no
+//! [`method`] → [`simulation`] → [`study`] → the app; [`truth`] stands beside them. Without the feature `app` (on by default) there is no window, no GPU and no
 //! command line in the dependency tree.
 //!
 //! # Sources
@@ -66,4 +68,5 @@ pub mod rotation;
 pub mod scene;
 pub mod simulation;
 pub mod solver;
+pub mod study;
 pub mod truth;

@@ -45,6 +45,17 @@ pub struct Tip {
     pub angle: f64,
 }
 
+/// An equilibrium on the way up from no load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint {
+    /// Share of the load.
+    pub factor: f64,
+    /// The tip.
+    pub tip: Tip,
+    /// Bending moment at the clamp.
+    pub clamp_moment: f64,
+}
+
 /// Pieces of the beam that are shot over separately: each stays well-conditioned under large loads.
 const SEGMENTS: usize = 32;
 /// RK4 steps a piece.
@@ -97,8 +108,9 @@ impl ClampedBeam {
         state
     }
 
-    /// One Newton step of multiple shooting on the unknowns θₖ, Mₖ; returns the scaled size of the step.
-    fn newton_step(&self, unknowns: &mut DVector<f64>, factor: f64) -> Option<f64> {
+    /// One Newton step of multiple shooting on the unknowns θₖ, Mₖ; returns the scaled size of the step, and on which
+    /// side of a critical point the state is.
+    fn newton_step(&self, unknowns: &mut DVector<f64>, factor: f64) -> Option<(f64, bool)> {
         const DIFFERENCE: f64 = 1e-7;
         let scale = self.bending / self.length;
         let n = 2 * SEGMENTS;
@@ -129,50 +141,72 @@ impl ClampedBeam {
                 jacobian[(row, 2 * piece + 3)] = -1.0;
             }
         }
-        let step = jacobian.lu().solve(&residual)?;
+        let lu = jacobian.lu();
+        let step = lu.solve(&residual)?;
         *unknowns -= &step;
         let size = step.amax();
-        size.is_finite().then_some(size)
+        size.is_finite().then_some((size, lu.determinant() > 0.0))
+    }
+
+    /// The equilibria that grow out of the straight beam as the load grows from nothing to `largest` times itself, at
+    /// `points` equally spaced load factors; fewer where they cannot be followed.
+    ///
+    /// The sign of the shooting method's determinant changes where the equilibrium loses its stability: a state on the
+    /// other side of that is not taken, so the path stays the stable one.
+    #[must_use]
+    pub fn path(&self, largest: f64, points: u32) -> Vec<PathPoint> {
+        let scale = self.bending / self.length;
+        let mut unknowns = DVector::zeros(2 * SEGMENTS);
+        let Some((_, side)) = self.newton_step(&mut unknowns, 0.0) else { return Vec::new() };
+        let mut path = Vec::new();
+        let (mut reached, mut step) = (0.0_f64, 1.0 / 16.0_f64);
+        for point in 1..=points {
+            let goal = largest * f64::from(point) / f64::from(points);
+            while reached < goal {
+                let target = (reached + step).min(goal);
+                match self.converge(&unknowns, target, side) {
+                    Some(state) => {
+                        unknowns = state;
+                        reached = target;
+                        step *= 1.5;
+                    }
+                    None => {
+                        step = 0.4 * step.min(goal - reached);
+                        if step < SMALLEST_LOAD_STEP {
+                            return path;
+                        }
+                    }
+                }
+            }
+            let mut tip = Tip { x: Vector2::zeros(), angle: 0.0 };
+            for piece in 0..SEGMENTS {
+                let end = self.shoot(piece, unknowns[2 * piece], unknowns[2 * piece + 1] * scale, goal);
+                tip = Tip { x: tip.x + end.x, angle: end.theta };
+            }
+            path.push(PathPoint { factor: goal, tip, clamp_moment: unknowns[1] * scale });
+        }
+        path
+    }
+
+    /// The equilibrium at a load factor, near `start` and on the same side of a critical point.
+    fn converge(&self, start: &DVector<f64>, factor: f64, side: bool) -> Option<DVector<f64>> {
+        /// Largest change of an angle in a load step, rad: farther away is another equilibrium.
+        const FARTHEST: f64 = 0.2;
+        let mut state = start.clone();
+        for _ in 0..MAX_ITERATIONS {
+            let (size, same_side) = self.newton_step(&mut state, factor).filter(|(size, _)| *size < 1e3)?;
+            if size < 1e-11 {
+                let near = (&state - start).iter().step_by(2).all(|d| d.abs() < FARTHEST);
+                return (near && same_side == side).then_some(state);
+            }
+        }
+        None
     }
 
     /// The tip of the equilibrium that grows out of the straight beam; `None` where it cannot be followed.
     #[must_use]
     pub fn tip(&self) -> Option<Tip> {
-        let mut unknowns = DVector::zeros(2 * SEGMENTS);
-        let (mut reached, mut step) = (0.0_f64, 1.0 / 16.0_f64);
-        while reached < 1.0 {
-            let target = (reached + step).min(1.0);
-            let mut trial = unknowns.clone();
-            let mut converged = false;
-            for _ in 0..MAX_ITERATIONS {
-                match self.newton_step(&mut trial, target) {
-                    // Angles a quarter turn away from the last load step's belong to another equilibrium.
-                    Some(size) if size < 1e-11 => {
-                        converged = (&trial - &unknowns).iter().step_by(2).all(|d| d.abs() < 0.8);
-                        break;
-                    }
-                    Some(size) if size < 1e3 => {}
-                    _ => break,
-                }
-            }
-            if converged {
-                unknowns = trial;
-                reached = target;
-                step *= 1.5;
-            } else {
-                step *= 0.4;
-                if step < SMALLEST_LOAD_STEP {
-                    return None;
-                }
-            }
-        }
-        let scale = self.bending / self.length;
-        let mut tip = Tip { x: Vector2::zeros(), angle: 0.0 };
-        for piece in 0..SEGMENTS {
-            let end = self.shoot(piece, unknowns[2 * piece], unknowns[2 * piece + 1] * scale, 1.0);
-            tip = Tip { x: tip.x + end.x, angle: end.theta };
-        }
-        Some(tip)
+        self.path(1.0, 1).pop().map(|p| p.tip)
     }
 
     /// The same beam without stretch and shear: the elastica.

@@ -35,18 +35,27 @@ fn reactions_balance_the_loads() {
     for id in scene_ids() {
         for entry in METHODS {
             let scene = with_method(scene(id), entry.kind);
-            let simulation = solved(&scene);
+            // Some scenes are there to show what the warped iteration cannot do.
+            let mut simulation = Simulation::new(&scene).unwrap();
+            if *simulation.solve() != Status::Converged {
+                assert_eq!(entry.kind, MethodKind::Warped, "{id}: {:?}", simulation.status());
+                assert!(!["article", "cantilever", "gravity", "bridge", "stretch", "shear"].contains(&id), "{id}");
+                continue;
+            }
             let reaction = simulation.solution(None).reaction;
             let system = simulation.system();
             let total: Vector2<f64> = system.dead_force.iter().sum();
-            let scale = total.norm().max(1e-9);
+            // A moment loads the body too, though its forces cancel.
+            let scale = system.dead_force.iter().map(|f| f.norm()).sum::<f64>()
+                + system.moments.iter().map(|m| m.moment.abs()).sum::<f64>();
             assert!((reaction.force + total).norm() < 1e-6 * scale, "{id}: {:?}", reaction.force);
             if entry.kind == MethodKind::Linear {
                 // Linear theory balances moments about the rest positions; the reaction is about the current ones.
                 continue;
             }
             let arms = system.mesh.nodes.iter().zip(simulation.displacement()).map(|(x, u)| x + u);
-            let moment: f64 = arms.zip(&system.dead_force).map(|(x, f)| x.perp(f)).sum();
+            let dead: f64 = arms.zip(&system.dead_force).map(|(x, f)| x.perp(f)).sum();
+            let moment = dead + system.moments.iter().map(|m| m.moment).sum::<f64>();
             let size = system.mesh.bounds().1.norm();
             assert!((reaction.moment + moment).abs() < 1e-6 * scale * size, "{id}: {} {moment}", reaction.moment);
         }

@@ -10,15 +10,21 @@ use warpbeam::scene::{Scene, registry};
 
 #[test]
 fn every_command_has_help() {
-    for args in [&["--help"][..], &["run", "--help"], &["scenes", "--help"], &["solve", "--help"], &["shot", "--help"]]
-    {
+    for args in [
+        &["--help"][..],
+        &["run", "--help"],
+        &["scenes", "--help"],
+        &["solve", "--help"],
+        &["shot", "--help"],
+        &["curve", "--help"],
+    ] {
         let output = warpbeam(args);
         assert_eq!(output.status.code(), Some(0), "{args:?}");
         let text = stdout(&output);
         assert!(text.contains("Usage: warpbeam"), "{args:?}: {text}");
         assert!(text.lines().all(|line| line.len() < 200));
     }
-    for command in ["run", "scenes", "solve", "shot"] {
+    for command in ["run", "scenes", "solve", "curve", "shot"] {
         assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
     }
     assert!(stdout(&warpbeam(&["solve", "--help"])).contains("Exit codes"));
@@ -294,4 +300,51 @@ fn without_an_adapter_shot_says_what_to_install() {
     let text = stderr(&output);
     assert_eq!(output.status.code(), Some(3), "{text}");
     assert!(text.contains("no usable graphics adapter") && text.contains("mesa-vulkan-drivers"), "{text}");
+}
+
+#[test]
+fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curve.csv");
+    let output = warpbeam(&["curve", "elastica", "--out", path.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    for words in [
+        "off by 3 %",
+        "off by 5 %",
+        "off by 10 %",
+        "linear  at full load",
+        "warped  at",
+        "diverged",
+        "newton  at full load",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let rows: Vec<Vec<f64>> = fs::read_to_string(path)
+        .unwrap()
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|v| v.parse().unwrap()).collect())
+        .collect();
+    // The full load's row is the truth that solve compares with.
+    let full = rows.iter().find(|r| (r[0] - 1.0).abs() < 1e-9).unwrap();
+    let truth = &solve_json(&["elastica"])["probes"][0]["truth_u"];
+    assert!((full[3] - truth[0].as_f64().unwrap()).abs() < 1e-6 && (full[4] - truth[1].as_f64().unwrap()).abs() < 1e-6);
+    let none = warpbeam(&["curve", "shear"]);
+    assert_eq!(none.status.code(), Some(2));
+    assert!(stderr(&none).contains("no truth is known"));
+}
+
+/// Sentences of the physics that the JSON carries: certificate, ρ, truth and error.
+#[test]
+fn json_certifies_its_result() {
+    let json = solve_json(&["elastica"]);
+    assert_eq!(json["stable"], true);
+    assert!(json["fixed_point_rho"].as_f64().unwrap() > 3.5);
+    assert!(json["probes"][0]["error_percent"].as_f64().unwrap() < 0.3);
+    let linear = solve_json(&["elastica", "--set", "solver.method=linear"]);
+    assert!(linear["stable"].is_null() && linear["fixed_point_rho"].is_null());
+    assert!(linear["probes"][0]["error_percent"].as_f64().unwrap() > 100.0);
+    let none = solve_json(&["shear"]);
+    assert!(none["probes"][0]["truth_u"].is_null() && none["probes"][0]["error_percent"].is_null());
 }

@@ -223,3 +223,34 @@ fn cooks_membrane_converges() {
     assert!((t6[3] - 23.96).abs() < 0.01, "{t6:?}");
     assert!((t3[3] - 23.96).abs() < 0.15, "{t3:?}");
 }
+
+/// Out of iterations, Newton leaves the last equilibrium it reached, under the part of the load that has it.
+#[test]
+fn a_failure_keeps_the_last_good_state() {
+    let mut kept = 0;
+    for limit in 1..30 {
+        let set = format!("solver.max_iterations={limit}");
+        let mut simulation = Simulation::new(&scene_with("column", &[&set])).unwrap();
+        let status = simulation.solve().clone();
+        let size = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        assert!(size < 40.0, "after {limit}: {size}");
+        if status != Status::Converged {
+            assert_eq!(simulation.iterations(), limit);
+            assert_eq!(simulation.certificate().stable, Some(true), "after {limit}: not a stable state");
+            kept += 1;
+        }
+    }
+    assert!(kept > 10);
+}
+
+/// A load that is changed under a solved body is followed from there, and ends where a start at rest ends.
+#[test]
+fn a_changed_load_is_followed_from_where_the_body_is() {
+    let mut dragged = solved(&cantilever(20.0, 2.0, &[]));
+    for alpha in [4.0, 30.0, 200.0, 1.0, 50.0] {
+        let scene = cantilever(20.0, alpha, &[]);
+        dragged.change_scene(&scene).unwrap();
+        assert_eq!(*dragged.solve(), Status::Converged);
+        assert!((tip(&dragged) - tip(&solved(&scene))).norm() < 1e-6, "α {alpha}");
+    }
+}

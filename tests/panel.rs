@@ -65,6 +65,10 @@ fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
     harness.drag_at(at(0.4));
     harness.run();
     harness.hover_at(at(0.46));
+    harness.step();
+    assert!(harness.state().iterates(), "the beam did not start to move");
+    let moving = harness.get_by_role_and_label(Role::Slider, "Force").rect();
+    assert_eq!(moving, slider, "the slider moves away under the pointer");
     harness.run();
     harness.drop_at(at(0.46));
     harness.run();
@@ -115,6 +119,7 @@ fn values_out_of_range_are_refused_with_a_message() {
         ("Force", "lots", "got \u{201c}lots\u{201d}"),
         ("Direction", "400", "expected -180 to 180 °, got 400"),
         ("Gravity", "1e9", "m/s², got 1e9"),
+        ("Moment", "1e30", "N m, got 1e30"),
         ("Young E", "0", "Pa, got 0"),
         ("Young E", "nan", "got \u{201c}nan\u{201d}"),
         ("Poisson ν", "0.7", "expected -0.99 to 0.5, got 0.7"),
@@ -151,6 +156,7 @@ fn every_number_has_a_unit_and_a_tooltip() {
         ("Force", " N", "12 kN"),
         ("Direction", "°", "90° up"),
         ("Gravity", "m/s²", "9.81 on earth"),
+        ("Moment", "N m", "rolls a beam up once"),
         ("Young E", " Pa", "stiffness"),
         ("Poisson ν", "", "thins"),
         ("Density ρ", "kg/m³", "gravity reads it"),
@@ -306,4 +312,44 @@ fn at_rest_nothing_is_redrawn() {
     assert!(!harness.state().iterates());
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
     assert!(delay > std::time::Duration::from_secs(3600), "{delay:?}");
+}
+
+/// What the window says of a result: certificate, ρ in words, the error against the exact beam, the load curve.
+#[test]
+fn results_are_certified_and_compared_with_the_truth() {
+    let mut harness = harness("elastica");
+    let json = solve_json(&["elastica"]);
+    assert!(harness.query_by_label("stable").is_some());
+    let words = "The warped iteration cannot converge here: ρ = 4.039 > 1.";
+    assert!(harness.query_by_label(words).is_some());
+    assert!((json["fixed_point_rho"].as_f64().unwrap() - 4.039).abs() < 1e-3);
+    let error = json["probes"][0]["error_percent"].as_f64().unwrap();
+    let shown = format!("{:.4} % of", (error * 1e5).round() / 1e5);
+    assert!(harness.query_by_label_contains(&shown[..5]).is_some(), "{shown}");
+    let before = harness.state().view_rect();
+    harness.key_press(Key::L);
+    harness.run();
+    assert!(harness.state().view_rect().height() < before.height() - 200.0, "no room for the load curve");
+    type_into(&mut harness, "Moment", "500");
+    assert!(harness.state().scene().loads.contains(&Load::Moment { edge: "right".to_owned(), moment: 500.0 }));
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+}
+
+#[test]
+fn every_scene_and_element_can_be_chosen() {
+    let mut harness = harness("article");
+    for id in common::scene_ids() {
+        harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, id).click();
+        harness.run();
+        assert_eq!(harness.state().scene().name, scene(id).name);
+        assert_eq!(*harness.state().simulation().status(), Status::Converged, "{id}");
+        for element in ["t3", "t6"] {
+            harness.get_by_label(element).click();
+            harness.run();
+            assert_eq!(harness.state().scene().element().id(), element, "{id}");
+            assert_ne!(*harness.state().simulation().status(), Status::Running, "{id} {element}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! A mesh as points, triangles and lines to draw, whatever its elements: curved sides become polylines.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use nalgebra::Vector2;
 
@@ -24,8 +24,8 @@ pub(super) struct Drawing {
     value_of: Vec<u32>,
     /// Element sides.
     pub lines: Vec<[u32; 2]>,
-    /// The sides around the body, counter-clockwise.
-    pub outline: Vec<[u32; 2]>,
+    /// The lines around the body, each closed, counter-clockwise.
+    pub outline: Vec<Vec<u32>>,
 }
 
 fn key(side: &Segment) -> (u32, u32) {
@@ -37,6 +37,8 @@ impl Drawing {
         let mut drawing = Self { stride: mesh.element.nodes(), ..Self::default() };
         let boundary: HashSet<_> = mesh.outline().iter().map(key).collect();
         let mut drawn = HashSet::new();
+        // Every boundary side's end corner and points, by its first corner.
+        let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();
         if mesh.element == ElementKind::T3 {
             drawing.stride = 1;
             drawing.nodes = (0..mesh.nodes.len() as u32).collect();
@@ -53,9 +55,22 @@ impl Drawing {
                     drawing.lines.extend(pieces());
                 }
                 if boundary.contains(&key(side)) {
-                    drawing.outline.extend(pieces());
+                    around.entry(side.ends[0]).or_default().push((side.ends[1], points.clone()));
                 }
             }
+        }
+        while let Some((&first, _)) = around.first_key_value() {
+            let mut line = Vec::new();
+            let mut corner = first;
+            while let Some(sides) = around.get_mut(&corner) {
+                let Some((next, points)) = sides.pop() else { break };
+                if sides.is_empty() {
+                    around.remove(&corner);
+                }
+                line.extend(points);
+                corner = next;
+            }
+            drawing.outline.push(line);
         }
         drawing
     }
@@ -143,8 +158,9 @@ mod tests {
                 .inspect(|area| assert!(*area > 0.0))
                 .sum();
             assert!((area - 6.0).abs() < 1e-12, "{element:?}: {area}");
-            let around: f64 =
-                drawing.outline.iter().map(|l| l.map(|p| points[p as usize])).map(|[a, b]| (b - a).norm()).sum();
+            assert_eq!(drawing.outline.len(), 1, "{element:?}: one line around");
+            let line: Vec<_> = drawing.outline[0].iter().map(|&p| points[p as usize]).collect();
+            let around: f64 = line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
             assert!((around - 10.0).abs() < 1e-12, "{element:?}: {around}");
             assert_eq!(drawing.triangles.len(), drawing.value_of.len());
         }

@@ -65,7 +65,7 @@ impl NumberField {
                 .speed(if self.whole { 0.1 } else { 0.005 * value.abs().max(*self.slider.end() * 1e-3) })
                 .suffix(suffix)
                 .update_while_editing(false)
-                .custom_formatter(|v, _| number(v))
+                .custom_formatter(|v, _| format::editable(v))
                 .custom_parser(|text| {
                     let parsed = format::parse(text, self.limit.unit).filter(|v| v.is_finite());
                     if parsed.is_none() {

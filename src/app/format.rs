@@ -5,6 +5,13 @@ pub(super) fn short(value: f64) -> String {
     significant(value, 4)
 }
 
+/// As many digits as fit a field of the panel.
+pub(super) fn editable(value: f64) -> String {
+    const FITS: usize = 9;
+    let exact = crate::scene::limits::number(value);
+    if exact.len() <= FITS { exact } else { significant(value, 6) }
+}
+
 /// `digits` significant digits, trailing zeros dropped.
 fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
@@ -72,6 +79,15 @@ mod tests {
             (226_993.0, "227000"),
         ] {
             assert_eq!(short(value), text);
+        }
+    }
+
+    #[test]
+    fn fields_show_numbers_that_fit() {
+        for (value, text) in
+            [(1e6, "1000000"), (1000.0 / 3.0, "333.333"), (-0.1, "-0.1"), (2.0e-11 / 3.0, "6.66667e-12")]
+        {
+            assert_eq!(editable(value), text);
         }
     }
 

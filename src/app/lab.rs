@@ -7,16 +7,21 @@ use nalgebra::Vector2;
 
 use super::drawing::Drawing;
 use super::panel::{self, Action, PanelState, Shown, ViewOptions};
-use super::{help, overlay};
+use super::{help, overlay, plot};
 use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, MethodKind, Scene, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
+use crate::study::LoadCurve;
+use crate::truth::Truth;
 
 /// Width of the panel, points.
 pub const PANEL_WIDTH: f32 = 324.0;
 
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
-const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 120.0 };
+const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
+
+/// Height of the load curve's panel, points.
+const CURVE_HEIGHT: f32 = 250.0;
 
 /// How long a message stays.
 const TOAST: Duration = Duration::from_secs(4);
@@ -47,6 +52,34 @@ pub struct Lab {
     toast: Option<(String, f64)>,
     drawing: Drawing,
     shape: Shape,
+    /// What is known of the scene without a mesh; found when the body has come to rest.
+    truth: Known<Vector2<f64>>,
+    curve: Known<LoadCurve>,
+}
+
+/// Something that takes a while to find, and may not exist.
+#[derive(Debug, Default)]
+enum Known<T> {
+    #[default]
+    Unasked,
+    None,
+    Some(T),
+}
+
+impl<T> Known<T> {
+    fn get_or_find(&mut self, find: impl FnOnce() -> Option<T>) -> Option<&T> {
+        if let Self::Unasked = self {
+            *self = find().map_or(Self::None, Self::Some);
+        }
+        self.get()
+    }
+
+    fn get(&self) -> Option<&T> {
+        match self {
+            Self::Some(value) => Some(value),
+            Self::Unasked | Self::None => None,
+        }
+    }
 }
 
 /// What is drawn of the body at present, kept between frames.
@@ -81,6 +114,8 @@ impl Lab {
             toast: None,
             drawing,
             shape: Shape::default(),
+            truth: Known::Unasked,
+            curve: Known::Unasked,
         };
         lab.solve_linear();
         lab
@@ -94,6 +129,11 @@ impl Lab {
     /// Shows or hides the panel.
     pub fn set_panel(&mut self, shown: bool) {
         self.view.panel = shown;
+    }
+
+    /// Shows or hides the load curve.
+    pub fn set_curve(&mut self, shown: bool) {
+        self.view.curve = shown;
     }
 
     /// Shows or hides the outlines at rest and of the linear solution.
@@ -217,8 +257,10 @@ impl Lab {
     pub fn ui(&mut self, ui: &mut Ui, body: Option<TextureId>) -> Vec<Request> {
         Self::style(ui.ctx());
         let mut actions = Vec::new();
+        self.find_truth();
         if self.view.panel {
             let shown = Shown {
+                truth: self.truth.get().copied(),
                 scene: &self.scene,
                 scene_name: &self.source.name,
                 simulation: &self.simulation,
@@ -233,12 +275,28 @@ impl Lab {
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
+        if self.view.curve {
+            let panel = Panel::bottom("curve").exact_size(CURVE_HEIGHT).resizable(false);
+            panel.show(ui, |ui| plot::show(ui, self.curve.get()));
+        }
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, body));
         help::show(ui.ctx(), &mut self.view.help);
         if self.iterates() {
             ui.ctx().request_repaint();
         }
         requests
+    }
+
+    /// Looks for what is known of the scene without a mesh, once the body is at rest: a dragged slider need not wait.
+    fn find_truth(&mut self) {
+        if self.iterates() {
+            return;
+        }
+        let scene = &self.scene;
+        self.truth.get_or_find(|| Truth::of(scene)?.tip_displacement());
+        if self.view.curve {
+            self.curve.get_or_find(|| LoadCurve::new(scene));
+        }
     }
 
     fn body_view(&mut self, ui: &mut Ui, body: Option<TextureId>) {
@@ -329,6 +387,7 @@ impl Lab {
                 Key::Num2 => self.color_with(Field::EnergyDensity),
                 Key::Num3 => self.color_with(Field::LargestStrain),
                 Key::Num4 => self.color_with(Field::RotationAngle),
+                Key::L => self.view.curve ^= true,
                 Key::P => self.view.panel ^= true,
                 Key::T => actions.push(Action::ToggleTheme),
                 Key::S => actions.push(Action::Screenshot),
@@ -382,6 +441,8 @@ impl Lab {
             self.drawing = Drawing::new(&self.simulation.system().mesh);
         }
         self.scene = scene;
+        self.truth = Known::Unasked;
+        self.curve = Known::Unasked;
         self.solve_linear();
         Ok(())
     }

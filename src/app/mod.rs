@@ -12,6 +12,7 @@ mod help;
 pub mod lab;
 mod overlay;
 mod panel;
+mod plot;
 mod shot;
 mod stage;
 mod window;

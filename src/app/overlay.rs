@@ -102,9 +102,19 @@ pub(super) fn paint(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals)
     let outline = system.mesh.outline();
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
         for line in &lab.drawing().outline {
-            let [a, b] = line.map(|p| lab.drawing().point(p, place));
-            if let Some(segment) = projection.segment(a, b) {
-                painter.line_segment(segment, stroke);
+            // Pieces of less than this fade in the antialiasing; they are joined to the next.
+            const SHORTEST: f64 = 2.0;
+            let mut points = line.iter().map(|&p| lab.drawing().point(p, place));
+            let Some(mut from) = points.next() else { continue };
+            let mut points = points.peekable();
+            while let Some(to) = points.next() {
+                let long = (to - from).norm() * projection.camera.scale >= SHORTEST;
+                if long || points.peek().is_none() {
+                    if let Some(segment) = projection.segment(from, to) {
+                        painter.line_segment(segment, stroke);
+                    }
+                    from = to;
+                }
             }
         }
     };
@@ -132,7 +142,7 @@ fn supports(painter: &Painter, projection: &Projection, lab: &Lab, outline: &[Se
     let held = |n: u32| [0, 1].map(|axis| pattern.is_held(2 * n as usize + axis));
     let stroke = Stroke::new(1.5, palette.support);
     let mut drawn = vec![false; lab.positions().len()];
-    for Segment { ends: [a, b], .. } in outline {
+    for Segment { ends: [a, b], middle } in outline {
         let both = [0, 1].map(|axis| held(*a)[axis] && held(*b)[axis]);
         if both == [false, false] {
             continue;
@@ -147,6 +157,9 @@ fn supports(painter: &Painter, projection: &Projection, lab: &Lab, outline: &[Se
         if both == [true, true] {
             drawn[*a as usize] = true;
             drawn[*b as usize] = true;
+            if let Some(middle) = middle {
+                drawn[*middle as usize] = true;
+            }
             painter.line_segment([p, q], Stroke::new(2.5, palette.support));
             let strokes = ((q - p).length() / HATCH).ceil().clamp(1.0, 500.0);
             for i in 0..strokes as u32 {

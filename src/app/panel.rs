@@ -1,10 +1,11 @@
 //! The panel: parameters in, actions out. It never touches the simulation.
 
 use egui::{Button, ComboBox, Grid, RichText, ScrollArea, Ui};
+use nalgebra::Vector2;
 
 use super::field::{Messages, NumberField, show_message};
 use super::format;
-use crate::method::METHODS;
+use crate::method::{METHODS, rho_words};
 use crate::scene::{ElementKind, Load, Place, Plane, Scene, limits, registry};
 use crate::simulation::{Field, Simulation, Status};
 
@@ -14,6 +15,8 @@ pub(super) struct Shown<'a> {
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
     pub running: bool,
+    /// True displacement of the right edge, m, where one is known.
+    pub truth: Option<Vector2<f64>>,
     pub adapter: &'a str,
 }
 
@@ -49,6 +52,7 @@ pub(super) struct ViewOptions {
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
+    pub curve: bool,
     pub panel: bool,
     pub help: bool,
 }
@@ -61,6 +65,7 @@ impl Default for ViewOptions {
             wireframe: true,
             rest_outline: true,
             ghost: true,
+            curve: false,
             panel: true,
             help: false,
         }
@@ -90,22 +95,26 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, view:
     let mut actions = Vec::new();
     // Always visible: in a low window one must see that there is more.
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
-    ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-        ui.add_space(4.0);
-        scene_picker(ui, shown, &mut actions);
-        controls(ui, shown, &mut actions);
-        result(ui, shown);
-        section(ui, "Load");
-        load(ui, shown, state, &mut actions);
-        section(ui, "Material");
-        material(ui, shown.scene, state, &mut actions);
-        section(ui, "Mesh and method");
-        mesh_and_method(ui, shown.scene, state, &mut actions);
-        section(ui, "View");
-        view_options(ui, shown, state, view, &mut actions);
-        ui.separator();
-        ui.add(egui::Label::new(RichText::new(shown.adapter).small().weak()).wrap());
-    });
+    ScrollArea::vertical()
+        .auto_shrink([false, false])
+        .scroll_bar_visibility(egui::scroll_area::ScrollBarVisibility::AlwaysVisible)
+        .show(ui, |ui| {
+            ui.add_space(4.0);
+            scene_picker(ui, shown, &mut actions);
+            controls(ui, shown, &mut actions);
+            section(ui, "Load");
+            load(ui, shown, state, &mut actions);
+            moment(ui, shown, state, &mut actions);
+            result(ui, shown);
+            section(ui, "Material");
+            material(ui, shown.scene, state, &mut actions);
+            section(ui, "Mesh and method");
+            mesh_and_method(ui, shown.scene, state, &mut actions);
+            section(ui, "View");
+            view_options(ui, shown, state, view, &mut actions);
+            ui.separator();
+            ui.add(egui::Label::new(RichText::new(shown.adapter).small().weak()).wrap());
+        });
     actions
 }
 
@@ -120,6 +129,7 @@ fn scene_picker(ui: &mut Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
         ComboBox::from_id_salt("scene")
             .selected_text(&shown.scene.name)
             .width(ui.available_width())
+            .height(480.0)
             .show_ui(ui, |ui| {
                 for built_in in registry::BUILT_IN {
                     let selected = built_in.id == shown.scene_name;
@@ -170,12 +180,36 @@ pub(super) fn status_words(shown_status: &Status, running: bool) -> (String, boo
     }
 }
 
+/// Room for three lines of status, points.
+const STATUS_HEIGHT: f32 = 50.0;
+/// In place of a number that is not known.
+const UNKNOWN: &str = "\u{2013}";
+
+/// The error of the probe on the right edge against the truth.
+fn tip_error(shown: &Shown<'_>) -> Option<String> {
+    let truth = shown.truth.filter(|t| t.norm() > 0.0)?;
+    let simulation = shown.simulation;
+    let probe = simulation.system().probes.iter().find(|p| p.edge.as_deref() == Some("right"))?;
+    let percent = 100.0 * (probe.mean(simulation.displacement()) - truth).norm() / truth.norm();
+    Some(format!("{} % of {} m", format::short(percent), format::short(truth.norm())))
+}
+
+/// With a capital and a full stop.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
 fn result(ui: &mut Ui, shown: &Shown<'_>) {
     let simulation = shown.simulation;
     section(ui, "Result");
     let (words, bad) = status_words(simulation.status(), shown.running);
     let color = if bad { ui.visuals().error_fg_color } else { ui.visuals().strong_text_color() };
-    ui.add(egui::Label::new(RichText::new(words).color(color)).wrap());
+    // Nothing here may change its height: a slider further down would move away under the pointer that drags it.
+    ui.allocate_ui(egui::vec2(ui.available_width(), STATUS_HEIGHT), |ui| {
+        ui.set_min_height(STATUS_HEIGHT);
+        ui.add(egui::Label::new(RichText::new(words).color(color)).wrap());
+    });
     let time = simulation.last_frame();
     let us = |d: std::time::Duration| format!("{:.0} µs", d.as_secs_f64() * 1e6);
     Grid::new("result").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
@@ -184,13 +218,12 @@ fn result(ui: &mut Ui, shown: &Shown<'_>) {
             ui.monospace(value).on_hover_text(tip);
             ui.end_row();
         };
-        row("Iterations", simulation.iterations().to_string(), "Solves since the last change");
         row(
-            "Residual",
-            format!("{:.2e}", simulation.residual()),
-            "Out-of-balance force over the sum of the elements' absolute forces",
+            "Iterations",
+            format!("{}, residual {:.2e}", simulation.iterations(), simulation.residual()),
+            "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
         );
-        for probe in simulation.system().probes.iter().take(2) {
+        for probe in simulation.system().probes.iter().take(1) {
             let u = probe.mean(simulation.displacement());
             // Beside a component of ordinary size, rounding is no number to show.
             let [x, y] = [u.x, u.y].map(|v| if v.abs() < 1e-12 * u.norm() { 0.0 } else { v });
@@ -200,9 +233,25 @@ fn result(ui: &mut Ui, shown: &Shown<'_>) {
                 "Displacement of the probe",
             );
         }
-        row("Unknowns", simulation.system().dofs().to_string(), "Free displacement components");
-        row("Frame", us(time.total()), "Time of the last iteration");
+        row(
+            "Error",
+            tip_error(shown).unwrap_or_else(|| UNKNOWN.to_owned()),
+            "Distance from the exact beam's tip (it stretches and shears too), over its displacement; known for cantilevers",
+        );
+        let (factor, steps) = simulation.load_stepping();
+        let percent = format::short(100.0 * factor);
+        row("Load steps", format!("{steps}, at {percent} % of the load"), "Parts in which the load is put on");
+        let certified = simulation.certificate().stable.filter(|_| *simulation.status() == Status::Converged);
+        let word = certified.map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
+        row("Equilibrium", word.to_owned(), "Certified: whether the exact tangent A + G is positive definite");
+        let unknowns = simulation.system().dofs();
+        row("Frame", format!("{}, {unknowns} unknowns", us(time.total())), "Time of the last iteration");
     });
+    if let Some(rho) = simulation.certificate().fixed_point_rho {
+        let words = RichText::new(sentence(&rho_words(rho))).small();
+        ui.add(egui::Label::new(words).wrap())
+            .on_hover_text("ρ = |λ|max(A⁻¹G), the error factor of the warped iteration");
+    }
     let stages = [
         ("rotate", time.rotate, "Element maps and polar decompositions"),
         ("assemble", time.assemble, "Stiffness R K Rᵀ, forces, residual"),
@@ -293,6 +342,40 @@ fn load(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Ve
     if let Some(new) = field.show(ui, &mut state.messages, magnitude) {
         state.gravity_direction = Some(direction);
         actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
+    }
+}
+
+/// The moment on the right edge, or on whichever edge has one.
+fn moment(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let current = shown.scene.loads.iter().find_map(|l| match l {
+        Load::Moment { moment, .. } => Some(*moment),
+        _ => None,
+    });
+    // What rolls the rest shape up once, rounded up: 2πEI/L.
+    let (low, high) = shown.simulation.system().mesh.bounds();
+    let (length, height) = ((high - low).max(), (high - low).min());
+    let material = &shown.scene.material;
+    let circle = std::f64::consts::TAU * material.young * material.thickness * height.powi(3) / (12.0 * length);
+    let largest = 10f64.powf(circle.clamp(1e-6, 1e14).log10().ceil());
+    let field = NumberField {
+        label: "Moment",
+        tooltip: "Moment on the right edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
+        limit: limits::MOMENT,
+        slider: -largest..=largest,
+        logarithmic: Some(1e-4 * largest),
+        whole: false,
+    };
+    if let Some(new) = field.show(ui, &mut state.messages, current.unwrap_or(0.0)) {
+        let mut scene = Box::new(shown.scene.clone());
+        let first = scene.loads.iter_mut().find_map(|l| match l {
+            Load::Moment { moment, .. } => Some(moment),
+            _ => None,
+        });
+        match first {
+            Some(moment) => *moment = new,
+            None => scene.loads.push(Load::Moment { edge: "right".to_owned(), moment: new }),
+        }
+        actions.push(Action::Edit("Moment", scene));
     }
 }
 
@@ -529,6 +612,9 @@ fn view_options(
             .clicked()
         {
             actions.push(Action::Copy);
+        }
+        if ui.selectable_label(view.curve, "Curve").on_hover_text("Load against deflection (L)").clicked() {
+            view.curve ^= true;
         }
         if ui.button("Help").on_hover_text("Keys and mouse (F1)").clicked() {
             view.help = true;

@@ -21,13 +21,15 @@ pub struct ShotOptions {
     pub size: [u32; 2],
     /// Whether the panel is in it.
     pub panel: bool,
+    /// Whether the load curve is.
+    pub curve: bool,
     /// Light or dark.
     pub theme: ThemeChoice,
 }
 
 impl Default for ShotOptions {
     fn default() -> Self {
-        Self { size: [1280, 800], panel: true, theme: ThemeChoice::default() }
+        Self { size: [1280, 800], panel: true, curve: false, theme: ThemeChoice::default() }
     }
 }
 
@@ -46,6 +48,7 @@ pub fn shot(
     let mut lab = Lab::new(source, scene, simulation);
     lab.set_adapter(gpu.describe());
     lab.set_panel(options.panel);
+    lab.set_curve(options.curve);
     lab.solve();
     picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?.write_png(output)?;
     Ok(lab.simulation().status().clone())

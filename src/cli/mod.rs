@@ -1,4 +1,4 @@
-//! The commands: `run`, `scenes`, `solve`, `shot`.
+//! The commands: `run`, `scenes`, `solve`, `curve`, `shot`.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge, 2 bad input or usage, 3 no graphics adapter.
 
@@ -12,6 +12,7 @@ use crate::export::{self, ExportError, Format};
 use crate::render::RenderError;
 use crate::scene::{self, Scene, SceneError, registry};
 use crate::simulation::{Simulation, SimulationError, Status};
+use crate::study::LoadCurve;
 use crate::truth::Truth;
 
 mod report;
@@ -61,6 +62,15 @@ enum Command {
         #[arg(long, value_name = "FILE.csv|.vtu")]
         out: Option<PathBuf>,
     },
+    /// Print load against deflection of a cantilever: linear theory, the truth, every method, and where linear theory
+    /// leaves the truth by 3, 5 and 10 percent.
+    Curve {
+        #[command(flatten)]
+        scene: RequiredSceneArgs,
+        /// Also write the curve as a table.
+        #[arg(long, value_name = "FILE.csv")]
+        out: Option<PathBuf>,
+    },
     /// Draw the picture the window shows into a PNG file, without a window.
     #[command(after_help = EXIT_CODES)]
     Shot {
@@ -75,6 +85,9 @@ enum Command {
         /// Only the view, without the panel.
         #[arg(long)]
         no_panel: bool,
+        /// With the load–deflection curve.
+        #[arg(long)]
+        curve: bool,
         /// Light or dark.
         #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
         theme: app::ThemeChoice,
@@ -124,6 +137,10 @@ enum CliError {
     Scene(#[from] SceneError),
     #[error("{scene}: {error}")]
     Simulation { scene: String, error: SimulationError },
+    #[error(
+        "{0}: expected a beam clamped left and loaded on its right edge or by its weight; no truth is known for this scene"
+    )]
+    NoTruth(String),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error(transparent)]
@@ -157,8 +174,9 @@ pub fn main() -> ExitCode {
             Ok(ExitCode::SUCCESS)
         }
         Command::Solve { scene, json, out } => solve(&scene.into(), json, out.as_deref()),
-        Command::Shot { scene, output, size, no_panel, theme } => {
-            shot(scene.into(), &output, &app::ShotOptions { size, panel: !no_panel, theme })
+        Command::Curve { scene, out } => curve(&scene.into(), out.as_deref()),
+        Command::Shot { scene, output, size, no_panel, curve, theme } => {
+            shot(scene.into(), &output, &app::ShotOptions { size, panel: !no_panel, curve, theme })
         }
     };
     result.unwrap_or_else(|error| {
@@ -199,6 +217,17 @@ fn solve(source: &scene::Source, json: bool, out: Option<&std::path::Path>) -> R
     let solution = simulation.solution(Truth::of(&scene).as_ref());
     report::print(&if json { report::json(&scene, &solution) } else { report::text(&scene, &solution) });
     Ok(exit_code(&status))
+}
+
+fn curve(source: &scene::Source, out: Option<&std::path::Path>) -> Result<ExitCode, CliError> {
+    let (scene, _) = simulate(source)?;
+    let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoTruth(source.name.clone()))?;
+    if let Some(path) = out {
+        let failed = |source| ExportError::Write { path: path.display().to_string(), source };
+        std::fs::write(path, report::curve_table(&curve)).map_err(failed)?;
+    }
+    report::print(&report::curve(&scene, &curve));
+    Ok(ExitCode::SUCCESS)
 }
 
 fn shot(source: scene::Source, output: &std::path::Path, options: &app::ShotOptions) -> Result<ExitCode, CliError> {

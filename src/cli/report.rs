@@ -6,8 +6,10 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
+use crate::method::rho_words;
 use crate::scene::{Scene, registry};
 use crate::simulation::{Certificate, Solution, Status};
+use crate::study::LoadCurve;
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
 pub(super) fn print(text: &str) {
@@ -50,8 +52,7 @@ pub(super) fn text(scene: &Scene, solution: &Solution) -> String {
         let _ = writeln!(text, "  this equilibrium is unstable: the exact tangent is not positive definite");
     }
     if let Some(rho) = fixed_point_rho {
-        let verdict = if rho < 1.0 { "can converge here" } else { "cannot converge here" };
-        let _ = writeln!(text, "the warped iteration {verdict}: ρ = {rho:.3}");
+        let _ = writeln!(text, "{}", rho_words(rho));
     }
     for probe in &solution.probes {
         let _ = writeln!(
@@ -88,6 +89,66 @@ pub(super) fn text(scene: &Scene, solution: &Solution) -> String {
         microseconds(time.factorize),
         microseconds(time.solve)
     );
+    text
+}
+
+/// A load–deflection curve for people.
+pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
+    let mut text = format!("{}: tip displacement, m\n\n", scene.name);
+    let _ =
+        writeln!(text, "  load   linear theory            exact beam               linear error   tip turn   strain");
+    for sample in curve.samples.iter().step_by(5).skip(1) {
+        let _ = writeln!(
+            text,
+            "{:5.1} %  ({:9.4}, {:9.4})   ({:9.4}, {:9.4})   {:9.2} %   {:7.2}°   {:.5}",
+            100.0 * sample.factor,
+            sample.linear.x,
+            sample.linear.y,
+            sample.truth.x,
+            sample.truth.y,
+            sample.linear_error_percent(),
+            sample.rotation.to_degrees(),
+            sample.strain
+        );
+    }
+    text.push('\n');
+    for limit in &curve.limits {
+        let _ = writeln!(
+            text,
+            "linear theory is off by {} % at {:.1} % of the load: the tip has turned by {:.1}°, the largest strain is {:.2} %",
+            limit.percent,
+            100.0 * limit.at.factor,
+            limit.at.rotation.to_degrees().abs(),
+            100.0 * limit.at.strain
+        );
+    }
+    text.push('\n');
+    for point in &curve.methods {
+        let word = point.status.id().replace('_', " ");
+        let _ =
+            writeln!(text, "{:<7} at full load: ({:.4}, {:.4}) m, {word}", point.method.id(), point.tip.x, point.tip.y);
+    }
+    text
+}
+
+/// A load–deflection curve as CSV.
+pub(super) fn curve_table(curve: &LoadCurve) -> String {
+    let mut text =
+        String::from("load_factor,linear_x,linear_y,truth_x,truth_y,linear_error_percent,tip_rotation_deg,strain\n");
+    for s in &curve.samples {
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{},{},{},{}",
+            s.factor,
+            s.linear.x,
+            s.linear.y,
+            s.truth.x,
+            s.truth.y,
+            s.linear_error_percent(),
+            s.rotation.to_degrees(),
+            s.strain
+        );
+    }
     text
 }
 

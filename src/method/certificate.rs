@@ -28,6 +28,16 @@ pub fn is_stable(system: &System, u: &[Vector2<f64>], r: &[Rotation], workspace:
     workspace.factor.factorize(&workspace.values).is_ok()
 }
 
+/// What ρ means, in words.
+#[must_use]
+pub fn rho_words(rho: f64) -> String {
+    if rho < 1.0 {
+        format!("the warped iteration converges near here: ρ = {rho:.3} < 1")
+    } else {
+        format!("the warped iteration cannot converge here: ρ = {rho:.3} > 1")
+    }
+}
+
 /// Lanczos steps: the extreme eigenvalue is right to a few digits long before.
 const LANCZOS_STEPS: usize = 24;
 

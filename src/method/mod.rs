@@ -18,7 +18,7 @@ mod newton;
 mod status;
 mod warped;
 
-pub use certificate::{fixed_point_rho, is_stable};
+pub use certificate::{fixed_point_rho, is_stable, rho_words};
 pub(crate) use frame::timed;
 pub use frame::{Frame, FrameError, Profile, Workspace};
 pub use status::{Reason, Status};
@@ -100,6 +100,9 @@ pub trait Method: std::fmt::Debug + Send {
 
     /// Judges the state in `frame`, whose relative residual at the present load factor is `residual`.
     fn judge(&mut self, frame: &mut Frame<'_>, residual: f64, tolerance: f64) -> Verdict;
+
+    /// Out of iterations: leaves the best state there is in `u`.
+    fn stop(&mut self, _: &mut [Vector2<f64>]) {}
 
     /// What to do where a frame gave no state; the displacement is the one before.
     fn recover(&mut self, _: &mut Frame<'_>, error: FrameError) -> Verdict {

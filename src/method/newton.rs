@@ -89,11 +89,21 @@ impl Newton {
 
     /// Back to the last equilibrium, with less load; or, if that was hardly any, to descent.
     fn give_up_load_step(&mut self, frame: &mut Frame<'_>) -> Verdict {
-        frame.u.copy_from_slice(&self.base);
+        self.restore(frame.u);
         self.load_step = SHRINK * (self.target - self.reached);
         self.descends = self.load_step < SMALLEST_LOAD_STEP;
         self.begin_load_step();
         Verdict::Changed
+    }
+
+    /// The last equilibrium: of no load that is the body at rest, wherever the iteration started.
+    fn restore(&mut self, u: &mut [Vector2<f64>]) {
+        if self.reached == 0.0 {
+            self.base.fill(Vector2::zeros());
+        }
+        if !self.base.is_empty() {
+            u.copy_from_slice(&self.base);
+        }
     }
 
     fn solve_descending(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
@@ -221,6 +231,13 @@ impl Method for Newton {
             self.steps > 1 && (too_long || self.worse >= PATIENCE || farthest(frame.system, frame.u) > LONGEST_STEP);
         let late = self.steps >= MAX_STEPS + if residual < CLOSE { LAST_STEPS } else { 0 };
         if late || hopeless { self.give_up_load_step(frame) } else { Verdict::Continue }
+    }
+
+    fn stop(&mut self, u: &mut [Vector2<f64>]) {
+        // Descent only ever improves on what it started from.
+        if !self.descends {
+            self.restore(u);
+        }
     }
 
     fn recover(&mut self, frame: &mut Frame<'_>, error: FrameError) -> Verdict {

@@ -215,6 +215,8 @@ impl Simulation {
         }
         if self.status == Status::Running && self.iterations >= self.max_iterations {
             self.status = Reason::IterationLimit(self.max_iterations).status();
+            self.method.stop(&mut self.u);
+            self.measure(profile);
         }
         if self.status != Status::Running {
             self.certify();

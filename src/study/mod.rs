@@ -1,0 +1,5 @@
+//! Measurements over many solves.
+
+mod curve;
+
+pub use curve::{Limit, LoadCurve, MethodPoint, Sample};
