@@ -5,7 +5,6 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::scene::ElementKind;
 use crate::simulation::{Field, Simulation};
 
 /// Why a result was not written.
@@ -72,11 +71,7 @@ fn csv(simulation: &Simulation) -> String {
 fn vtu(simulation: &Simulation) -> String {
     let mesh = &simulation.system().mesh;
     let (points, cells) = (mesh.nodes.len(), mesh.triangle_count());
-    let cell_type = match mesh.element {
-        // VTK_TRIANGLE, VTK_QUADRATIC_TRIANGLE.
-        ElementKind::T3 => 5,
-        ElementKind::T6 => 22,
-    };
+    let cell_type = mesh.element.vtk_cell_type();
     let nodes = mesh.element.nodes();
     let per_element = simulation.system().elements.points_per_element();
     let mut text = String::new();

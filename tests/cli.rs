@@ -24,7 +24,7 @@ fn every_command_has_help() {
         assert!(text.contains("Usage: warpbeam"), "{args:?}: {text}");
         assert!(text.lines().all(|line| line.len() < 200));
     }
-    for command in ["run", "scenes", "solve", "curve", "shot"] {
+    for command in ["run", "scenes", "solve", "curve", "extremes", "shot"] {
         assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
     }
     assert!(stdout(&warpbeam(&["solve", "--help"])).contains("Exit codes"));
@@ -347,4 +347,44 @@ fn json_certifies_its_result() {
     assert!(linear["probes"][0]["error_percent"].as_f64().unwrap() > 100.0);
     let none = solve_json(&["shear"]);
     assert!(none["probes"][0]["truth_u"].is_null() && none["probes"][0]["error_percent"].is_null());
+}
+
+/// The stability atlas: every case classified, everything finite, every count accounted for.
+#[test]
+fn extremes_writes_the_stability_atlas() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("atlas");
+    let output = warpbeam(&["extremes", "--quick", "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let csv = fs::read_to_string(out.join("extremes.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert!(rows.len() >= 150 && rows.iter().all(|row| row.len() == 13));
+    for row in &rows {
+        for value in row[3..8].iter().chain(&row[9..]) {
+            assert!(value.parse::<f64>().unwrap().is_finite(), "{row:?}");
+        }
+    }
+    let count = |element: &str, method: &str, outcome: &str| {
+        rows.iter().filter(|r| (r[0], r[1]) == (element, method) && (outcome.is_empty() || r[8] == outcome)).count()
+    };
+    for element in ["t3", "t6"] {
+        let all = count(element, "newton", "");
+        // What rounding takes: L/H = 1000 with ν = 0.4999, and a cube under a thousand times what bends it.
+        assert!(count(element, "newton", "certified") * 100 >= 80 * all, "{element}");
+        assert!(count(element, "warped", "limit_cycle") > count(element, "newton", "limit_cycle"), "{element}");
+        // Every starting state, however bad, ends in a certified equilibrium.
+        let bad_starts: Vec<_> =
+            rows.iter().filter(|r| (r[0], r[1]) == (element, "newton") && r[2] != "rest").collect();
+        assert!(bad_starts.len() >= 12 && bad_starts.iter().all(|r| r[8] == "certified"), "{bad_starts:?}");
+    }
+    // The summary's counts are those of the table, and the picture is there.
+    let summary = stdout(&output);
+    assert_eq!(summary, fs::read_to_string(out.join("extremes.txt")).unwrap());
+    let certified = count("t6", "newton", "certified");
+    assert!(summary.lines().any(|line| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        words.starts_with(&["t6", "newton"]) && words[2] == certified.to_string()
+    }));
+    assert!(fs::read_to_string(out.join("extremes.svg")).unwrap().contains("limit cycle"));
+    assert!(fs::metadata(out.join("extremes.png")).unwrap().len() > 10_000);
 }

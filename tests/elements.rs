@@ -558,3 +558,19 @@ fn energy_norm_error(element: ElementKind, n: u32) -> f64 {
     let work: f64 = load.iter().zip(&workspace.free).map(|(f, u)| f * u).sum();
     ((energy - work) / energy).sqrt()
 }
+
+/// On a mesh with curved sides: gravity is the weight of the true area, and a traction's shares add up to the force.
+#[test]
+fn loads_on_curved_elements_add_up() {
+    let mut scene = common::scene("bracket");
+    let area = 1.2 * 0.3 + 0.9 * 0.3 + 0.2 * 0.2 * (1.0 - std::f64::consts::FRAC_PI_4);
+    scene.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+    let total = |scene: &Scene| System::new(scene).unwrap().dead_force.iter().sum::<Vector2<f64>>();
+    let weight = 9.81 * scene.material.density * scene.material.thickness * area;
+    assert!((total(&scene).y + weight).abs() < 1e-4 * weight, "{} {weight}", total(&scene).y);
+    scene.loads = vec![Load::Force { place: Place::edge("fillet"), force: [3.0, -4.0] }];
+    assert!((total(&scene) - Vector2::new(3.0, -4.0)).norm() < 1e-12);
+    // A moment needs a straight edge.
+    scene.loads = vec![Load::Moment { edge: "fillet".to_owned(), moment: 1.0 }];
+    assert!(System::new(&scene).unwrap_err().to_string().contains("expected a straight edge"));
+}

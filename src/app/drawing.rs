@@ -4,17 +4,16 @@ use std::collections::{BTreeMap, HashSet};
 
 use nalgebra::Vector2;
 
-use crate::element::t6;
 use crate::mesh::{Mesh, Segment};
 use crate::scene::ElementKind;
 
-/// Pieces a curved side is drawn in.
+/// Pieces a side is drawn in that may be curved.
 const PIECES: u32 = 4;
 
 /// What is drawn of a mesh. Points are weighted sums of nodes.
 #[derive(Debug, Default)]
 pub(super) struct Drawing {
-    /// Nodes a point, and for each point that many nodes and weights.
+    /// Nodes of an element, and for each point those of its element with their weights.
     stride: usize,
     nodes: Vec<u32>,
     weights: Vec<f64>,
@@ -39,16 +38,8 @@ impl Drawing {
         let mut drawn = HashSet::new();
         // Every boundary side's end corner and points, by its first corner.
         let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();
-        if mesh.element == ElementKind::T3 {
-            drawing.stride = 1;
-            drawing.nodes = (0..mesh.nodes.len() as u32).collect();
-            drawing.weights = vec![1.0; mesh.nodes.len()];
-        }
         for (number, triangle) in (0..).zip(mesh.triangles()) {
-            let sides = match mesh.element {
-                ElementKind::T3 => drawing.add_straight(number, triangle),
-                ElementKind::T6 => drawing.add_curved(number, triangle),
-            };
+            let sides = drawing.add(mesh.element, number, triangle);
             for (side, points) in Mesh::sides(triangle).iter().zip(sides) {
                 let pieces = || points.windows(2).map(|w| [w[0], w[1]]);
                 if drawn.insert(key(side)) {
@@ -75,40 +66,35 @@ impl Drawing {
         drawing
     }
 
-    /// A triangle between its nodes; returns the points of its sides.
-    fn add_straight(&mut self, number: u32, triangle: &[u32]) -> [Vec<u32>; 3] {
-        let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
-        self.triangles.push([a, b, c]);
-        self.value_of.push(number);
-        [vec![a, b], vec![b, c], vec![c, a]]
-    }
-
-    /// A six-node triangle cut into a lattice; returns the points of its sides.
-    fn add_curved(&mut self, number: u32, triangle: &[u32]) -> [Vec<u32>; 3] {
+    /// A triangle cut into a lattice, of one piece where its sides are straight; returns the points of its sides.
+    fn add(&mut self, element: ElementKind, number: u32, triangle: &[u32]) -> [Vec<u32>; 3] {
+        let pieces = if element.degree() == 1 { 1 } else { PIECES };
         let first = (self.nodes.len() / self.stride) as u32;
-        let local = |i: u32, j: u32| {
-            let [b, c] = [i, j].map(|k| f64::from(k) / f64::from(PIECES));
+        let local = |[i, j]: [u32; 2]| {
+            let [b, c] = [i, j].map(|k| f64::from(k) / f64::from(pieces));
             [1.0 - b - c, b, c]
         };
-        // Rows of the lattice get shorter: row j holds PIECES + 1 − j points.
-        let point = |i: u32, j: u32| first + j * (PIECES + 1) - j * j.saturating_sub(1) / 2 + i;
-        for (i, j) in (0..=PIECES).flat_map(|j| (0..=PIECES - j).map(move |i| (i, j))) {
+        // Rows of the lattice get shorter: row j holds pieces + 1 − j points.
+        let point = |[i, j]: [u32; 2]| first + j * (pieces + 1) - j * j.saturating_sub(1) / 2 + i;
+        for (i, j) in (0..=pieces).flat_map(|j| (0..=pieces - j).map(move |i| (i, j))) {
             self.nodes.extend(triangle);
-            self.weights.extend(t6::shape(local(i, j)));
+            self.weights.extend(element.shape(local([i, j])));
         }
-        for (i, j) in (0..PIECES).flat_map(|j| (0..PIECES - j).map(move |i| (i, j))) {
-            self.triangles.push([point(i, j), point(i + 1, j), point(i, j + 1)]);
-            self.value_of.push(3 * number + nearest_quadrature_point(local(i, j), local(i + 1, j), local(i, j + 1)));
-            if i + j + 2 <= PIECES {
-                self.triangles.push([point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)]);
-                let q = nearest_quadrature_point(local(i + 1, j), local(i + 1, j + 1), local(i, j + 1));
-                self.value_of.push(3 * number + q);
+        let points = element.quadrature_points();
+        let mut small = |corners: [[u32; 2]; 3]| {
+            self.triangles.push(corners.map(point));
+            self.value_of.push(number * points.len() as u32 + nearest(points, corners.map(local)));
+        };
+        for (i, j) in (0..pieces).flat_map(|j| (0..pieces - j).map(move |i| (i, j))) {
+            small([[i, j], [i + 1, j], [i, j + 1]]);
+            if i + j + 2 <= pieces {
+                small([[i + 1, j], [i + 1, j + 1], [i, j + 1]]);
             }
         }
         [
-            (0..=PIECES).map(|i| point(i, 0)).collect(),
-            (0..=PIECES).map(|j| point(PIECES - j, j)).collect(),
-            (0..=PIECES).map(|j| point(0, PIECES - j)).collect(),
+            (0..=pieces).map(|i| point([i, 0])).collect(),
+            (0..=pieces).map(|j| point([pieces - j, j])).collect(),
+            (0..=pieces).map(|j| point([0, pieces - j])).collect(),
         ]
     }
 
@@ -131,10 +117,12 @@ impl Drawing {
     }
 }
 
-/// The quadrature point nearest to the middle of a small triangle: each lies towards one corner.
-fn nearest_quadrature_point(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> u32 {
-    let sum = [0, 1, 2].map(|k| a[k] + b[k] + c[k]);
-    (0..3).max_by(|&p, &q| sum[p as usize].total_cmp(&sum[q as usize])).unwrap_or(0)
+/// The quadrature point nearest to the middle of a small triangle, in area coordinates.
+fn nearest(points: &[[f64; 3]], corners: [[f64; 3]; 3]) -> u32 {
+    let middle = [0, 1, 2].map(|k| corners.iter().map(|l| l[k]).sum::<f64>() / 3.0);
+    let distance = |q: &[f64; 3]| (0..3).map(|k| (q[k] - middle[k]).powi(2)).sum::<f64>();
+    let order = |a: &(u32, &[f64; 3]), b: &(u32, &[f64; 3])| distance(a.1).total_cmp(&distance(b.1));
+    (0..).zip(points).min_by(order).map_or(0, |(q, _)| q)
 }
 
 #[cfg(test)]

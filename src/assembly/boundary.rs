@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::elements::Elements;
 use super::moment::EdgeMoment;
-use crate::element::{side_weights, t3, t6};
+use crate::element::side_weights;
 use crate::mesh::Mesh;
-use crate::scene::{Axis, ElementKind, Invalid, Load, Place, Scene};
+use crate::scene::{Axis, Invalid, Load, Place, Scene};
 
 /// A probe as weights on nodes; the weights sum to 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,7 +173,8 @@ fn material_point(mesh: &Mesh, at: Vector2<f64>) -> Option<Vec<(u32, f64)>> {
     mesh.triangles().find_map(|triangle| {
         let mut l = Vector2::repeat(1.0 / 3.0);
         for _ in 0..STEPS {
-            let (shape, gradients) = local_shape(mesh.element, [1.0 - l.x - l.y, l.x, l.y]);
+            let at_l = [1.0 - l.x - l.y, l.x, l.y];
+            let (shape, gradients) = (mesh.element.shape(at_l), mesh.element.local_gradients(at_l));
             let mut missing = at;
             let mut jacobian = nalgebra::Matrix2::zeros();
             for ((&node, n), g) in triangle.iter().zip(&shape).zip(&gradients) {
@@ -189,14 +190,6 @@ fn material_point(mesh: &Mesh, at: Vector2<f64>) -> Option<Vec<(u32, f64)>> {
         }
         let l = [1.0 - l.x - l.y, l.x, l.y];
         let inside = l.iter().all(|&v| v >= -SLACK);
-        inside.then(|| triangle.iter().copied().zip(local_shape(mesh.element, l).0).collect())
+        inside.then(|| triangle.iter().copied().zip(mesh.element.shape(l)).collect())
     })
-}
-
-/// Shape functions and their gradients in the triangle's own coordinates.
-fn local_shape(element: ElementKind, l: [f64; 3]) -> (Vec<f64>, Vec<Vector2<f64>>) {
-    match element {
-        ElementKind::T3 => (t3::shape(l).to_vec(), t3::local_gradients().to_vec()),
-        ElementKind::T6 => (t6::shape(l).to_vec(), t6::local_gradients(l).to_vec()),
-    }
 }

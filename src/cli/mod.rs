@@ -1,4 +1,4 @@
-//! The commands: `run`, `scenes`, `solve`, `curve`, `shot`.
+//! The commands: `run`, `scenes`, `solve`, `curve`, `extremes`, `shot`.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge, 2 bad input or usage, 3 no graphics adapter.
 
@@ -12,7 +12,7 @@ use crate::export::{self, ExportError, Format};
 use crate::render::RenderError;
 use crate::scene::{self, Scene, SceneError, registry};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::study::LoadCurve;
+use crate::study::{LoadCurve, extremes};
 use crate::truth::Truth;
 
 mod report;
@@ -70,6 +70,16 @@ enum Command {
         /// Also write the curve as a table.
         #[arg(long, value_name = "FILE.csv")]
         out: Option<PathBuf>,
+    },
+    /// Solve at the extremes of load, stiffness, Poisson ratio, slenderness and starting state, and count how each method
+    /// ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary.
+    Extremes {
+        /// The folder to write to; made if it is not there.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// A few hundred cases instead of a few thousand.
+        #[arg(long)]
+        quick: bool,
     },
     /// Draw the picture the window shows into a PNG file, without a window.
     #[command(after_help = EXIT_CODES)]
@@ -175,6 +185,7 @@ pub fn main() -> ExitCode {
         }
         Command::Solve { scene, json, out } => solve(&scene.into(), json, out.as_deref()),
         Command::Curve { scene, out } => curve(&scene.into(), out.as_deref()),
+        Command::Extremes { out, quick } => extremes(&out, quick),
         Command::Shot { scene, output, size, no_panel, curve, theme } => {
             shot(scene.into(), &output, &app::ShotOptions { size, panel: !no_panel, curve, theme })
         }
@@ -227,6 +238,28 @@ fn curve(source: &scene::Source, out: Option<&std::path::Path>) -> Result<ExitCo
         std::fs::write(path, report::curve_table(&curve)).map_err(failed)?;
     }
     report::print(&report::curve(&scene, &curve));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn extremes(out: &std::path::Path, quick: bool) -> Result<ExitCode, CliError> {
+    let failed = |path: &std::path::Path, source| ExportError::Write { path: path.display().to_string(), source };
+    std::fs::create_dir_all(out).map_err(|e| failed(out, e))?;
+    let cases = extremes::cases(if quick { extremes::Extent::Quick } else { extremes::Extent::Full });
+    let mut entries = Vec::with_capacity(cases.len());
+    for case in cases {
+        let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
+        entries.push(case.solve().map_err(broken)?);
+    }
+    let svg = extremes::heat_map(&entries);
+    let summary = extremes::summary(&entries);
+    for (name, text) in
+        [("extremes.csv", &extremes::table(&entries)), ("extremes.svg", &svg), ("extremes.txt", &summary)]
+    {
+        let path = out.join(name);
+        std::fs::write(&path, text).map_err(|e| failed(&path, e))?;
+    }
+    crate::render::draw_svg(&svg)?.write_png(&out.join("extremes.png"))?;
+    report::print(&summary);
     Ok(ExitCode::SUCCESS)
 }
 

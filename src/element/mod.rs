@@ -7,12 +7,79 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use crate::material::Lame;
 use crate::rotation::Rotation;
+use crate::scene::ElementKind;
 
 mod side;
 pub mod t3;
 pub mod t6;
 
 pub use side::{side_shape, side_weights};
+
+/// What a mesh, its loads and its picture ask of an element, whichever it is.
+impl ElementKind {
+    /// One sentence for tooltips.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::T3 => t3::ABOUT,
+            Self::T6 => t6::ABOUT,
+        }
+    }
+
+    /// Nodes a triangle: corners, then the midpoints of sides 12, 23, 31 where there are any.
+    #[must_use]
+    pub fn nodes(self) -> usize {
+        match self {
+            Self::T3 => t3::NODES,
+            Self::T6 => t6::NODES,
+        }
+    }
+
+    /// Degree of the shape functions: a side has one node more than this.
+    #[must_use]
+    pub fn degree(self) -> u32 {
+        match self {
+            Self::T3 => 1,
+            Self::T6 => 2,
+        }
+    }
+
+    /// Nₐ at the area coordinates `l`.
+    #[must_use]
+    pub fn shape(self, l: [f64; 3]) -> Vec<f64> {
+        match self {
+            Self::T3 => t3::shape(l).to_vec(),
+            Self::T6 => t6::shape(l).to_vec(),
+        }
+    }
+
+    /// (∂Nₐ/∂l₂, ∂Nₐ/∂l₃) at the area coordinates `l`, with l₁ = 1 − l₂ − l₃.
+    #[must_use]
+    pub fn local_gradients(self, l: [f64; 3]) -> Vec<Vector2<f64>> {
+        match self {
+            Self::T3 => t3::local_gradients().to_vec(),
+            Self::T6 => t6::local_gradients(l).to_vec(),
+        }
+    }
+
+    /// Area coordinates of the quadrature points.
+    #[must_use]
+    pub fn quadrature_points(self) -> &'static [[f64; 3]] {
+        match self {
+            Self::T3 => &t3::POINTS,
+            Self::T6 => &t6::POINTS,
+        }
+    }
+
+    /// VTK's number for the element.
+    #[must_use]
+    pub fn vtk_cell_type(self) -> u8 {
+        match self {
+            Self::T3 => 5,
+            Self::T6 => 22,
+        }
+    }
+}
 
 /// One quadrature point of an element with `N` nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]

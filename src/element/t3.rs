@@ -4,8 +4,14 @@ use nalgebra::Vector2;
 
 use super::QuadraturePoint;
 
+/// One sentence about it.
+pub(super) const ABOUT: &str = "Three nodes, constant strain: cheap, and too stiff in bending.";
+
 /// Nodes of the element.
 pub const NODES: usize = 3;
+
+/// Quadrature points: the centroid.
+pub const POINTS: [[f64; 3]; 1] = [[1.0 / 3.0; 3]];
 
 /// Nₐ at the area coordinates `l`: the coordinates themselves.
 #[must_use]
@@ -29,7 +35,7 @@ pub fn quadrature(corners: [Vector2<f64>; NODES], thickness: f64) -> [Quadrature
     let doubled = (b - a).perp(&(c - a));
     let gradient = |side: Vector2<f64>| Vector2::new(-side.y, side.x) / doubled;
     [QuadraturePoint {
-        shape: shape([1.0 / 3.0; 3]),
+        shape: shape(POINTS[0]),
         gradients: [gradient(c - b), gradient(a - c), gradient(b - a)],
         volume: 0.5 * doubled * thickness,
     }]

@@ -6,6 +6,9 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::QuadraturePoint;
 
+/// One sentence about it.
+pub(super) const ABOUT: &str = "Six nodes, linear strain: bends as it should.";
+
 /// Nodes of the element.
 pub const NODES: usize = 6;
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use super::{Mesh, MeshError, Segment};
-use crate::scene::{Beam, Diagonals, ElementKind};
+use crate::scene::{Beam, Diagonals};
 
 impl Mesh {
     /// The rectangle [0, length] × [−height/2, height/2], two triangles a cell, with the edges `left`, `right`,
@@ -15,10 +15,7 @@ impl Mesh {
     /// [`MeshError::Degenerate`] where cells are too thin for their length.
     pub fn beam(beam: &Beam) -> Result<Self, MeshError> {
         // Nodes a cell and direction: quadratic elements have one in the middle.
-        let per_cell = match beam.element {
-            ElementKind::T3 => 1,
-            ElementKind::T6 => 2,
-        };
+        let per_cell = beam.element.degree();
         let [nx, ny] = beam.cells;
         let [columns, rows] = beam.cells.map(|n| n * per_cell);
         let node = |i: u32, j: u32| i * (rows + 1) + j;
@@ -36,7 +33,7 @@ impl Mesh {
             let rising = beam.diagonals == Diagonals::Same || (i + j) % 2 == 0;
             for corners in if rising { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] } {
                 connectivity.extend(corners.map(|[i, j]| node(i, j)));
-                if beam.element == ElementKind::T6 {
+                if per_cell == 2 {
                     let between = |p: [u32; 2], q: [u32; 2]| node((p[0] + q[0]) / 2, (p[1] + q[1]) / 2);
                     let [p, q, r] = corners;
                     connectivity.extend([between(p, q), between(q, r), between(r, p)]);

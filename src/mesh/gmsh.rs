@@ -219,7 +219,7 @@ impl File {
                 numbers.push(builder.number(tag).ok_or_else(|| missing(tag))?);
             }
             connectivity.extend(&numbers[..3]);
-            if element == ElementKind::T6 {
+            if element.degree() == 2 {
                 for side in 0..3 {
                     let ends = [numbers[side], numbers[(side + 1) % 3]];
                     let own = numbers.get(3 + side).copied();
@@ -227,7 +227,7 @@ impl File {
                 }
             }
         }
-        if element == ElementKind::T3 {
+        if element.degree() == 1 {
             // The middle nodes belong to no element now.
             let triangles = &mut connectivity;
             let mut kept = vec![u32::MAX; builder.nodes.len()];
@@ -252,7 +252,7 @@ impl File {
         for (entity, line) in &self.lines {
             let ends = [line[0], line[1]].map(|tag| builder.numbers.get(&tag).copied());
             let [Some(a), Some(b)] = ends else { continue };
-            let middle = (element == ElementKind::T6).then(|| match line.get(2) {
+            let middle = (element.degree() == 2).then(|| match line.get(2) {
                 Some(&tag) => builder.number(tag).unwrap_or_else(|| builder.middle([a, b])),
                 None => builder.middle([a, b]),
             });

@@ -73,17 +73,6 @@ pub struct Mesh {
     pub edges: BTreeMap<String, Vec<Segment>>,
 }
 
-impl ElementKind {
-    /// Nodes a triangle.
-    #[must_use]
-    pub fn nodes(self) -> usize {
-        match self {
-            Self::T3 => 3,
-            Self::T6 => 6,
-        }
-    }
-}
-
 impl Mesh {
     /// A mesh whose triangles all exist, have area, and are turned counter-clockwise.
     ///
@@ -113,7 +102,7 @@ impl Mesh {
             }
             if doubled_area < 0.0 {
                 t.swap(1, 2);
-                if element == ElementKind::T6 {
+                if n > 3 {
                     t.swap(3, 5);
                 }
             }

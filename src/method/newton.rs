@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 
 use super::certificate::tangent;
 use super::frame::{Workspace, timed};
-use super::status::farthest;
+use super::status::{ROUNDING, farthest};
 use super::{Frame, FrameError, Method, Reason, Verdict};
 use crate::assembly::System;
 use crate::element::GeometricShare;
@@ -223,6 +223,9 @@ impl Method for Newton {
             self.worse = 0;
         } else {
             self.worse += 1;
+        }
+        if self.worse >= PATIENCE && residual < ROUNDING && self.target == 1.0 {
+            return Verdict::Stop(Reason::Stagnated(self.worse));
         }
         let nodes = (frame.workspace.free.len() as f64 * 0.5).sqrt();
         let (low, high) = frame.system.mesh.bounds();

@@ -87,7 +87,7 @@ const PATIENCE: u32 = 30;
 /// A new best residual counts as progress if it is this much below the old one.
 const PROGRESS: f64 = 0.98;
 /// A residual that stagnates below this has met rounding, not divergence.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 /// Displacement over the size of the body beyond which nothing useful is to be expected. The linear solution of a
 /// slender beam under a large load is absurdly long, and still what was asked for: so not too small.
 const FARTHEST: f64 = 1e6;

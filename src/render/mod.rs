@@ -14,7 +14,7 @@ mod offscreen;
 
 pub use body::{BodyRenderer, Frame};
 pub use camera::{Camera, Margins};
-pub use offscreen::{Picture, read_texture};
+pub use offscreen::{Picture, draw_svg, read_texture};
 
 /// Why nothing was drawn.
 #[derive(Debug, Error)]
@@ -47,6 +47,9 @@ pub enum RenderError {
     /// The picture did not come back from the device.
     #[error("the picture did not come back from the graphics device: {0}")]
     ReadBack(String),
+    /// An SVG picture was not drawn.
+    #[error("the SVG picture was not drawn: {0}")]
+    Svg(String),
     /// The picture was not written.
     #[error("{path}: {reason}", path = path.display())]
     Write {

@@ -31,6 +31,25 @@ impl Picture {
     }
 }
 
+/// Draws an SVG picture, without a GPU, with the same fonts on every machine.
+///
+/// # Errors
+/// [`RenderError::Svg`].
+pub fn draw_svg(svg: &str) -> Result<Picture, RenderError> {
+    let mut options = resvg::usvg::Options::default();
+    let fonts = options.fontdb_mut();
+    for data in egui::FontDefinitions::default().font_data.values() {
+        fonts.load_font_data(data.font.as_ref().as_ref().to_vec());
+    }
+    let tree = resvg::usvg::Tree::from_str(svg, &options).map_err(|e| RenderError::Svg(e.to_string()))?;
+    let size = tree.size().to_int_size();
+    let mut pixels = resvg::tiny_skia::Pixmap::new(size.width(), size.height())
+        .ok_or_else(|| RenderError::Svg("the picture has no size".to_owned()))?;
+    resvg::render(&tree, resvg::tiny_skia::Transform::default(), &mut pixels.as_mut());
+    // The background is opaque, so premultiplied and straight alpha are the same.
+    Ok(Picture { size: [size.width(), size.height()], rgba: pixels.take() })
+}
+
 /// Waits for everything submitted, and copies an RGBA texture to memory.
 ///
 /// # Errors

@@ -113,6 +113,15 @@ impl Simulation {
         self.begin();
     }
 
+    /// Starts over from this displacement, m; what supports hold does not move.
+    pub fn start_from(&mut self, u: &[Vector2<f64>]) {
+        self.reset();
+        let mut free = vec![0.0; self.system.dofs()];
+        self.system.restrict(u, &mut free);
+        self.system.add_free(&free, &mut self.u);
+        self.begin();
+    }
+
     /// Takes another scene on. Where only numbers change the state is kept, so that a dragged load is followed from
     /// where the body is. After a divergence, and for another mesh or method, it starts at rest.
     ///

@@ -1,0 +1,167 @@
+//! Force, gravity, moment.
+
+use egui::Ui;
+
+use super::{Action, PanelState, Shown};
+use crate::app::field::NumberField;
+use crate::scene::{Load, Place, Scene, limits};
+
+const DOWN: f64 = -90.0;
+
+/// Magnitude and direction (degrees) of a vector; the direction is `None` at zero.
+fn polar_form([x, y]: [f64; 2]) -> (f64, Option<f64>) {
+    let magnitude = x.hypot(y);
+    (magnitude, (magnitude > 0.0).then(|| y.atan2(x).to_degrees()))
+}
+
+/// The vector of a magnitude and a direction in degrees, exact along the axes.
+fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
+    let (s, c) = match degrees {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        -90.0 => (-1.0, 0.0),
+        180.0 | -180.0 => (0.0, -1.0),
+        _ => degrees.to_radians().sin_cos(),
+    };
+    [magnitude * c, magnitude * s]
+}
+
+pub(super) fn force_and_gravity(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let scene = shown.scene;
+    let force = scene.loads.iter().find_map(|l| match l {
+        Load::Force { force, .. } => Some(*force),
+        _ => None,
+    });
+    let gravity = scene.loads.iter().find_map(|l| match l {
+        Load::Gravity { acceleration } => Some(*acceleration),
+        _ => None,
+    });
+    let (magnitude, direction) = polar_form(force.unwrap_or_default());
+    let direction = direction.or(state.force_direction).unwrap_or(DOWN);
+    let material = &scene.material;
+    // A force that strains the whole section by 1, rounded up: as far as anything can be seen.
+    let (low, high) = shown.simulation.system().mesh.bounds();
+    let height = (high - low).min();
+    let largest = (material.young * material.thickness * height).clamp(1e-6, 1e14);
+    let largest = 10f64.powf(largest.log10().ceil());
+    let field = NumberField {
+        label: "Force",
+        tooltip: "Magnitude of the force, N. Type a number for values the slider has not, such as 12 kN.",
+        limit: limits::FORCE,
+        slider: 0.0..=largest,
+        logarithmic: Some(1e-5 * largest),
+        whole: false,
+    };
+    if let Some(new) = field.show(ui, &mut state.messages, magnitude) {
+        state.force_direction = Some(direction);
+        actions.push(Action::Edit("Force", with_force(scene, vector(new, direction))));
+    }
+    let field = NumberField {
+        label: "Direction",
+        tooltip: "Direction of the force: 0° right, 90° up, −90° down.",
+        limit: limits::DIRECTION,
+        slider: -180.0..=180.0,
+        logarithmic: None,
+        whole: false,
+    };
+    if let Some(new) = field.show(ui, &mut state.messages, shown_degrees(direction)) {
+        state.force_direction = Some(new);
+        actions.push(Action::Edit("Direction", with_force(scene, vector(magnitude, new))));
+    }
+    let (magnitude, direction) = polar_form(gravity.unwrap_or_default());
+    let direction = direction.or(state.gravity_direction).unwrap_or(DOWN);
+    let field = NumberField {
+        label: "Gravity",
+        tooltip: "Acceleration that gives the body its weight, m/s²; 9.81 on earth, 0 for none.",
+        limit: limits::ACCELERATION,
+        slider: 0.0..=1000.0,
+        logarithmic: Some(0.01),
+        whole: false,
+    };
+    if let Some(new) = field.show(ui, &mut state.messages, magnitude) {
+        state.gravity_direction = Some(direction);
+        actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
+    }
+}
+
+/// The moment on the right edge, or on whichever edge has one.
+pub(super) fn moment(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let current = shown.scene.loads.iter().find_map(|l| match l {
+        Load::Moment { moment, .. } => Some(*moment),
+        _ => None,
+    });
+    // What rolls the rest shape up once, rounded up: 2πEI/L.
+    let (low, high) = shown.simulation.system().mesh.bounds();
+    let (length, height) = ((high - low).max(), (high - low).min());
+    let material = &shown.scene.material;
+    let circle = std::f64::consts::TAU * material.young * material.thickness * height.powi(3) / (12.0 * length);
+    let largest = 10f64.powf(circle.clamp(1e-6, 1e14).log10().ceil());
+    let field = NumberField {
+        label: "Moment",
+        tooltip: "Moment on the right edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
+        limit: limits::MOMENT,
+        slider: -largest..=largest,
+        logarithmic: Some(1e-4 * largest),
+        whole: false,
+    };
+    if let Some(new) = field.show(ui, &mut state.messages, current.unwrap_or(0.0)) {
+        let mut scene = Box::new(shown.scene.clone());
+        let first = scene.loads.iter_mut().find_map(|l| match l {
+            Load::Moment { moment, .. } => Some(moment),
+            _ => None,
+        });
+        match first {
+            Some(moment) => *moment = new,
+            None => scene.loads.push(Load::Moment { edge: "right".to_owned(), moment: new }),
+        }
+        actions.push(Action::Edit("Moment", scene));
+    }
+}
+
+/// A direction without the digits that going through a vector adds.
+fn shown_degrees(degrees: f64) -> f64 {
+    (degrees * 1e9).round() / 1e9
+}
+
+/// The scene with its first force replaced, or with one on the right edge.
+fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
+    let mut scene = Box::new(scene.clone());
+    let first = scene.loads.iter_mut().find_map(|l| match l {
+        Load::Force { force, .. } => Some(force),
+        _ => None,
+    });
+    match first {
+        Some(force) => *force = new,
+        None => scene.loads.push(Load::Force { place: Place::edge("right"), force: new }),
+    }
+    scene
+}
+
+fn with_gravity(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
+    let mut scene = Box::new(scene.clone());
+    let first = scene.loads.iter_mut().find_map(|l| match l {
+        Load::Gravity { acceleration } => Some(acceleration),
+        _ => None,
+    });
+    match first {
+        Some(acceleration) => *acceleration = new,
+        None => scene.loads.push(Load::Gravity { acceleration: new }),
+    }
+    scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_go_to_polar_form_and_back() {
+        for v in [[3.0, -4.0], [0.0, -40_000.0], [-2.0, 0.0], [1e-3, 1e3]] {
+            let (magnitude, direction) = polar_form(v);
+            let back = vector(magnitude, direction.unwrap());
+            assert!((back[0] - v[0]).hypot(back[1] - v[1]) < 1e-12 * magnitude, "{v:?} {back:?}");
+        }
+        assert_eq!(vector(5.0, -90.0), [0.0, -5.0]);
+        assert_eq!(polar_form([0.0, 0.0]), (0.0, None));
+    }
+}

@@ -1,0 +1,107 @@
+//! What is known of the state: status, iterations, errors, certificate, times.
+
+use egui::{Grid, RichText, Ui};
+
+use super::Shown;
+use crate::app::format;
+use crate::method::rho_words;
+use crate::simulation::Status;
+
+/// The status as a sentence, and whether it is a bad one.
+pub(in crate::app) fn status_words(shown_status: &Status, running: bool) -> (String, bool) {
+    match shown_status {
+        Status::Running if running => ("Iterating".to_owned(), false),
+        Status::Running => ("Paused".to_owned(), false),
+        Status::Converged => ("Converged".to_owned(), false),
+        Status::NotConverged(reason) => (format!("Not converged: {reason}."), true),
+        Status::Diverged(reason) => (format!("Diverged: {reason}. Shown is the last finite state."), true),
+    }
+}
+
+/// Room for three lines of status, points.
+const STATUS_HEIGHT: f32 = 50.0;
+/// In place of a number that is not known.
+const UNKNOWN: &str = "\u{2013}";
+
+/// The error of the probe on the right edge against the truth.
+fn tip_error(shown: &Shown<'_>) -> Option<String> {
+    let truth = shown.truth.filter(|t| t.norm() > 0.0)?;
+    let simulation = shown.simulation;
+    let probe = simulation.system().probes.iter().find(|p| p.edge.as_deref() == Some("right"))?;
+    let percent = 100.0 * (probe.mean(simulation.displacement()) - truth).norm() / truth.norm();
+    Some(format!("{} % of {} m", format::short(percent), format::short(truth.norm())))
+}
+
+/// With a capital and a full stop.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
+    let simulation = shown.simulation;
+    let (words, bad) = status_words(simulation.status(), shown.running);
+    let color = if bad { ui.visuals().error_fg_color } else { ui.visuals().strong_text_color() };
+    // Nothing here may change its height: a slider further down would move away under the pointer that drags it.
+    ui.allocate_ui(egui::vec2(ui.available_width(), STATUS_HEIGHT), |ui| {
+        ui.set_min_height(STATUS_HEIGHT);
+        ui.add(egui::Label::new(RichText::new(words).color(color)).wrap());
+    });
+    let time = simulation.last_frame();
+    let us = |d: std::time::Duration| format!("{:.0} µs", d.as_secs_f64() * 1e6);
+    Grid::new("result").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+        let mut row = |name: &str, value: String, tip: &str| {
+            ui.label(name).on_hover_text(tip);
+            ui.monospace(value).on_hover_text(tip);
+            ui.end_row();
+        };
+        row(
+            "Iterations",
+            format!("{}, residual {:.2e}", simulation.iterations(), simulation.residual()),
+            "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
+        );
+        for probe in simulation.system().probes.iter().take(1) {
+            let u = probe.mean(simulation.displacement());
+            // Beside a component of ordinary size, rounding is no number to show.
+            let [x, y] = [u.x, u.y].map(|v| if v.abs() < 1e-12 * u.norm() { 0.0 } else { v });
+            row(
+                &format!("{} x, y", probe.name),
+                format!("{}, {} m", format::short(x), format::short(y)),
+                "Displacement of the probe",
+            );
+        }
+        row(
+            "Error",
+            tip_error(shown).unwrap_or_else(|| UNKNOWN.to_owned()),
+            "Distance from the exact beam's tip (it stretches and shears too), over its displacement; known for cantilevers",
+        );
+        let (factor, steps) = simulation.load_stepping();
+        let percent = format::short(100.0 * factor);
+        row("Load steps", format!("{steps}, at {percent} % of the load"), "Parts in which the load is put on");
+        let certified = simulation.certificate().stable.filter(|_| *simulation.status() == Status::Converged);
+        let word = certified.map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
+        row("Equilibrium", word.to_owned(), "Certified: whether the exact tangent A + G is positive definite");
+        let unknowns = simulation.system().dofs();
+        row("Frame", format!("{}, {unknowns} unknowns", us(time.total())), "Time of the last iteration");
+    });
+    if let Some(rho) = simulation.certificate().fixed_point_rho {
+        let words = RichText::new(sentence(&rho_words(rho))).small();
+        ui.add(egui::Label::new(words).wrap())
+            .on_hover_text("ρ = |λ|max(A⁻¹G), the error factor of the warped iteration");
+    }
+    let stages = [
+        ("rotate", time.rotate, "Element maps and polar decompositions"),
+        ("assemble", time.assemble, "Stiffness R K Rᵀ, forces, residual"),
+        ("factorize", time.factorize, "Sparse Cholesky"),
+        ("solve", time.solve, "Forward and back substitution"),
+    ];
+    Grid::new("stages").num_columns(stages.len()).min_col_width(62.0).spacing([14.0, 0.0]).show(ui, |ui| {
+        for (name, _, tip) in stages {
+            ui.label(RichText::new(name).small()).on_hover_text(tip);
+        }
+        ui.end_row();
+        for (_, duration, tip) in stages {
+            ui.label(RichText::new(us(duration)).monospace().small()).on_hover_text(tip);
+        }
+    });
+}

@@ -1,0 +1,124 @@
+//! How the body is looked at.
+
+use egui::{ComboBox, Ui};
+
+use super::{Action, PanelState, Shown, ViewOptions};
+use crate::app::field::NumberField;
+use crate::scene::limits;
+use crate::simulation::{Field, Simulation};
+
+pub(super) fn options(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    state: &mut PanelState,
+    view: &mut ViewOptions,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        let label = ui.label("Colour");
+        ComboBox::from_id_salt("field")
+            .selected_text(view.field.name())
+            .show_ui(ui, |ui| {
+                for field in Field::ALL {
+                    if ui.selectable_label(field == view.field, field.name()).clicked() && field != view.field {
+                        view.field = field;
+                        view.fixed_range = None;
+                    }
+                }
+            })
+            .response
+            .labelled_by(label.id)
+            .on_hover_text("The quantity the body is coloured with");
+    });
+    let mut fixed = view.fixed_range.is_some();
+    if ui
+        .checkbox(&mut fixed, "Fixed colour range")
+        .on_hover_text("Keep the ends of the colour map; else they follow the values")
+        .changed()
+    {
+        view.fixed_range = fixed.then(|| value_range(shown.simulation, view.field));
+    }
+    if let Some(range) = view.fixed_range {
+        let span = limits::Limit { name: "colour range", unit: view.field.unit(), min: -1e30, max: 1e30 };
+        let reach = range[0].abs().max(range[1].abs()).max(f64::MIN_POSITIVE);
+        for (end, label) in ["Lowest", "Highest"].into_iter().enumerate() {
+            let field = NumberField {
+                label,
+                tooltip: "An end of the colour map",
+                limit: span,
+                slider: 0.0..=2.0 * reach,
+                logarithmic: None,
+                whole: false,
+            };
+            if let Some(new) = field.show(ui, &mut state.messages, range[end]) {
+                let mut changed = range;
+                changed[end] = new;
+                if changed[0] < changed[1] {
+                    view.fixed_range = Some(changed);
+                } else {
+                    state.messages.insert(label, "expected the lowest value below the highest".to_owned());
+                }
+            }
+        }
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.checkbox(&mut view.wireframe, "Wireframe").on_hover_text("Element edges (W)");
+        ui.checkbox(&mut view.rest_outline, "Rest").on_hover_text("Outline of the body at rest (O)");
+        ui.checkbox(&mut view.ghost, "Linear").on_hover_text("Outline of the linear solution (G)");
+    });
+    ui.horizontal(|ui| {
+        if ui.button("Screenshot").on_hover_text("Save this picture as a PNG file here (S)").clicked() {
+            actions.push(Action::Screenshot);
+        }
+        if ui
+            .button("Copy scene")
+            .on_hover_text("Copy the scene as TOML, with the command that solves it (C)")
+            .clicked()
+        {
+            actions.push(Action::Copy);
+        }
+        if ui.selectable_label(view.curve, "Curve").on_hover_text("Load against deflection (L)").clicked() {
+            view.curve ^= true;
+        }
+        if ui.button("Help").on_hover_text("Keys and mouse (F1)").clicked() {
+            view.help = true;
+        }
+    });
+}
+
+/// The smallest and the largest value of a field; never empty.
+fn value_range(simulation: &Simulation, field: Field) -> [f64; 2] {
+    let mut values = Vec::new();
+    simulation.field(field, &mut values);
+    range_of(&values)
+}
+
+/// The smallest and the largest of some values; never empty. Values that differ by rounding only are given a range in
+/// which they look the same.
+pub(in crate::app) fn range_of(values: &[f64]) -> [f64; 2] {
+    const SAME: f64 = 1e-6;
+    const WIDENED: f64 = 1e-2;
+    let [low, high] =
+        values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
+    let size = low.abs().max(high.abs());
+    if !size.is_finite() || size == 0.0 {
+        [0.0, 1.0]
+    } else if 0.5 * high - 0.5 * low > 0.5 * SAME * size {
+        [low, high]
+    } else {
+        [low - WIDENED * size, high + WIDENED * size].map(|v| v.clamp(-f64::MAX, f64::MAX))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_never_empty() {
+        for values in [&[][..], &[0.0], &[5.0, 5.0], &[-2.0], &[1.0, 3.0], &[f64::MAX; 2], &[5.0, 5.0 + 1e-12]] {
+            let [low, high] = range_of(values);
+            assert!(low < high, "{values:?}");
+        }
+    }
+}
