@@ -24,7 +24,7 @@ fn every_command_has_help() {
         assert!(text.contains("Usage: warpbeam"), "{args:?}: {text}");
         assert!(text.lines().all(|line| line.len() < 200));
     }
-    for command in ["run", "scenes", "solve", "curve", "extremes", "shot"] {
+    for command in ["run", "scenes", "solve", "curve", "study", "extremes", "shot"] {
         assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
     }
     assert!(stdout(&warpbeam(&["solve", "--help"])).contains("Exit codes"));
@@ -387,4 +387,56 @@ fn extremes_writes_the_stability_atlas() {
     }));
     assert!(fs::read_to_string(out.join("extremes.svg")).unwrap().contains("limit cycle"));
     assert!(fs::metadata(out.join("extremes.png")).unwrap().len() > 10_000);
+}
+
+/// The trade: errors split, times positive, the front the front, the files there.
+#[test]
+fn study_measures_error_against_time() {
+    let folder = tempfile::tempdir().unwrap();
+    for (id, source) in [
+        ("cantilever", "the exact beam"),
+        ("bracket", "the t6 solution of its own mesh"),
+        ("shear", "a fine t6 solution"),
+    ] {
+        let out = folder.path().join(id);
+        let output = warpbeam(&["study", id, "--quick", "--out", out.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(0), "{id}: {}", stderr(&output));
+        let summary = stdout(&output);
+        assert!(summary.contains(source) && summary.contains("an error of 10 % costs"), "{id}: {summary}");
+        let csv = fs::read_to_string(out.join("study.csv")).unwrap();
+        let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
+        let number = |row: &[&str], column: usize| row[column].parse::<f64>().unwrap();
+        for row in &rows {
+            assert!(row[7..17].iter().all(|v| v.parse::<f64>().unwrap().is_finite()), "{row:?}");
+            assert!(
+                number(row, 7) > 0.0
+                    && (number(row, 16) - number(row, 13) - number(row, 14) - number(row, 15)).abs()
+                        < 1e-9 * number(row, 16).max(1.0)
+            );
+            // The parts are distances on the way from the result to the truth: the whole is no longer than all of them.
+            let parts = number(row, 13) + number(row, 14) + number(row, 15);
+            assert!(number(row, 12) <= parts * (1.0 + 1e-6) + 1e-4, "{row:?}");
+            assert!(row[4] == "linear" || number(row, 15) == 0.0, "{row:?}");
+        }
+        // Nothing beats the front, and the front beats something.
+        let front: Vec<&Vec<&str>> = rows.iter().filter(|r| r[17] == "true").collect();
+        assert!(!front.is_empty() && front.len() < rows.len());
+        for f in &front {
+            let beaten = rows.iter().any(|r| number(r, 7) < number(f, 7) && number(r, 16) < number(f, 16));
+            assert!(!beaten, "{f:?}");
+        }
+        assert!(fs::read_to_string(out.join("study.svg")).unwrap().contains("Pareto front"));
+        assert!(fs::metadata(out.join("study.png")).unwrap().len() > 10_000);
+    }
+    // Locking is not mistaken for warping: converged T3 is all discretization, linear T6 all model.
+    let csv = fs::read_to_string(folder.path().join("cantilever/study.csv")).unwrap();
+    let row = |element: &str, method: &str| {
+        let mut rows = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
+        let last = rows.rfind(|r| r[0] == element && r[4] == method && r[1] == "20" && r[6] == "true").unwrap();
+        [12, 13, 14, 15].map(|c| last[c].parse::<f64>().unwrap())
+    };
+    let [total, discretization, iteration, model] = row("t3", "newton");
+    assert!(total > 10.0 && (discretization - total).abs() < 1e-6 && iteration < 1e-6 && model == 0.0);
+    let [total, discretization, _, model] = row("t6", "linear");
+    assert!(total > 5.0 && discretization < 0.5 && (model - total).abs() < 0.5);
 }

@@ -1,18 +1,18 @@
-//! The commands: `run`, `scenes`, `solve`, `curve`, `extremes`, `shot`.
+//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `extremes`, `shot`.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge, 2 bad input or usage, 3 no graphics adapter.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 
 use crate::app;
 use crate::export::{self, ExportError, Format};
-use crate::render::RenderError;
+use crate::render::{RenderError, draw_svg};
 use crate::scene::{self, Scene, SceneError, registry};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::study::{LoadCurve, extremes};
+use crate::study::{LoadCurve, Study, StudyError, extremes, plot};
 use crate::truth::Truth;
 
 mod report;
@@ -70,6 +70,18 @@ enum Command {
         /// Also write the curve as a table.
         #[arg(long, value_name = "FILE.csv")]
         out: Option<PathBuf>,
+    },
+    /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
+    /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt).
+    Study {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// The folder to write to; made if it is not there.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Without the finer meshes.
+        #[arg(long)]
+        quick: bool,
     },
     /// Solve at the extremes of load, stiffness, Poisson ratio, slenderness and starting state, and count how each method
     /// ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary.
@@ -147,6 +159,8 @@ enum CliError {
     Scene(#[from] SceneError),
     #[error("{scene}: {error}")]
     Simulation { scene: String, error: SimulationError },
+    #[error("{scene}: {error}")]
+    Study { scene: String, error: StudyError },
     #[error(
         "{0}: expected a beam clamped left and loaded on its right edge or by its weight; no truth is known for this scene"
     )]
@@ -185,6 +199,7 @@ pub fn main() -> ExitCode {
         }
         Command::Solve { scene, json, out } => solve(&scene.into(), json, out.as_deref()),
         Command::Curve { scene, out } => curve(&scene.into(), out.as_deref()),
+        Command::Study { scene, out, quick } => study(&scene.into(), &out, quick),
         Command::Extremes { out, quick } => extremes(&out, quick),
         Command::Shot { scene, output, size, no_panel, curve, theme } => {
             shot(scene.into(), &output, &app::ShotOptions { size, panel: !no_panel, curve, theme })
@@ -217,7 +232,7 @@ fn exit_code(status: &Status) -> ExitCode {
     if *status == Status::Converged { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) }
 }
 
-fn solve(source: &scene::Source, json: bool, out: Option<&std::path::Path>) -> Result<ExitCode, CliError> {
+fn solve(source: &scene::Source, json: bool, out: Option<&Path>) -> Result<ExitCode, CliError> {
     // A wrong file name is said before the work, not after.
     out.map(Format::of).transpose()?;
     let (scene, mut simulation) = simulate(source)?;
@@ -230,7 +245,7 @@ fn solve(source: &scene::Source, json: bool, out: Option<&std::path::Path>) -> R
     Ok(exit_code(&status))
 }
 
-fn curve(source: &scene::Source, out: Option<&std::path::Path>) -> Result<ExitCode, CliError> {
+fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
     let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoTruth(source.name.clone()))?;
     if let Some(path) = out {
@@ -241,29 +256,53 @@ fn curve(source: &scene::Source, out: Option<&std::path::Path>) -> Result<ExitCo
     Ok(ExitCode::SUCCESS)
 }
 
-fn extremes(out: &std::path::Path, quick: bool) -> Result<ExitCode, CliError> {
-    let failed = |path: &std::path::Path, source| ExportError::Write { path: path.display().to_string(), source };
+/// Writes a folder of texts, and one of them, an SVG picture, as PNG too.
+fn write_folder(out: &Path, texts: &[(&str, &str)], picture: &str) -> Result<(), CliError> {
+    let failed = |path: &Path, source| ExportError::Write { path: path.display().to_string(), source };
     std::fs::create_dir_all(out).map_err(|e| failed(out, e))?;
+    for (name, text) in texts {
+        let path = out.join(name);
+        std::fs::write(&path, text).map_err(|e| failed(&path, e))?;
+        if *name == picture {
+            draw_svg(text)?.write_png(&path.with_extension("png"))?;
+        }
+    }
+    Ok(())
+}
+
+fn study(source: &scene::Source, out: &Path, quick: bool) -> Result<ExitCode, CliError> {
+    let (scene, _) = simulate(source)?;
+    // For people who wait; scripts get clean streams.
+    let watched = std::io::IsTerminal::is_terminal(&std::io::stderr());
+    let progress = |mesh: &str| {
+        if watched {
+            eprintln!("measuring {mesh}");
+        }
+    };
+    let study =
+        Study::new(&scene, quick, progress).map_err(|error| CliError::Study { scene: source.name.clone(), error })?;
+    let summary = study.summary();
+    let texts = [("study.csv", study.table()), ("study.svg", plot::svg(&study)), ("study.txt", summary.clone())];
+    write_folder(out, &texts.each_ref().map(|(name, text)| (*name, text.as_str())), "study.svg")?;
+    report::print(&summary);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn extremes(out: &Path, quick: bool) -> Result<ExitCode, CliError> {
     let cases = extremes::cases(if quick { extremes::Extent::Quick } else { extremes::Extent::Full });
     let mut entries = Vec::with_capacity(cases.len());
     for case in cases {
         let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
         entries.push(case.solve().map_err(broken)?);
     }
-    let svg = extremes::heat_map(&entries);
-    let summary = extremes::summary(&entries);
-    for (name, text) in
-        [("extremes.csv", &extremes::table(&entries)), ("extremes.svg", &svg), ("extremes.txt", &summary)]
-    {
-        let path = out.join(name);
-        std::fs::write(&path, text).map_err(|e| failed(&path, e))?;
-    }
-    crate::render::draw_svg(&svg)?.write_png(&out.join("extremes.png"))?;
+    let (table, svg, summary) = (extremes::table(&entries), extremes::heat_map(&entries), extremes::summary(&entries));
+    let texts = [("extremes.csv", table.as_str()), ("extremes.svg", &svg), ("extremes.txt", &summary)];
+    write_folder(out, &texts, "extremes.svg")?;
     report::print(&summary);
     Ok(ExitCode::SUCCESS)
 }
 
-fn shot(source: scene::Source, output: &std::path::Path, options: &app::ShotOptions) -> Result<ExitCode, CliError> {
+fn shot(source: scene::Source, output: &Path, options: &app::ShotOptions) -> Result<ExitCode, CliError> {
     let (scene, simulation) = simulate(&source)?;
     let status = app::shot(source, scene, simulation, options, output)?;
     if let Status::NotConverged(reason) | Status::Diverged(reason) = &status {
@@ -272,7 +311,7 @@ fn shot(source: scene::Source, output: &std::path::Path, options: &app::ShotOpti
     Ok(exit_code(&status))
 }
 
-fn run(source: scene::Source, output: &std::path::Path) -> Result<ExitCode, CliError> {
+fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliError> {
     let (scene, simulation) = simulate(&source)?;
     match app::Display::open() {
         Ok(display) => app::run(display, source, scene, simulation)?,
