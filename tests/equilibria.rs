@@ -254,3 +254,23 @@ fn a_changed_load_is_followed_from_where_the_body_is() {
         assert!((tip(&dragged) - tip(&solved(&scene))).norm() < 1e-6, "α {alpha}");
     }
 }
+
+/// The straight column is an equilibrium under any axial load (exactly so for ν = 0); beyond Euler's load it is
+/// certified as what it is: unstable.
+#[test]
+fn an_unstable_equilibrium_is_reported_as_unstable() {
+    let euler = std::f64::consts::PI.powi(2) * 1e6 / 12.0 / (4.0 * 20.0 * 20.0);
+    for (share, stable) in [(0.5, true), (0.95, true), (1.05, false), (1.5, false)] {
+        let force = share * euler;
+        for method in ["warped", "newton"] {
+            let set = [format!("load.0.force=[{},0]", -force), format!("solver.method={method}")];
+            let set: Vec<&str> = set.iter().map(String::as_str).collect();
+            let mut simulation = Simulation::new(&scene_with("column", &set)).unwrap();
+            let u: Vec<_> =
+                simulation.system().mesh.nodes.iter().map(|x| Vector2::new(-force / 1e6 * x.x, 0.0)).collect();
+            simulation.start_from(&u);
+            assert_eq!(*simulation.status(), Status::Converged, "residual {:e}", simulation.residual());
+            assert_eq!(simulation.certificate().stable, Some(stable), "{share} of Euler's load, {method}");
+        }
+    }
+}
