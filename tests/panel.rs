@@ -353,3 +353,20 @@ fn every_scene_and_element_can_be_chosen() {
         }
     }
 }
+
+/// A pointer over the view does not stop it from following the body.
+#[test]
+fn the_view_follows_the_body_under_a_resting_pointer() {
+    let mut harness = harness("elastica");
+    let rect = harness.state().view_rect();
+    for step in 0..5 {
+        harness.hover_at(rect.center() + egui::vec2(13.7 * step as f32, 31.3));
+        harness.step();
+    }
+    let before = harness.state().camera();
+    type_into(&mut harness, "Force", "30");
+    harness.hover_at(rect.center());
+    harness.run();
+    let after = harness.state().camera();
+    assert!(after.scale > 1.1 * before.scale, "{before:?} {after:?}");
+}

@@ -346,17 +346,20 @@ impl Lab {
 
     fn pan_and_zoom(&mut self, ui: &Ui, response: &egui::Response) {
         let mut camera = self.camera();
-        let before = camera;
         let drag = response.drag_delta();
-        camera.pan([f64::from(drag.x), f64::from(drag.y)]);
+        if drag != egui::Vec2::ZERO {
+            camera.pan([f64::from(drag.x), f64::from(drag.y)]);
+            self.camera = Some(camera);
+        }
         if let Some(pointer) = response.hover_pos() {
             let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
-            let at = pointer - response.rect.center();
-            camera.zoom(factor, [f64::from(at.x), f64::from(at.y)]);
-        }
-        if camera != before {
-            self.camera = Some(camera);
+            // A pointer that only rests over the view must not stop it from following the body.
+            if factor != 1.0 {
+                let at = pointer - response.rect.center();
+                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)]);
+                self.camera = Some(camera);
+            }
         }
         if response.double_clicked() {
             self.camera = None;
