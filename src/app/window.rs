@@ -29,6 +29,10 @@ impl Display {
     /// # Errors
     /// Why there is none, in words.
     pub fn open() -> Result<Self, String> {
+        #[cfg(all(unix, not(target_os = "macos")))]
+        if ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"].iter().all(|name| std::env::var_os(name).is_none()) {
+            return Err("there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)".to_owned());
+        }
         // winit panics where an X library it loads by name is missing; that is no reason to die without a word.
         let hook = std::panic::take_hook();
         std::panic::set_hook(Box::new(|_| {}));
