@@ -1,10 +1,8 @@
 //! The range of every number a scene may hold: one table for scene files, `--set` and the sliders.
 
-/// A closed range, its unit, and the key it belongs to.
+/// A closed range and its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// What the number is called in messages.
-    pub name: &'static str,
     /// Unit, empty for pure numbers.
     pub unit: &'static str,
     /// Smallest accepted value.
@@ -14,8 +12,8 @@ pub struct Limit {
 }
 
 impl Limit {
-    const fn new(name: &'static str, unit: &'static str, min: f64, max: f64) -> Self {
-        Self { name, unit, min, max }
+    const fn new(unit: &'static str, min: f64, max: f64) -> Self {
+        Self { unit, min, max }
     }
 
     /// Accepts `value`, or says what was expected.
@@ -46,34 +44,34 @@ pub fn number(value: f64) -> String {
 }
 
 /// Beam length.
-pub const LENGTH: Limit = Limit::new("length", "m", 1e-6, 1e6);
+pub const LENGTH: Limit = Limit::new("m", 1e-6, 1e6);
 /// Beam height.
-pub const HEIGHT: Limit = Limit::new("height", "m", 1e-6, 1e6);
+pub const HEIGHT: Limit = Limit::new("m", 1e-6, 1e6);
 /// Cells along one direction.
-pub const CELLS: Limit = Limit::new("cells in one direction", "", 1.0, 100_000.0);
+pub const CELLS: Limit = Limit::new("", 1.0, 100_000.0);
 /// Cells in all: what fits in memory with its factor (about a million unknowns).
-pub const TOTAL_CELLS: Limit = Limit::new("cells in all", "", 1.0, 250_000.0);
+pub const TOTAL_CELLS: Limit = Limit::new("", 1.0, 250_000.0);
 /// Young's modulus.
-pub const YOUNG: Limit = Limit::new("Young's modulus", "Pa", 1e-6, 1e15);
+pub const YOUNG: Limit = Limit::new("Pa", 1e-6, 1e15);
 /// Poisson ratio, plane stress.
-pub const POISSON_STRESS: Limit = Limit::new("Poisson ratio (plane stress)", "", -0.99, 0.5);
+pub const POISSON_STRESS: Limit = Limit::new("", -0.99, 0.5);
 /// Poisson ratio, plane strain, where ½ is incompressible and λ infinite.
-pub const POISSON_STRAIN: Limit = Limit::new("Poisson ratio (plane strain)", "", -0.99, 0.4999);
+pub const POISSON_STRAIN: Limit = Limit::new("", -0.99, 0.4999);
 /// Density.
-pub const DENSITY: Limit = Limit::new("density", "kg/m³", 0.0, 1e6);
+pub const DENSITY: Limit = Limit::new("kg/m³", 0.0, 1e6);
 /// Thickness out of the plane.
-pub const THICKNESS: Limit = Limit::new("thickness", "m", 1e-6, 1e6);
+pub const THICKNESS: Limit = Limit::new("m", 1e-6, 1e6);
 /// Magnitude of a force.
-pub const FORCE: Limit = Limit::new("force", "N", 0.0, 1e15);
+pub const FORCE: Limit = Limit::new("N", 0.0, 1e15);
 /// A moment.
-pub const MOMENT: Limit = Limit::new("moment", "N m", -1e15, 1e15);
+pub const MOMENT: Limit = Limit::new("N m", -1e15, 1e15);
 /// Direction of a force or of gravity, from the x axis, counter-clockwise.
-pub const DIRECTION: Limit = Limit::new("direction", "°", -180.0, 180.0);
+pub const DIRECTION: Limit = Limit::new("°", -180.0, 180.0);
 /// Magnitude of gravity.
-pub const ACCELERATION: Limit = Limit::new("acceleration", "m/s²", 0.0, 1e6);
+pub const ACCELERATION: Limit = Limit::new("m/s²", 0.0, 1e6);
 /// A coordinate.
-pub const COORDINATE: Limit = Limit::new("coordinate", "m", -1e6, 1e6);
+pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
 /// Relative residual at which a solve is done.
-pub const TOLERANCE: Limit = Limit::new("tolerance", "", 1e-14, 0.1);
+pub const TOLERANCE: Limit = Limit::new("", 1e-14, 0.1);
 /// Iterations a solve may take.
-pub const MAX_ITERATIONS: Limit = Limit::new("iterations", "", 1.0, 100_000.0);
+pub const MAX_ITERATIONS: Limit = Limit::new("", 1.0, 100_000.0);

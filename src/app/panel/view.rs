@@ -39,7 +39,7 @@ pub(super) fn options(
         view.fixed_range = fixed.then(|| value_range(shown.simulation, view.field));
     }
     if let Some(range) = view.fixed_range {
-        let span = limits::Limit { name: "colour range", unit: view.field.unit(), min: -1e30, max: 1e30 };
+        let span = limits::Limit { unit: view.field.unit(), min: -1e30, max: 1e30 };
         let reach = range[0].abs().max(range[1].abs()).max(f64::MIN_POSITIVE);
         for (end, label) in ["Lowest", "Highest"].into_iter().enumerate() {
             let field = NumberField {
