@@ -60,6 +60,7 @@ fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
     let mut harness = harness("cantilever");
     let before = (force(harness.state()), tip(harness.state()));
     let slider = harness.get_by_role_and_label(Role::Slider, "Force").rect();
+    let below = harness.get_by_role_and_label(Role::Slider, "Young E").rect();
     let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
     harness.hover_at(at(0.4));
     harness.drag_at(at(0.4));
@@ -69,6 +70,8 @@ fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
     assert!(harness.state().iterates(), "the beam did not start to move");
     let moving = harness.get_by_role_and_label(Role::Slider, "Force").rect();
     assert_eq!(moving, slider, "the slider moves away under the pointer");
+    let moving = harness.get_by_role_and_label(Role::Slider, "Young E").rect();
+    assert_eq!(moving, below, "the layout changes while the beam moves");
     harness.run();
     harness.drop_at(at(0.46));
     harness.run();

@@ -84,11 +84,10 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
         let unknowns = simulation.system().dofs();
         row("Frame", format!("{}, {unknowns} unknowns", us(time.total())), "Time of the last iteration");
     });
-    if let Some(rho) = simulation.certificate().fixed_point_rho {
-        let words = RichText::new(sentence(&rho_words(rho))).small();
-        ui.add(egui::Label::new(words).wrap())
-            .on_hover_text("ρ = |λ|max(A⁻¹G), the error factor of the warped iteration");
-    }
+    let rho = simulation.certificate().fixed_point_rho;
+    let words = rho.map_or_else(|| format!("ρ {UNKNOWN}"), |rho| sentence(&rho_words(rho)));
+    ui.add(egui::Label::new(RichText::new(words).small()).truncate())
+        .on_hover_text("ρ = |λ|max(A⁻¹G), the error factor of the warped iteration, where an iteration has ended");
     let stages = [
         ("rotate", time.rotate, "Element maps and polar decompositions"),
         ("assemble", time.assemble, "Stiffness R K Rᵀ, forces, residual"),
