@@ -55,6 +55,14 @@ pub fn write(simulation: &Simulation, path: &Path) -> Result<(), ExportError> {
         Format::Csv => csv(simulation),
         Format::Vtu => vtu(simulation),
     };
+    write_text(path, &text)
+}
+
+/// Writes a file, naming it where that fails.
+///
+/// # Errors
+/// [`ExportError::Write`].
+pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
     std::fs::write(path, text).map_err(|source| ExportError::Write { path: path.display().to_string(), source })
 }
 

@@ -226,6 +226,13 @@ impl ClampedBeam {
     }
 }
 
+/// The distance of a displacement from the true one, over the length of that, percent; `None` where nothing moves.
+#[must_use]
+pub fn error_percent(u: Vector2<f64>, truth: Vector2<f64>) -> Option<f64> {
+    let length = truth.norm();
+    (length > 0.0).then(|| 100.0 * (u - truth).norm() / length)
+}
+
 /// A scene whose right edge has a known displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Truth {

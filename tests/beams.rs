@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{scene, scene_ids, scene_with};
+use common::{scene, scene_ids, scene_with, solved};
 use nalgebra::{DMatrix, DVector, Vector2};
 use warpbeam::assembly::System;
 use warpbeam::element::{ElementStiffness, t3};
@@ -12,13 +12,6 @@ use warpbeam::rotation::affine::Affine2;
 use warpbeam::rotation::{Rotation, polar};
 use warpbeam::scene::{Load, MethodKind, Scene};
 use warpbeam::simulation::{Simulation, Solution, Status};
-
-fn solved(scene: &Scene) -> Simulation {
-    let mut simulation = Simulation::new(scene).unwrap();
-    let status = simulation.solve().clone();
-    assert_eq!(status, Status::Converged, "{}: residual {:e}", scene.name, simulation.residual());
-    simulation
-}
 
 fn solution(scene: &Scene) -> Solution {
     solved(scene).solution(None)

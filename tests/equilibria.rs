@@ -3,19 +3,12 @@
 
 mod common;
 
-use common::{cantilever, cantilever_table, scene, scene_with};
+use common::{cantilever, cantilever_table, scene, scene_with, solved};
 use nalgebra::Vector2;
 use warpbeam::assembly::System;
 use warpbeam::mesh::Mesh;
-use warpbeam::scene::{Beam, Diagonals, ElementKind, Load, MethodKind, Place, Scene};
+use warpbeam::scene::{Beam, Diagonals, ElementKind, Load, MethodKind, Place};
 use warpbeam::simulation::{Simulation, Status};
-
-fn solved(scene: &Scene) -> Simulation {
-    let mut simulation = Simulation::new(scene).unwrap();
-    let status = simulation.solve().clone();
-    assert_eq!(status, Status::Converged, "{}: residual {:e}", scene.name, simulation.residual());
-    simulation
-}
 
 fn tip(simulation: &Simulation) -> Vector2<f64> {
     simulation.solution(None).probes[0].x

@@ -25,6 +25,8 @@ pub(super) struct Drawing {
     pub lines: Vec<[u32; 2]>,
     /// The lines around the body, each closed, counter-clockwise.
     pub outline: Vec<Vec<u32>>,
+    /// The sides of triangles that make them up.
+    pub boundary: Vec<Segment>,
 }
 
 fn key(side: &Segment) -> (u32, u32) {
@@ -34,7 +36,8 @@ fn key(side: &Segment) -> (u32, u32) {
 impl Drawing {
     pub(super) fn new(mesh: &Mesh) -> Self {
         let mut drawing = Self { stride: mesh.element.nodes(), ..Self::default() };
-        let boundary: HashSet<_> = mesh.outline().iter().map(key).collect();
+        drawing.boundary = mesh.outline();
+        let boundary: HashSet<_> = drawing.boundary.iter().map(key).collect();
         let mut drawn = HashSet::new();
         // Every boundary side's end corner and points, by its first corner.
         let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();

@@ -99,7 +99,6 @@ pub(super) fn paint(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals)
     let palette = Palette::new(visuals);
     let projection = Projection { camera: lab.camera(), rect };
     let system = lab.simulation().system();
-    let outline = system.mesh.outline();
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
         for line in &lab.drawing().outline {
             // Pieces of less than this fade in the antialiasing; they are joined to the next.
@@ -126,7 +125,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals)
         draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.ghost));
     }
     draw(&|n| lab.positions()[n as usize], Stroke::new(1.2, palette.outline));
-    supports(painter, &projection, lab, &outline, &palette);
+    supports(painter, &projection, lab, &palette);
     loads(painter, &projection, lab, &palette, visuals);
     legend(painter, rect, lab, &palette, visuals);
     key(painter, rect, lab, &palette, visuals);
@@ -135,14 +134,14 @@ pub(super) fn paint(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals)
 }
 
 /// Held edges: hatched where both directions are held, rollers where one is. Held nodes beside none: a triangle.
-fn supports(painter: &Painter, projection: &Projection, lab: &Lab, outline: &[Segment], palette: &Palette) {
+fn supports(painter: &Painter, projection: &Projection, lab: &Lab, palette: &Palette) {
     const HATCH: f32 = 7.0;
     const ROLLER: f32 = 3.5;
     let pattern = &lab.simulation().system().pattern;
     let held = |n: u32| [0, 1].map(|axis| pattern.is_held(2 * n as usize + axis));
     let stroke = Stroke::new(1.5, palette.support);
     let mut drawn = vec![false; lab.positions().len()];
-    for Segment { ends: [a, b], middle } in outline {
+    for Segment { ends: [a, b], middle } in &lab.drawing().boundary {
         let both = [0, 1].map(|axis| held(*a)[axis] && held(*b)[axis]);
         if both == [false, false] {
             continue;

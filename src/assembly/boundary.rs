@@ -20,6 +20,12 @@ pub struct NodalProbe {
 }
 
 impl NodalProbe {
+    /// Whether it looks at the right edge, where beam theories know the truth.
+    #[must_use]
+    pub fn is_at_tip(&self) -> bool {
+        self.edge.as_deref() == Some("right")
+    }
+
     /// The weighted mean of a nodal field.
     #[must_use]
     pub fn mean(&self, field: &[Vector2<f64>]) -> Vector2<f64> {

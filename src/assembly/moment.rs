@@ -49,7 +49,7 @@ impl EdgeMoment {
     #[must_use]
     pub fn potential(&self, mesh: &Mesh, u: &[Vector2<f64>]) -> f64 {
         let now = self.direction(mesh, u);
-        let rest = self.direction(mesh, &vec![Vector2::zeros(); mesh.nodes.len()]);
+        let rest: Vector2<f64> = self.weights.iter().map(|&(node, c)| mesh.nodes[node as usize] * c).sum();
         -self.moment * rest.perp(&now).atan2(rest.dot(&now))
     }
 

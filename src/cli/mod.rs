@@ -249,8 +249,7 @@ fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliErro
     let (scene, _) = simulate(source)?;
     let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoTruth(source.name.clone()))?;
     if let Some(path) = out {
-        let failed = |source| ExportError::Write { path: path.display().to_string(), source };
-        std::fs::write(path, report::curve_table(&curve)).map_err(failed)?;
+        export::write_text(path, &report::curve_table(&curve))?;
     }
     report::print(&report::curve(&scene, &curve));
     Ok(ExitCode::SUCCESS)
@@ -258,11 +257,10 @@ fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliErro
 
 /// Writes a folder of texts, and one of them, an SVG picture, as PNG too.
 fn write_folder(out: &Path, texts: &[(&str, &str)], picture: &str) -> Result<(), CliError> {
-    let failed = |path: &Path, source| ExportError::Write { path: path.display().to_string(), source };
-    std::fs::create_dir_all(out).map_err(|e| failed(out, e))?;
+    std::fs::create_dir_all(out).map_err(|source| ExportError::Write { path: out.display().to_string(), source })?;
     for (name, text) in texts {
         let path = out.join(name);
-        std::fs::write(&path, text).map_err(|e| failed(&path, e))?;
+        export::write_text(&path, text)?;
         if *name == picture {
             draw_svg(text)?.write_png(&path.with_extension("png"))?;
         }

@@ -8,23 +8,22 @@ use crate::element::GeometricShare;
 use crate::rotation::Rotation;
 
 /// The values of the exact tangent A + G − λ ∂f_ext/∂u at this state and load factor.
-pub(super) fn tangent(
-    system: &System,
-    u: &[Vector2<f64>],
-    r: &[Rotation],
-    load_factor: f64,
-    share: GeometricShare,
-    values: &mut [f64],
-) {
+pub(super) fn tangent(system: &System, u: &[Vector2<f64>], r: &[Rotation], load_factor: f64, values: &mut [f64]) {
     system.stiffness(r, values);
-    system.add_geometric_stiffness(u, r, share, values);
+    system.add_geometric_stiffness(u, r, GeometricShare::All, values);
     system.add_load_stiffness(u, load_factor, values);
 }
 
 /// Whether the exact tangent is positive definite (its Cholesky factorization succeeds): a stable equilibrium, if the
-/// state is an equilibrium at all. `r` are the polar rotations of `u`.
-pub fn is_stable(system: &System, u: &[Vector2<f64>], r: &[Rotation], workspace: &mut Workspace) -> bool {
-    tangent(system, u, r, 1.0, GeometricShare::All, &mut workspace.values);
+/// state is an equilibrium at this load factor at all. `r` are the polar rotations of `u`.
+pub fn is_stable(
+    system: &System,
+    u: &[Vector2<f64>],
+    r: &[Rotation],
+    load_factor: f64,
+    workspace: &mut Workspace,
+) -> bool {
+    tangent(system, u, r, load_factor, &mut workspace.values);
     workspace.factor.factorize(&workspace.values).is_ok()
 }
 

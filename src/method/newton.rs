@@ -7,7 +7,7 @@
 
 use nalgebra::Vector2;
 
-use super::certificate::tangent;
+use super::certificate::{is_stable, tangent};
 use super::frame::{Workspace, timed};
 use super::status::{ROUNDING, farthest};
 use super::{Frame, FrameError, Method, Reason, Verdict};
@@ -108,9 +108,7 @@ impl Newton {
 
     fn solve_descending(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
         let Workspace { values, factor, .. } = &mut *frame.workspace;
-        timed(&mut frame.profile.assemble, || {
-            tangent(frame.system, frame.u, frame.r, self.target, GeometricShare::All, values)
-        });
+        timed(&mut frame.profile.assemble, || tangent(frame.system, frame.u, frame.r, self.target, values));
         if timed(&mut frame.profile.factorize, || factor.factorize(values)).is_err() {
             timed(&mut frame.profile.assemble, || {
                 frame.system.stiffness(frame.r, values);
@@ -176,9 +174,7 @@ impl Method for Newton {
             return self.solve_descending(frame);
         }
         let Workspace { values, factor, .. } = &mut *frame.workspace;
-        timed(&mut frame.profile.assemble, || {
-            tangent(frame.system, frame.u, frame.r, self.target, GeometricShare::All, values)
-        });
+        timed(&mut frame.profile.assemble, || tangent(frame.system, frame.u, frame.r, self.target, values));
         timed(&mut frame.profile.factorize, || {
             if factor.factorize(values).is_err() {
                 factor.factorize_indefinite(values);
@@ -197,9 +193,7 @@ impl Method for Newton {
         }
         let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
         if residual <= enough {
-            let Workspace { values, factor, .. } = &mut *frame.workspace;
-            tangent(frame.system, frame.u, frame.r, self.target, GeometricShare::All, values);
-            let stable = factor.factorize(values).is_ok();
+            let stable = is_stable(frame.system, frame.u, frame.r, self.target, frame.workspace);
             if self.target == 1.0 && (stable || self.descends) {
                 return Verdict::Converged;
             }

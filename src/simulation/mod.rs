@@ -49,6 +49,8 @@ pub struct Simulation {
     /// Displacement x − X of every node, m.
     u: Vec<Vector2<f64>>,
     previous_u: Vec<Vector2<f64>>,
+    /// No displacement.
+    rest: Vec<Vector2<f64>>,
     r: Vec<Rotation>,
     external_force: Vec<Vector2<f64>>,
     internal_force: Vec<Vector2<f64>>,
@@ -89,6 +91,7 @@ impl Simulation {
             workspace,
             u: zero.clone(),
             previous_u: zero.clone(),
+            rest: zero.clone(),
             r: vec![Rotation::IDENTITY; points],
             external_force: zero.clone(),
             internal_force: zero.clone(),
@@ -238,7 +241,7 @@ impl Simulation {
             let Self { system, u, r, workspace, .. } = self;
             self.certificate = Certificate {
                 fixed_point_rho: fixed_point_rho(system, u, r, workspace),
-                stable: Some(is_stable(system, u, r, workspace)),
+                stable: Some(is_stable(system, u, r, 1.0, workspace)),
             };
         }
     }
@@ -249,12 +252,8 @@ impl Simulation {
         timed(&mut profile.assemble, || {
             self.system.internal_force(&self.u, &self.r, &mut self.internal_force, &mut self.magnitude);
             // Linear theory knows the loads at rest only.
-            if self.method.corotates() {
-                self.system.external_force(&self.u, self.method.load_factor(), &mut self.external_force);
-            } else {
-                let rest = vec![Vector2::zeros(); self.u.len()];
-                self.system.external_force(&rest, self.method.load_factor(), &mut self.external_force);
-            }
+            let seen = if self.method.corotates() { &self.u } else { &self.rest };
+            self.system.external_force(seen, self.method.load_factor(), &mut self.external_force);
             let forces = self.external_force.iter().zip(&self.internal_force);
             for (imbalance, (external, internal)) in self.imbalance.iter_mut().zip(forces) {
                 *imbalance = external - internal;

@@ -6,7 +6,7 @@ use super::field::largest_principal;
 use super::{Certificate, Simulation, Status};
 use crate::method::Profile;
 use crate::rotation::polar;
-use crate::truth::Truth;
+use crate::truth::{Truth, error_percent};
 
 /// A probe's result.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +25,7 @@ impl ProbeResult {
     /// The distance from the truth over the length of the true displacement, percent.
     #[must_use]
     pub fn error_percent(&self) -> Option<f64> {
-        let truth = self.truth.filter(|t| t.norm() > 0.0)?;
-        Some(100.0 * (self.u - truth).norm() / truth.norm())
+        error_percent(self.u, self.truth?)
     }
 }
 
@@ -101,7 +100,7 @@ impl Simulation {
         let truth = truth.and_then(|t| t.tip_displacement());
         let probes = system.probes.iter().map(|probe| {
             let u = probe.mean(&self.u);
-            let truth = truth.filter(|_| probe.edge.as_deref() == Some("right"));
+            let truth = truth.filter(|_| probe.is_at_tip());
             ProbeResult { name: probe.name.clone(), x: probe.mean(&system.mesh.nodes) + u, u, truth }
         });
         Solution {

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use crate::method::METHODS;
 use crate::scene::{MethodKind, Scene};
 use crate::simulation::{Simulation, Status};
-use crate::truth::Truth;
+use crate::truth::{Truth, error_percent};
 
 /// A load factor with its deflections.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ impl Sample {
     /// The distance of linear theory from the truth, over the true displacement, percent.
     #[must_use]
     pub fn linear_error_percent(&self) -> f64 {
-        100.0 * (self.linear - self.truth).norm() / self.truth.norm().max(f64::MIN_POSITIVE)
+        error_percent(self.linear, self.truth).unwrap_or(0.0)
     }
 }
 
@@ -116,7 +116,7 @@ fn method_point(scene: &Scene, method: MethodKind) -> Option<MethodPoint> {
     scene.solver.method = method;
     let mut simulation = Simulation::new(&scene).ok()?;
     simulation.solve();
-    let probe = simulation.system().probes.iter().find(|p| p.edge.as_deref() == Some("right"))?;
+    let probe = simulation.system().probes.iter().find(|p| p.is_at_tip())?;
     let tip = probe.mean(simulation.displacement());
     Some(MethodPoint { method, tip, status: simulation.status().clone() })
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use warpbeam::scene::{Scene, Source, open, registry};
+use warpbeam::simulation::{Simulation, Status};
 
 /// A built-in scene.
 pub fn scene(id: &str) -> Scene {
@@ -20,6 +21,14 @@ pub fn scene_with(id: &str, set: &[&str]) -> Scene {
 /// The names of all built-in scenes.
 pub fn scene_ids() -> Vec<&'static str> {
     registry::BUILT_IN.iter().map(|b| b.id).collect()
+}
+
+/// A scene that must converge, solved.
+pub fn solved(scene: &Scene) -> Simulation {
+    let mut simulation = Simulation::new(scene).unwrap();
+    let status = simulation.solve().clone();
+    assert_eq!(status, Status::Converged, "{}: residual {:e}", scene.name, simulation.residual());
+    simulation
 }
 
 /// Runs the program.

@@ -6,6 +6,7 @@ use super::Shown;
 use crate::app::format;
 use crate::method::rho_words;
 use crate::simulation::Status;
+use crate::truth::error_percent;
 
 /// The status as a sentence, and whether it is a bad one.
 pub(in crate::app) fn status_words(shown_status: &Status, running: bool) -> (String, bool) {
@@ -25,10 +26,10 @@ const UNKNOWN: &str = "\u{2013}";
 
 /// The error of the probe on the right edge against the truth.
 fn tip_error(shown: &Shown<'_>) -> Option<String> {
-    let truth = shown.truth.filter(|t| t.norm() > 0.0)?;
+    let truth = shown.truth?;
     let simulation = shown.simulation;
-    let probe = simulation.system().probes.iter().find(|p| p.edge.as_deref() == Some("right"))?;
-    let percent = 100.0 * (probe.mean(simulation.displacement()) - truth).norm() / truth.norm();
+    let probe = simulation.system().probes.iter().find(|p| p.is_at_tip())?;
+    let percent = error_percent(probe.mean(simulation.displacement()), truth)?;
     Some(format!("{} % of {} m", format::short(percent), format::short(truth.norm())))
 }
 
