@@ -41,8 +41,10 @@ fn reactions_balance_the_loads() {
             // A moment loads the body too, though its forces cancel.
             let scale = system.dead_force.iter().map(|f| f.norm()).sum::<f64>()
                 + system.moments.iter().map(|m| m.moment.abs()).sum::<f64>();
-            assert!((reaction.force + total).norm() < 1e-6 * scale, "{id}: {:?}", reaction.force);
-            if entry.kind == MethodKind::Linear {
+            // `auto` ends within its asked error, the others at a residual.
+            let close = if entry.kind == MethodKind::Auto { 1e-2 } else { 1e-6 };
+            assert!((reaction.force + total).norm() < close * scale, "{id}: {:?}", reaction.force);
+            if !simulation.corotates() {
                 // Linear theory balances moments about the rest positions; the reaction is about the current ones.
                 continue;
             }
@@ -50,7 +52,7 @@ fn reactions_balance_the_loads() {
             let dead: f64 = arms.zip(&system.dead_force).map(|(x, f)| x.perp(f)).sum();
             let moment = dead + system.moments.iter().map(|m| m.moment).sum::<f64>();
             let size = system.mesh.bounds().1.norm();
-            assert!((reaction.moment + moment).abs() < 1e-6 * scale * size, "{id}: {} {moment}", reaction.moment);
+            assert!((reaction.moment + moment).abs() < close * scale * size, "{id}: {} {moment}", reaction.moment);
         }
     }
 }

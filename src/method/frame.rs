@@ -82,6 +82,15 @@ impl Workspace {
     }
 }
 
+/// When a solve is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// Relative residual, for methods that iterate to an equilibrium.
+    pub tolerance: f64,
+    /// Error as a share of the displacement, for `auto`.
+    pub max_error: f64,
+}
+
 /// What a method may use and change in one frame.
 #[derive(Debug)]
 pub struct Frame<'a> {
@@ -91,6 +100,10 @@ pub struct Frame<'a> {
     pub r: &'a [Rotation],
     /// f_ext − f_int of the current state at the present load factor, N.
     pub imbalance: &'a [Vector2<f64>],
+    /// Its relative residual.
+    pub residual: f64,
+    /// When the solve is done.
+    pub goal: Goal,
     /// Displacement, m: read and replaced.
     pub u: &'a mut [Vector2<f64>],
     /// Memory.

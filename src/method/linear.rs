@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 
 use super::status::{Watch, farthest};
-use super::{Frame, FrameError, Method, Verdict};
+use super::{Frame, FrameError, Method, Occasion, Verdict};
 use crate::assembly::System;
 use crate::rotation::Rotation;
 
@@ -15,6 +15,10 @@ pub(super) const ABOUT: &str = "Linear FEM: one solve, right only while rotation
 pub struct Linear(Watch);
 
 impl Method for Linear {
+    fn begin(&mut self, _: Occasion) {
+        *self = Self::default();
+    }
+
     fn rotate(&self, _: &System, _: &[Vector2<f64>], r: &mut [Rotation]) {
         r.fill(Rotation::IDENTITY);
     }
@@ -27,7 +31,7 @@ impl Method for Linear {
         frame.step_with_warped_stiffness().map(|step| self.0.stepped(step))
     }
 
-    fn judge(&mut self, frame: &mut Frame<'_>, residual: f64, tolerance: f64) -> Verdict {
-        self.0.judge(residual, tolerance, farthest(frame.system, frame.u))
+    fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict {
+        self.0.judge(frame.residual, frame.goal.tolerance, farthest(frame.system, frame.u))
     }
 }

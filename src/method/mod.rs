@@ -11,6 +11,7 @@ use crate::assembly::System;
 use crate::rotation::Rotation;
 use crate::scene::MethodKind;
 
+mod auto;
 mod certificate;
 mod frame;
 mod linear;
@@ -18,9 +19,10 @@ mod newton;
 mod status;
 mod warped;
 
+pub use auto::{Decision, Thrift};
 pub use certificate::{fixed_point_rho, is_stable, rho_words};
 pub(crate) use frame::timed;
-pub use frame::{Frame, FrameError, Profile, Workspace};
+pub use frame::{Frame, FrameError, Goal, Profile, Workspace};
 pub use status::{Reason, Status};
 
 /// An entry of the registry.
@@ -41,8 +43,11 @@ const WARPED: MethodEntry =
 const NEWTON: MethodEntry =
     MethodEntry { kind: MethodKind::Newton, about: newton::ABOUT, start: || Box::<newton::Newton>::default() };
 
+const AUTO: MethodEntry =
+    MethodEntry { kind: MethodKind::Auto, about: auto::ABOUT, start: || Box::<auto::Auto>::default() };
+
 /// Every method there is: a file beside this one and a line here.
-pub const METHODS: &[MethodEntry] = &[LINEAR, WARPED, NEWTON];
+pub const METHODS: &[MethodEntry] = &[LINEAR, WARPED, NEWTON, AUTO];
 
 impl MethodKind {
     /// Its entry in the registry.
@@ -52,6 +57,7 @@ impl MethodKind {
             Self::Linear => LINEAR,
             Self::Warped => WARPED,
             Self::Newton => NEWTON,
+            Self::Auto => AUTO,
         }
     }
 }
@@ -69,8 +75,22 @@ pub enum Verdict {
     Stop(Reason),
 }
 
+/// Why a method begins anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Occasion {
+    /// The state is another one, and the equations may be.
+    Reset,
+    /// The state is kept; loads, supports' reactions or goals have changed, the stiffness has not.
+    NewLoads,
+    /// The state is kept, the stiffness is another one.
+    NewStiffness,
+}
+
 /// What makes a method. It may remember: a new one starts at rest.
 pub trait Method: std::fmt::Debug + Send {
+    /// Forgets the iteration that was, and what the occasion makes useless.
+    fn begin(&mut self, occasion: Occasion);
+
     /// The rotations with which the state `u` is seen.
     fn rotate(&self, system: &System, u: &[Vector2<f64>], r: &mut [Rotation]);
 
@@ -92,14 +112,19 @@ pub trait Method: std::fmt::Debug + Send {
         None
     }
 
+    /// What was left out because the scene does not need it; `None` for methods that do not decide.
+    fn thrift(&self) -> Option<Thrift> {
+        None
+    }
+
     /// One frame: a new displacement from the current one.
     ///
     /// # Errors
     /// [`FrameError`]; the displacement is unchanged then.
     fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError>;
 
-    /// Judges the state in `frame`, whose relative residual at the present load factor is `residual`.
-    fn judge(&mut self, frame: &mut Frame<'_>, residual: f64, tolerance: f64) -> Verdict;
+    /// Judges the state in `frame`.
+    fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict;
 
     /// Out of iterations: leaves the best state there is in `u`.
     fn stop(&mut self, _: &mut [Vector2<f64>]) {}

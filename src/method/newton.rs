@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 use super::certificate::{is_stable, tangent};
 use super::frame::{Workspace, timed};
 use super::status::{ROUNDING, farthest};
-use super::{Frame, FrameError, Method, Reason, Verdict};
+use super::{Frame, FrameError, Method, Occasion, Reason, Verdict};
 use crate::assembly::System;
 use crate::element::GeometricShare;
 use crate::rotation::Rotation;
@@ -149,6 +149,10 @@ impl Newton {
 }
 
 impl Method for Newton {
+    fn begin(&mut self, _: Occasion) {
+        *self = Self::default();
+    }
+
     fn rotate(&self, system: &System, u: &[Vector2<f64>], r: &mut [Rotation]) {
         system.elements.rotations(u, r);
     }
@@ -186,14 +190,18 @@ impl Method for Newton {
         Ok(())
     }
 
-    fn judge(&mut self, frame: &mut Frame<'_>, residual: f64, tolerance: f64) -> Verdict {
+    fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict {
+        let (residual, tolerance) = (frame.residual, frame.goal.tolerance);
         if self.steps == 0 {
             // Nothing solved yet; a state without load is its own equilibrium.
             return if residual <= tolerance && self.target == 1.0 { Verdict::Converged } else { Verdict::Continue };
         }
         let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
         if residual <= enough {
-            let stable = is_stable(frame.system, frame.u, frame.r, self.target, frame.workspace);
+            let (system, workspace) = (frame.system, &mut *frame.workspace);
+            let stable = timed(&mut frame.profile.factorize, || {
+                is_stable(system, frame.u, frame.r, self.target, workspace)
+            });
             if self.target == 1.0 && (stable || self.descends) {
                 return Verdict::Converged;
             }

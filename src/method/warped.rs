@@ -6,7 +6,7 @@
 use nalgebra::Vector2;
 
 use super::status::{Watch, farthest};
-use super::{Frame, FrameError, Method, Verdict};
+use super::{Frame, FrameError, Method, Occasion, Verdict};
 use crate::assembly::System;
 use crate::rotation::Rotation;
 
@@ -18,6 +18,10 @@ pub(super) const ABOUT: &str =
 pub struct Warped(Watch);
 
 impl Method for Warped {
+    fn begin(&mut self, _: Occasion) {
+        *self = Self::default();
+    }
+
     fn rotate(&self, system: &System, u: &[Vector2<f64>], r: &mut [Rotation]) {
         system.elements.rotations(u, r);
     }
@@ -34,7 +38,7 @@ impl Method for Warped {
         frame.step_with_warped_stiffness().map(|step| self.0.stepped(step))
     }
 
-    fn judge(&mut self, frame: &mut Frame<'_>, residual: f64, tolerance: f64) -> Verdict {
-        self.0.judge(residual, tolerance, farthest(frame.system, frame.u))
+    fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict {
+        self.0.judge(frame.residual, frame.goal.tolerance, farthest(frame.system, frame.u))
     }
 }

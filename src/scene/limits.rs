@@ -75,3 +75,7 @@ pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
 pub const TOLERANCE: Limit = Limit::new("", 1e-14, 0.1);
 /// Iterations a solve may take.
 pub const MAX_ITERATIONS: Limit = Limit::new("", 1.0, 100_000.0);
+/// Error that may be asked for.
+pub const MAX_ERROR_PERCENT: Limit = Limit::new("%", 1e-6, 100.0);
+/// Time a frame may take.
+pub const BUDGET_MS: Limit = Limit::new("ms", 1e-6, 1e6);

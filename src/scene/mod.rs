@@ -234,11 +234,22 @@ pub struct SolverSettings {
     pub tolerance: f64,
     /// Iterations after which it gives up.
     pub max_iterations: u32,
+    /// `auto` only: the error that is asked for, percent of the true displacement.
+    pub max_error_percent: f64,
+    /// `auto` only: the time a frame may take, ms.
+    pub budget_ms: f64,
 }
 
 impl Default for SolverSettings {
     fn default() -> Self {
-        Self { method: MethodKind::default(), tolerance: 1e-8, max_iterations: 100 }
+        Self {
+            method: MethodKind::default(),
+            tolerance: 1e-8,
+            max_iterations: 100,
+            max_error_percent: 1.0,
+            // A frame at 60 Hz, roughly.
+            budget_ms: 16.0,
+        }
     }
 }
 
@@ -253,6 +264,8 @@ pub enum MethodKind {
     /// Newton's method with the exact tangent.
     #[default]
     Newton,
+    /// Whatever of these the asked accuracy needs.
+    Auto,
 }
 
 impl MethodKind {
@@ -263,6 +276,7 @@ impl MethodKind {
             Self::Linear => "linear",
             Self::Warped => "warped",
             Self::Newton => "newton",
+            Self::Auto => "auto",
         }
     }
 }
@@ -336,7 +350,9 @@ impl Scene {
             validate_place(&format!("probe.{i}"), probe.place())?;
         }
         check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
-        check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))
+        check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;
+        check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)?;
+        check("solver.budget_ms", limits::BUDGET_MS, self.solver.budget_ms)
     }
 }
 

@@ -4,7 +4,9 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::assembly::System;
-use crate::method::{Frame, FrameError, Method, Profile, Verdict, Workspace, fixed_point_rho, is_stable, timed};
+use crate::method::{
+    Frame, FrameError, Goal, Method, Occasion, Profile, Thrift, Verdict, Workspace, fixed_point_rho, is_stable, timed,
+};
 use crate::rotation::Rotation;
 use crate::scene::{Invalid, MethodKind, Scene};
 use crate::solver::SolverError;
@@ -43,7 +45,7 @@ pub struct Simulation {
     system: System,
     kind: MethodKind,
     method: Box<dyn Method>,
-    tolerance: f64,
+    goal: Goal,
     max_iterations: u32,
     workspace: Workspace,
     /// Displacement x − X of every node, m.
@@ -62,6 +64,10 @@ pub struct Simulation {
     certificate: Certificate,
     profile: Profile,
     last_frame: Profile,
+}
+
+fn goal(scene: &Scene) -> Goal {
+    Goal { tolerance: scene.solver.tolerance, max_error: 0.01 * scene.solver.max_error_percent }
 }
 
 impl Simulation {
@@ -86,7 +92,7 @@ impl Simulation {
         let mut simulation = Self {
             kind,
             method: (kind.entry().start)(),
-            tolerance: scene.solver.tolerance,
+            goal: goal(scene),
             max_iterations: scene.solver.max_iterations,
             workspace,
             u: zero.clone(),
@@ -105,7 +111,7 @@ impl Simulation {
             last_frame: Profile::default(),
             system,
         };
-        simulation.begin();
+        simulation.begin(Occasion::Reset);
         Ok(simulation)
     }
 
@@ -113,7 +119,7 @@ impl Simulation {
     pub fn reset(&mut self) {
         self.u.fill(Vector2::zeros());
         self.r.fill(Rotation::IDENTITY);
-        self.begin();
+        self.begin(Occasion::Reset);
     }
 
     /// Starts over from this displacement, m; what supports hold does not move.
@@ -122,7 +128,7 @@ impl Simulation {
         let mut free = vec![0.0; self.system.dofs()];
         self.system.restrict(u, &mut free);
         self.system.add_free(&free, &mut self.u);
-        self.begin();
+        self.begin(Occasion::Reset);
     }
 
     /// Takes another scene on. Where only numbers change the state is kept, so that a dragged load is followed from
@@ -137,30 +143,31 @@ impl Simulation {
             return Ok(());
         }
         std::mem::swap(&mut self.system, &mut system);
-        self.tolerance = scene.solver.tolerance;
+        self.goal = goal(scene);
         self.max_iterations = scene.solver.max_iterations;
         if matches!(self.status, Status::Diverged(_)) || scene.solver.method != self.kind {
             self.kind = scene.solver.method;
+            self.method = (self.kind.entry().start)();
             self.reset();
         } else {
-            self.begin();
+            let stiffness = |system: &System| (system.lame, system.material.thickness);
+            let same = stiffness(&system) == stiffness(&self.system);
+            self.begin(if same { Occasion::NewLoads } else { Occasion::NewStiffness });
         }
         Ok(())
     }
 
     /// Forgets iterations and times, and measures the state it starts from.
-    fn begin(&mut self) {
+    fn begin(&mut self, occasion: Occasion) {
         self.iterations = 0;
         self.status = Status::Running;
         self.certificate = Certificate::default();
-        self.method = (self.kind.entry().start)();
+        self.method.begin(occasion);
         self.profile = Profile::default();
         self.last_frame = Profile::default();
         let mut unmeasured = Profile::default();
         self.measure(&mut unmeasured);
-        let verdict = self.with_method(&mut unmeasured, |method, frame, residual, tolerance| {
-            method.judge(frame, residual, tolerance)
-        });
+        let verdict = self.with_method(&mut unmeasured, |method, frame| method.judge(frame));
         self.follow(verdict, &mut unmeasured);
     }
 
@@ -172,7 +179,7 @@ impl Simulation {
         }
         let mut profile = Profile::default();
         self.previous_u.copy_from_slice(&self.u);
-        let solved = self.with_method(&mut profile, |method, frame, _, _| method.solve(frame));
+        let solved = self.with_method(&mut profile, |method, frame| method.solve(frame));
         self.iterations += 1;
         let measured = solved.and_then(|()| {
             self.measure(&mut profile);
@@ -182,8 +189,8 @@ impl Simulation {
             self.u.copy_from_slice(&self.previous_u);
             self.measure(&mut profile);
         }
-        let verdict = self.with_method(&mut profile, |method, frame, residual, tolerance| match measured {
-            Ok(()) => method.judge(frame, residual, tolerance),
+        let verdict = self.with_method(&mut profile, |method, frame| match measured {
+            Ok(()) => method.judge(frame),
             Err(error) => method.recover(frame, error),
         });
         self.follow(verdict, &mut profile);
@@ -204,17 +211,19 @@ impl Simulation {
     fn with_method<T>(
         &mut self,
         profile: &mut Profile,
-        work: impl FnOnce(&mut dyn Method, &mut Frame<'_>, f64, f64) -> T,
+        work: impl FnOnce(&mut dyn Method, &mut Frame<'_>) -> T,
     ) -> T {
         let mut frame = Frame {
             system: &self.system,
             r: &self.r,
             imbalance: &self.imbalance,
+            residual: self.residual,
+            goal: self.goal,
             u: &mut self.u,
             workspace: &mut self.workspace,
             profile,
         };
-        work(self.method.as_mut(), &mut frame, self.residual, self.tolerance)
+        work(self.method.as_mut(), &mut frame)
     }
 
     /// Does what the method's verdict asks for.
@@ -299,6 +308,18 @@ impl Simulation {
     #[must_use]
     pub fn load_stepping(&self) -> (f64, u32) {
         (self.method.load_factor(), self.method.load_steps())
+    }
+
+    /// Whether the state is seen corotated; if not, it is linear theory's.
+    #[must_use]
+    pub fn corotates(&self) -> bool {
+        self.method.corotates()
+    }
+
+    /// What was left out because the scene does not need it; `None` for methods that do not decide.
+    #[must_use]
+    pub fn thrift(&self) -> Option<Thrift> {
+        self.method.thrift()
     }
 
     /// Displacement x − X of every node, m.

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::trade::{Measurement, Study};
+use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 
 const SIZE: [f64; 2] = [860.0, 560.0];
@@ -52,6 +53,7 @@ fn color(method: MethodKind) -> &'static str {
         MethodKind::Linear => "#e69f00",
         MethodKind::Warped => "#b03a2e",
         MethodKind::Newton => "#0072b2",
+        MethodKind::Auto => "#009e73",
     }
 }
 
@@ -107,7 +109,7 @@ pub fn svg(study: &Study) -> String {
         mark(&mut svg, x.place(milliseconds(m)), y.place(error(m)), m);
     }
     let mut row = TOP + 10.0;
-    for method in [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton] {
+    for method in METHODS.iter().map(|m| m.kind) {
         for element in ElementKind::ALL {
             let shape = shape(right + 22.0, row, element, color(method), 5.0);
             let _ = writeln!(

@@ -1,0 +1,211 @@
+//! `auto` leaves out what a scene does not need, and stays within the asked error of the exact equilibrium.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use common::{scene, scene_ids};
+use warpbeam::method::{Decision, Thrift};
+use warpbeam::scene::{ElementKind, Load, MethodKind, Scene};
+use warpbeam::simulation::{Simulation, Status};
+use warpbeam::truth::Truth;
+
+fn scaled(scene: &Scene, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    for load in &mut scene.loads {
+        match load {
+            Load::Force { force, .. } => *force = force.map(|f| f * factor),
+            Load::Gravity { acceleration } => *acceleration = acceleration.map(|a| a * factor),
+            Load::Moment { moment, .. } => *moment *= factor,
+        }
+    }
+    scene
+}
+
+fn run(scene: &Scene, method: MethodKind) -> Simulation {
+    let mut scene = scene.clone();
+    scene.solver.method = method;
+    scene.solver.max_iterations = 400;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.solve();
+    simulation
+}
+
+/// The distance of two results at the first probe, percent of the second's displacement.
+fn distance(a: &Simulation, b: &Simulation) -> f64 {
+    let [a, b] = [a, b].map(|s| s.system().probes[0].mean(s.displacement()));
+    100.0 * (a - b).norm() / b.norm()
+}
+
+fn thrift(simulation: &Simulation) -> Thrift {
+    simulation.thrift().unwrap()
+}
+
+/// Every scene and element, loads over five decades: the result is within the asked error of Newton's, linear theory is
+/// used where it serves and nowhere else.
+#[test]
+fn every_result_is_within_the_asked_error() {
+    let mut served = 0;
+    for (id, element) in scene_ids().into_iter().flat_map(|id| ElementKind::ALL.map(|e| (id, e))) {
+        let mut whole = scene(id);
+        whole.set_element(element);
+        for factor in [1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.6, 1.0, 1.5] {
+            let mut scene = scaled(&whole, factor);
+            let exact = run(&scene, MethodKind::Newton);
+            let linear = distance(&run(&scene, MethodKind::Linear), &exact);
+            for asked in [10.0, 1.0, 0.1] {
+                scene.solver.max_error_percent = asked;
+                let auto = run(&scene, MethodKind::Auto);
+                let what = format!("{id} {element:?} × {factor}, {asked} %: {:?}", thrift(&auto));
+                assert_eq!(*auto.status(), Status::Converged, "{what}");
+                let error = distance(&auto, &exact);
+                assert!(error <= asked, "{what}: {error} %");
+                let is_linear = thrift(&auto).decision == Decision::Linear;
+                assert_eq!(is_linear, !auto.corotates());
+                served += u32::from(is_linear);
+                // The estimate is of the largest displacement too, not only of the probe's.
+                assert!(is_linear || linear > 0.1 * asked, "{what}: linear theory is off by {linear} % only");
+            }
+        }
+    }
+    assert!(served > 150, "{served}");
+}
+
+/// Against the exact beam too, on a mesh that is good enough for it.
+#[test]
+fn results_stay_within_the_asked_error_of_the_truth() {
+    for id in ["cantilever", "elastica"] {
+        let mut scene = scene(id);
+        scene.set_element(ElementKind::T6);
+        scene.beam.as_mut().unwrap().cells = [40, 2];
+        scene.solver.method = MethodKind::Auto;
+        scene.solver.max_error_percent = 1.0;
+        let mut decisions = Vec::new();
+        for factor in [1e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0] {
+            let scene = scaled(&scene, factor);
+            let auto = run(&scene, MethodKind::Auto);
+            let solution = auto.solution(Truth::of(&scene).as_ref());
+            let error = solution.probes[0].error_percent().unwrap();
+            assert!(error <= 1.0, "{id} × {factor}: {error} %, {:?}", thrift(&auto));
+            decisions.push(thrift(&auto).decision);
+        }
+        assert!(decisions.contains(&Decision::Linear) && decisions.contains(&Decision::NewFactor), "{decisions:?}");
+    }
+}
+
+/// A load that grows and turns a little every frame, as under a slider: the old factor serves most frames, and every
+/// frame is within the asked error.
+#[test]
+fn a_dragged_load_seldom_needs_a_new_factor() {
+    for id in ["cantilever", "elastica"] {
+        drag(scene(id));
+    }
+}
+
+fn drag(mut scene: Scene) {
+    const FRAMES: u32 = 60;
+    scene.solver.method = MethodKind::Auto;
+    scene.solver.max_error_percent = 1.0;
+    let Load::Force { force, .. } = scene.loads[0].clone() else { unreachable!("a force") };
+    let mut auto: Option<Simulation> = None;
+    let (mut factorizations, mut newtons, mut old) = (0, 0, 0);
+    for frame in 0..FRAMES {
+        let share = f64::from(frame) / f64::from(FRAMES - 1);
+        let (s, c) = (0.5 * share).sin_cos();
+        let size = 0.2 + 0.8 * share;
+        let turned = [size * (c * force[0] - s * force[1]), size * (s * force[0] + c * force[1])];
+        scene.loads[0] = match &scene.loads[0] {
+            Load::Force { place, .. } => Load::Force { place: place.clone(), force: turned },
+            other => other.clone(),
+        };
+        let simulation = match auto.take() {
+            None => Simulation::new(&scene).unwrap(),
+            Some(mut simulation) => {
+                simulation.change_scene(&scene).unwrap();
+                simulation
+            }
+        };
+        let simulation = auto.insert(simulation);
+        simulation.solve();
+        let exact = run(&scene, MethodKind::Newton);
+        let error = distance(simulation, &exact);
+        assert!(error <= 1.0, "frame {frame}: {error} %, {:?}", thrift(simulation));
+        factorizations += thrift(simulation).factorizations;
+        newtons += exact.iterations();
+        old += u32::from(thrift(simulation).decision == Decision::OldFactor);
+    }
+    assert!(old >= FRAMES / 2, "the old factor served {old} of {FRAMES} frames");
+    assert!(3 * factorizations <= newtons, "{factorizations} factorizations, newton's {newtons}");
+}
+
+#[test]
+fn where_nothing_has_changed_nothing_is_solved() {
+    for factor in [1e-3, 1.0] {
+        let mut scene = scaled(&scene("elastica"), factor);
+        scene.solver.method = MethodKind::Auto;
+        let mut auto = Simulation::new(&scene).unwrap();
+        auto.solve();
+        assert!(auto.iterations() > 0);
+        let before = auto.displacement().to_vec();
+        scene.probes[0].name = "another name".to_owned();
+        auto.change_scene(&scene).unwrap();
+        assert_eq!((auto.status(), auto.iterations()), (&Status::Converged, 0));
+        assert_eq!(thrift(&auto).decision, Decision::Unchanged);
+        assert_eq!((thrift(&auto).solves, thrift(&auto).factorizations), (0, 0));
+        assert_eq!(auto.displacement(), before);
+        auto.change_scene(&scaled(&scene, 1.001)).unwrap();
+        auto.solve();
+        assert!(auto.iterations() > 0 && thrift(&auto).decision != Decision::Unchanged);
+        assert!(auto.displacement() != before);
+    }
+}
+
+/// A small load again and again costs one factorization in all, and three back substitutions a frame.
+#[test]
+fn under_small_loads_nothing_is_factorized() {
+    let mut scene = scaled(&scene("cantilever"), 1e-3);
+    scene.solver.method = MethodKind::Auto;
+    let mut auto = Simulation::new(&scene).unwrap();
+    auto.solve();
+    for frame in 0..5 {
+        scene = scaled(&scene, 0.9);
+        auto.change_scene(&scene).unwrap();
+        auto.solve();
+        let Thrift { decision, solves, factorizations, .. } = thrift(&auto);
+        assert_eq!((decision, solves, factorizations), (Decision::Linear, 3, 0), "frame {frame}");
+    }
+}
+
+/// Another stiffness makes the old factors useless.
+#[test]
+fn a_new_stiffness_is_factorized_anew() {
+    for factor in [1e-3, 1.0] {
+        let mut scene = scaled(&scene("elastica"), factor);
+        scene.solver.method = MethodKind::Auto;
+        let mut auto = Simulation::new(&scene).unwrap();
+        auto.solve();
+        for change in [|s: &mut Scene| s.material.young *= 1.5, |s: &mut Scene| s.material.thickness *= 0.7] {
+            change(&mut scene);
+            auto.change_scene(&scene).unwrap();
+            auto.solve();
+            let error = distance(&auto, &run(&scene, MethodKind::Newton));
+            assert!(error <= scene.solver.max_error_percent, "{error}");
+        }
+    }
+}
+
+/// A column pressed straight is its own linear solution, and beyond Euler's load an unstable one.
+#[test]
+fn an_unstable_linear_solution_is_not_taken() {
+    let mut column = scene("elastica");
+    let beam = column.beam.clone().unwrap();
+    let bending = column.material.young * column.material.thickness * beam.height.powi(3) / 12.0;
+    let euler = std::f64::consts::PI.powi(2) * bending / (4.0 * beam.length.powi(2));
+    for (share, decides_linear) in [(0.5, true), (0.9, true), (1.1, false), (1.5, false)] {
+        column.loads = vec![Load::Force {
+            place: warpbeam::scene::Place::Edge("right".to_owned()),
+            force: [-share * euler, 0.0],
+        }];
+        let auto = run(&column, MethodKind::Auto);
+        assert_eq!(thrift(&auto).decision == Decision::Linear, decides_linear, "{share}: {:?}", thrift(&auto));
+    }
+}
