@@ -201,10 +201,8 @@ fn an_unstable_linear_solution_is_not_taken() {
     let bending = column.material.young * column.material.thickness * beam.height.powi(3) / 12.0;
     let euler = std::f64::consts::PI.powi(2) * bending / (4.0 * beam.length.powi(2));
     for (share, decides_linear) in [(0.5, true), (0.9, true), (1.1, false), (1.5, false)] {
-        column.loads = vec![Load::Force {
-            place: warpbeam::scene::Place::Edge("right".to_owned()),
-            force: [-share * euler, 0.0],
-        }];
+        column.loads =
+            vec![Load::Force { place: warpbeam::scene::Place::Edge("right".to_owned()), force: [-share * euler, 0.0] }];
         let auto = run(&column, MethodKind::Auto);
         assert_eq!(thrift(&auto).decision == Decision::Linear, decides_linear, "{share}: {:?}", thrift(&auto));
     }

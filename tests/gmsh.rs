@@ -5,10 +5,11 @@ mod common;
 
 use std::fs;
 
-use common::{stderr, warpbeam};
+use common::{scene, stderr, warpbeam};
 use nalgebra::Vector2;
+use warpbeam::assembly::System;
 use warpbeam::mesh::{GmshError, Mesh, MeshError};
-use warpbeam::scene::ElementKind;
+use warpbeam::scene::{ElementKind, Load};
 
 /// Two triangles, the second clockwise; the left side is a physical curve.
 const SQUARE: &str = r#"$MeshFormat
@@ -160,5 +161,37 @@ fn a_scene_file_names_its_mesh_relative_to_itself() {
         let output = warpbeam(&["solve", path.to_str().unwrap()]);
         assert_eq!(output.status.code(), Some(code), "{file}: {}", stderr(&output));
         assert!(stderr(&output).contains(message), "{file}: {}", stderr(&output));
+    }
+}
+
+/// Refinement keeps the body, its edges and its nodes' numbers, also where sides are curved, and solutions converge.
+#[test]
+fn refined_meshes_are_the_same_body() {
+    for (id, element) in ["cook", "bracket", "cantilever"].into_iter().flat_map(|id| ElementKind::ALL.map(|e| (id, e)))
+    {
+        let mut scene = scene(id);
+        scene.set_element(element);
+        let mesh = System::new(&scene).unwrap().mesh;
+        let fine = mesh.refined();
+        assert_eq!(fine.triangle_count(), 4 * mesh.triangle_count());
+        assert_eq!(fine.nodes[..mesh.nodes.len()], mesh.nodes[..]);
+        let checked = Mesh::new(fine.nodes.clone(), element, fine.connectivity.clone(), fine.edges.clone()).unwrap();
+        assert_eq!(checked, fine, "{id} {element:?}: triangles turned over");
+        assert_eq!(fine.outline().len(), 2 * mesh.outline().len(), "{id} {element:?}: not conforming");
+        let weight = |mesh: Mesh| -> f64 {
+            let mut heavy = scene.clone();
+            heavy.loads = vec![Load::Gravity { acceleration: [0.0, -1.0] }];
+            System::with_mesh(&heavy, mesh).unwrap().dead_force.iter().map(|f| f.y).sum()
+        };
+        let (coarse, refined) = (weight(mesh.clone()), weight(fine.clone()));
+        assert!((coarse - refined).abs() < 1e-9 * coarse.abs(), "{id} {element:?}: {coarse} {refined}");
+        for (name, segments) in &mesh.edges {
+            assert_eq!(fine.edges[name].len(), 2 * segments.len());
+            let length = |mesh: &Mesh, segments: &[warpbeam::mesh::Segment]| -> f64 {
+                segments.iter().map(|s| (mesh.nodes[s.ends[0] as usize] - mesh.nodes[s.ends[1] as usize]).norm()).sum()
+            };
+            // Halves of a curved side are no shorter than its chord.
+            assert!(length(&fine, &fine.edges[name]) >= length(&mesh, segments) * (1.0 - 1e-12), "{id} {name}");
+        }
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge, 2 bad input or usage, 3 no graphics adapter.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -10,9 +11,9 @@ use clap::{Args, Parser, Subcommand};
 use crate::app;
 use crate::export::{self, ExportError, Format};
 use crate::render::{RenderError, draw_svg};
-use crate::scene::{self, Scene, SceneError, registry};
+use crate::scene::{self, MethodKind, Scene, SceneError, registry};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::study::{LoadCurve, Study, StudyError, extremes, plot};
+use crate::study::{Choice, Extent, LoadCurve, Progress, Study, StudyError, extremes, plot};
 use crate::truth::Truth;
 
 mod report;
@@ -232,17 +233,46 @@ fn exit_code(status: &Status) -> ExitCode {
     if *status == Status::Converged { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) }
 }
 
+/// Measures what a scene that leaves the choice of element, mesh and method open asks for. `None` where it does not, or
+/// where nothing can be measured: then its own mesh has to do.
+fn choose(source: &scene::Source, scene: &Scene) -> Result<Option<Choice>, CliError> {
+    if scene.solver.method != MethodKind::Auto {
+        return Ok(None);
+    }
+    match Choice::of(scene, &mut watch()) {
+        Ok(choice) => Ok(Some(choice)),
+        Err(error @ (StudyError::NoProbe | StudyError::NoTruth)) => {
+            eprintln!("warpbeam: auto keeps the scene's own mesh: {error}");
+            Ok(None)
+        }
+        Err(error) => Err(CliError::Study { scene: source.name.clone(), error }),
+    }
+}
+
 fn solve(source: &scene::Source, json: bool, out: Option<&Path>) -> Result<ExitCode, CliError> {
     // A wrong file name is said before the work, not after.
     out.map(Format::of).transpose()?;
-    let (scene, mut simulation) = simulate(source)?;
+    let (mut scene, mut simulation) = simulate(source)?;
+    let choice = choose(source, &scene)?;
+    if let Some(choice) = &choice {
+        scene = choice.chosen.setting.apply(&scene);
+        let failed = |error| CliError::Simulation { scene: source.name.clone(), error };
+        simulation = Simulation::new(&scene).map_err(failed)?;
+    }
     let status = simulation.solve().clone();
     if let Some(path) = out {
         export::write(&simulation, path)?;
     }
     let solution = simulation.solution(Truth::of(&scene).as_ref());
-    report::print(&if json { report::json(&scene, &solution) } else { report::text(&scene, &solution) });
-    Ok(exit_code(&status))
+    let choice = choice.as_ref();
+    report::print(&if json {
+        report::json(&scene, &solution, choice)
+    } else {
+        report::text(&scene, &solution, choice)
+    });
+    // A demand that is not met is a result that falls short of what was asked.
+    let met = choice.is_none_or(|c| c.met);
+    Ok(if met { exit_code(&status) } else { ExitCode::from(NOT_CONVERGED) })
 }
 
 fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliError> {
@@ -253,6 +283,21 @@ fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliErro
     }
     report::print(&report::curve(&scene, &curve));
     Ok(ExitCode::SUCCESS)
+}
+
+fn extent(quick: bool) -> Extent {
+    if quick { Extent::Quick } else { Extent::Full }
+}
+
+/// Tells people who wait how far a study is; scripts get clean streams.
+fn watch() -> impl FnMut(Progress<'_>) -> ControlFlow<()> {
+    let watched = std::io::IsTerminal::is_terminal(&std::io::stderr());
+    move |progress| {
+        if watched {
+            eprintln!("measuring {}", progress.now);
+        }
+        ControlFlow::Continue(())
+    }
 }
 
 /// Writes a folder of texts, and one of them, an SVG picture, as PNG too.
@@ -270,15 +315,8 @@ fn write_folder(out: &Path, texts: &[(&str, &str)], picture: &str) -> Result<(),
 
 fn study(source: &scene::Source, out: &Path, quick: bool) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
-    // For people who wait; scripts get clean streams.
-    let watched = std::io::IsTerminal::is_terminal(&std::io::stderr());
-    let progress = |mesh: &str| {
-        if watched {
-            eprintln!("measuring {mesh}");
-        }
-    };
-    let study =
-        Study::new(&scene, quick, progress).map_err(|error| CliError::Study { scene: source.name.clone(), error })?;
+    let study = Study::new(&scene, extent(quick), &mut watch())
+        .map_err(|error| CliError::Study { scene: source.name.clone(), error })?;
     let summary = study.summary();
     let texts = [("study.csv", study.table()), ("study.svg", plot::svg(&study)), ("study.txt", summary.clone())];
     write_folder(out, &texts.each_ref().map(|(name, text)| (*name, text.as_str())), "study.svg")?;
@@ -287,7 +325,7 @@ fn study(source: &scene::Source, out: &Path, quick: bool) -> Result<ExitCode, Cl
 }
 
 fn extremes(out: &Path, quick: bool) -> Result<ExitCode, CliError> {
-    let cases = extremes::cases(if quick { extremes::Extent::Quick } else { extremes::Extent::Full });
+    let cases = extremes::cases(extent(quick));
     let mut entries = Vec::with_capacity(cases.len());
     for case in cases {
         let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::method::rho_words;
 use crate::scene::{Scene, registry};
 use crate::simulation::{Certificate, Solution, Status};
-use crate::study::LoadCurve;
+use crate::study::{Choice, LoadCurve};
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
 pub(super) fn print(text: &str) {
@@ -30,9 +30,13 @@ pub(super) fn scenes() -> String {
     text
 }
 
-/// A result for people.
-pub(super) fn text(scene: &Scene, solution: &Solution) -> String {
-    let mut text = String::new();
+fn count(n: u32, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// A result for people, and why `auto` chose as it did.
+pub(super) fn text(scene: &Scene, solution: &Solution, choice: Option<&Choice>) -> String {
+    let mut text = choice.map_or_else(String::new, |choice| format!("{choice}\n\n"));
     let _ = writeln!(
         text,
         "{}: element {}, method {}, {} unknowns",
@@ -42,10 +46,24 @@ pub(super) fn text(scene: &Scene, solution: &Solution) -> String {
         solution.dofs
     );
     let word = solution.status.id().replace('_', " ");
-    let _ =
-        writeln!(text, "{word} after {} iterations, relative residual {:.2e}", solution.iterations, solution.residual);
+    let _ = writeln!(
+        text,
+        "{word} after {}, relative residual {:.2e}",
+        count(solution.iterations, "iteration"),
+        solution.residual
+    );
     if let Status::NotConverged(reason) | Status::Diverged(reason) = &solution.status {
         let _ = writeln!(text, "  {reason}");
+    }
+    if let Some(thrift) = &solution.thrift {
+        let _ = writeln!(
+            text,
+            "{}: estimated error {:.4} %, {}, {}",
+            thrift.decision,
+            100.0 * thrift.estimated_error,
+            count(thrift.solves, "back substitution"),
+            count(thrift.factorizations, "factorization")
+        );
     }
     let Certificate { stable, fixed_point_rho } = solution.certificate;
     if solution.status == Status::Converged && stable == Some(false) {
@@ -156,8 +174,34 @@ fn microseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e6
 }
 
+/// What `auto` chose, for programs.
+fn choice_value(choice: &Choice) -> Value {
+    let (chosen, e) = (&choice.chosen, &choice.chosen.error);
+    json!({
+        "max_error_percent": choice.demand.max_error_percent,
+        "budget_ms": choice.demand.budget_ms,
+        "met": choice.met,
+        "settings_measured": choice.measured,
+        "settings_meeting": choice.meeting,
+        "chosen": {
+            "element": chosen.setting.element.id(),
+            "cells": chosen.setting.cells,
+            "method": chosen.setting.method.id(),
+            "iterations": chosen.setting.iterations,
+            "time_ms": number(chosen.milliseconds()),
+            "error_percent": {
+                "at_most": number(e.bound() + choice.truth_error_percent),
+                "mesh": number(e.discretization),
+                "stopped_early": number(e.iteration),
+                "linear_theory": number(e.model),
+                "truth": number(choice.truth_error_percent),
+            },
+        },
+    })
+}
+
 /// A result for programs: the object of the documented contract.
-pub(super) fn json(scene: &Scene, solution: &Solution) -> String {
+pub(super) fn json(scene: &Scene, solution: &Solution, choice: Option<&Choice>) -> String {
     let pair = |v: &nalgebra::Vector2<f64>| json!([number(v.x), number(v.y)]);
     let probes: Vec<Value> = solution
         .probes
@@ -173,7 +217,7 @@ pub(super) fn json(scene: &Scene, solution: &Solution) -> String {
         })
         .collect();
     let time = &solution.time;
-    let object = json!({
+    let mut object = json!({
         "scene": scene.name,
         "element": scene.element().id(),
         "method": scene.solver.method.id(),
@@ -203,6 +247,18 @@ pub(super) fn json(scene: &Scene, solution: &Solution) -> String {
             "solve": number(microseconds(time.solve)),
         },
     });
+    // Only where it decided: everyone else gets the documented object and nothing more.
+    if choice.is_some() || solution.thrift.is_some() {
+        let thrift = solution.thrift.map(|t| {
+            json!({
+                "decision": t.decision.id(),
+                "estimated_error_percent": number(100.0 * t.estimated_error),
+                "solves": t.solves,
+                "factorizations": t.factorizations,
+            })
+        });
+        object["auto"] = json!({ "choice": choice.map(choice_value), "thrift": thrift });
+    }
     format!("{object:#}\n")
 }
 

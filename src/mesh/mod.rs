@@ -10,6 +10,7 @@ use crate::scene::ElementKind;
 
 mod beam;
 mod gmsh;
+mod refine;
 
 pub use gmsh::GmshError;
 

@@ -199,9 +199,8 @@ impl Method for Newton {
         let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
         if residual <= enough {
             let (system, workspace) = (frame.system, &mut *frame.workspace);
-            let stable = timed(&mut frame.profile.factorize, || {
-                is_stable(system, frame.u, frame.r, self.target, workspace)
-            });
+            let stable =
+                timed(&mut frame.profile.factorize, || is_stable(system, frame.u, frame.r, self.target, workspace));
             if self.target == 1.0 && (stable || self.descends) {
                 return Verdict::Converged;
             }

@@ -208,11 +208,7 @@ impl Simulation {
     }
 
     /// Lets the method work on the current state.
-    fn with_method<T>(
-        &mut self,
-        profile: &mut Profile,
-        work: impl FnOnce(&mut dyn Method, &mut Frame<'_>) -> T,
-    ) -> T {
+    fn with_method<T>(&mut self, profile: &mut Profile, work: impl FnOnce(&mut dyn Method, &mut Frame<'_>) -> T) -> T {
         let mut frame = Frame {
             system: &self.system,
             r: &self.r,

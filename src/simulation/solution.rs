@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::field::largest_principal;
 use super::{Certificate, Simulation, Status};
-use crate::method::Profile;
+use crate::method::{Profile, Thrift};
 use crate::rotation::polar;
 use crate::truth::{Truth, error_percent};
 
@@ -76,6 +76,8 @@ pub struct Solution {
     pub reaction: Reaction,
     /// Time since the start, by stage.
     pub time: Profile,
+    /// What `auto` left out; `None` for other methods.
+    pub thrift: Option<Thrift>,
 }
 
 impl Simulation {
@@ -120,6 +122,7 @@ impl Simulation {
             },
             reaction: self.reaction(),
             time: self.profile,
+            thrift: self.thrift(),
         }
     }
 

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector2;
 
+use super::Extent;
 use crate::method::METHODS;
 use crate::rotation::Rotation;
 use crate::scene::{
@@ -128,19 +129,10 @@ pub struct Entry {
     pub tip: Vector2<f64>,
 }
 
-/// What the atlas covers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// A few hundred cases, a few seconds.
-    Quick,
-    /// A few thousand.
-    Full,
-}
-
 /// Iterations a case may take.
 const MAX_ITERATIONS: u32 = 300;
 
-/// All cases: a grid of loads and shapes from rest, and every start under some loads.
+/// All cases, a few hundred or a few thousand: a grid of loads and shapes from rest, and every start under some loads.
 #[must_use]
 pub fn cases(extent: Extent) -> Vec<Case> {
     let full = extent == Extent::Full;

@@ -1,9 +1,15 @@
 //! Measurements over many solves.
 
+mod choice;
 mod curve;
 pub mod extremes;
 pub mod plot;
+mod reference;
+mod report;
+mod timing;
 mod trade;
 
+pub use choice::{Choice, Demand};
 pub use curve::{Limit, LoadCurve, MethodPoint, Sample};
-pub use trade::{ErrorSplit, Measurement, Setting, Study, StudyError};
+pub use reference::Reference;
+pub use trade::{ErrorSplit, Extent, Measurement, Progress, Setting, Study, StudyError, Watch};

@@ -44,10 +44,6 @@ impl Axis {
     }
 }
 
-fn milliseconds(m: &Measurement) -> f64 {
-    m.time.total().as_secs_f64() * 1e3
-}
-
 fn color(method: MethodKind) -> &'static str {
     match method {
         MethodKind::Linear => "#e69f00",
@@ -61,7 +57,7 @@ fn color(method: MethodKind) -> &'static str {
 #[must_use]
 pub fn svg(study: &Study) -> String {
     let error = |m: &Measurement| m.error.bound().max(SMALLEST_ERROR);
-    let x = Axis::new(study.measurements.iter().map(milliseconds), LEFT, SIZE[0] - LEFT - RIGHT);
+    let x = Axis::new(study.measurements.iter().map(Measurement::milliseconds), LEFT, SIZE[0] - LEFT - RIGHT);
     // Errors of a diverged iteration are off the picture.
     let errors = study.measurements.iter().map(|m| error(m).min(1e3));
     let y = Axis::new(errors, SIZE[1] - BOTTOM, -(SIZE[1] - TOP - BOTTOM));
@@ -94,7 +90,7 @@ pub fn svg(study: &Study) -> String {
     }
     let _ = writeln!(
         svg,
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">time from rest, ms</text>\n\
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">time of a frame, ms</text>\n\
          <text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\">error bound, % of the true displacement</text>",
         0.5 * (LEFT + right),
         SIZE[1] - 14.0,
@@ -102,11 +98,11 @@ pub fn svg(study: &Study) -> String {
     );
     let mut points = String::new();
     for m in study.front() {
-        let _ = write!(points, "{:.1},{:.1} ", x.place(milliseconds(m)), y.place(error(m)));
+        let _ = write!(points, "{:.1},{:.1} ", x.place(m.milliseconds()), y.place(error(m)));
     }
     let _ = writeln!(svg, "<polyline points=\"{points}\" fill=\"none\" stroke=\"#333\" stroke-width=\"1.5\"/>");
     for m in &study.measurements {
-        mark(&mut svg, x.place(milliseconds(m)), y.place(error(m)), m);
+        mark(&mut svg, x.place(m.milliseconds()), y.place(error(m)), m);
     }
     let mut row = TOP + 10.0;
     for method in METHODS.iter().map(|m| m.kind) {

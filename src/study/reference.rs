@@ -1,0 +1,109 @@
+//! What a study measures errors against: analytic where [`crate::truth`] knows the scene, else a fine six-node solution
+//! whose own error is estimated from one half as fine.
+
+use nalgebra::Vector2;
+
+use super::StudyError;
+use crate::assembly::System;
+use crate::mesh::Mesh;
+use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::simulation::{Simulation, Status};
+use crate::truth::Truth;
+
+/// The true displacement of a scene's first probe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// Displacement, m.
+    pub displacement: Vector2<f64>,
+    /// Where it comes from, in words.
+    pub source: &'static str,
+    /// Its own estimated error, percent; 0 for an analytic one.
+    pub error_percent: f64,
+}
+
+impl std::fmt::Display for Reference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.source)?;
+        if self.error_percent > 0.0 { write!(f, " (its own error about {:.1e} %)", self.error_percent) } else { Ok(()) }
+    }
+}
+
+/// Cells along a beam that is fine enough to be the truth.
+const FINE: u32 = 64;
+/// Triangles of a mesh from a file that is: it is refined until it has as many, and at least once.
+const FINE_TRIANGLES: usize = 2000;
+
+impl Reference {
+    /// Finds it.
+    ///
+    /// # Errors
+    /// [`StudyError`]: nothing moves, or the fine solution was not found.
+    pub fn of(scene: &Scene) -> Result<Self, StudyError> {
+        let at_right = scene.probes.first().ok_or(StudyError::NoProbe)?.edge.as_deref() == Some("right");
+        if let Some(u) = Truth::of(scene).filter(|_| at_right).and_then(|t| t.tip_displacement()) {
+            return moving(Self { displacement: u, source: "the exact beam", error_percent: 0.0 });
+        }
+        let mut scene = scene.clone();
+        scene.set_element(ElementKind::T6);
+        let (coarse, fine, source) = match scene.beam.clone() {
+            Some(beam) => {
+                let mut solve = |along: u32| {
+                    let across = (f64::from(along) * beam.height / beam.length).round().max(1.0) as u32;
+                    if let Some(beam) = &mut scene.beam {
+                        beam.cells = [along, across];
+                    }
+                    let system = System::new(&scene).map_err(crate::simulation::SimulationError::from)?;
+                    equilibrium(&scene, system)
+                };
+                (solve(FINE / 2)?, solve(FINE)?, "a fine t6 solution")
+            }
+            None => {
+                let system = System::new(&scene).map_err(crate::simulation::SimulationError::from)?;
+                let mut mesh = system.mesh.clone();
+                let mut coarse = equilibrium(&scene, system)?;
+                let solve = |mesh: &Mesh| {
+                    let system =
+                        System::with_mesh(&scene, mesh.clone()).map_err(crate::simulation::SimulationError::from)?;
+                    equilibrium(&scene, system)
+                };
+                mesh = mesh.refined();
+                let mut fine = solve(&mesh)?;
+                while mesh.triangle_count() < FINE_TRIANGLES {
+                    mesh = mesh.refined();
+                    coarse = std::mem::replace(&mut fine, solve(&mesh)?);
+                }
+                (coarse, fine, "the t6 solution of its refined mesh")
+            }
+        };
+        let error_percent = 100.0 * (fine - coarse).norm() / fine.norm().max(f64::MIN_POSITIVE);
+        moving(Self { displacement: fine, source, error_percent })
+    }
+}
+
+/// The reference, if it moves at all: errors are relative to it.
+fn moving(reference: Reference) -> Result<Reference, StudyError> {
+    if reference.displacement.norm() > 0.0 { Ok(reference) } else { Err(StudyError::NoProbe) }
+}
+
+/// The first probe's displacement at the exact equilibrium.
+fn equilibrium(scene: &Scene, system: System) -> Result<Vector2<f64>, StudyError> {
+    end(scene, MethodKind::Newton, system)
+}
+
+/// Displacement of the first probe where a method ends, given all the iterations it needs.
+pub(super) fn end(scene: &Scene, method: MethodKind, system: System) -> Result<Vector2<f64>, StudyError> {
+    let mut scene = scene.clone();
+    scene.solver.method = method;
+    scene.solver.max_iterations = scene.solver.max_iterations.max(200);
+    let mut simulation = Simulation::with_system(&scene, system)?;
+    if *simulation.solve() != Status::Converged && method == MethodKind::Newton {
+        return Err(StudyError::NoTruth);
+    }
+    probe(&simulation)
+}
+
+/// Displacement of the first probe, m.
+pub(super) fn probe(simulation: &Simulation) -> Result<Vector2<f64>, StudyError> {
+    let probe = simulation.system().probes.first().ok_or(StudyError::NoProbe)?;
+    Ok(probe.mean(simulation.displacement()))
+}

@@ -1,0 +1,87 @@
+//! The trade in words: a table and a summary.
+
+use std::fmt::Write as _;
+use std::time::Duration;
+
+use super::trade::Study;
+use crate::method::METHODS;
+use crate::scene::ElementKind;
+
+impl Study {
+    /// The study as CSV; times in microseconds.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let mut text = String::from(
+            "element,cells_along,cells_across,dofs,method,iterations,converged,time_us,rotate_us,assemble_us,factorize_us,solve_us,error_percent,discretization_percent,iteration_percent,model_percent,error_bound_percent,pareto\n",
+        );
+        for m in &self.measurements {
+            let [along, across] = m.setting.cells.unwrap_or([0, 0]);
+            let us = |d: Duration| d.as_secs_f64() * 1e6;
+            let (t, e) = (&m.time, &m.error);
+            let _ = writeln!(
+                text,
+                "{},{along},{across},{},{},{},{},{:.2},{:.2},{:.2},{:.2},{:.2},{:e},{:e},{:e},{:e},{:e},{}",
+                m.setting.element.id(),
+                m.dofs,
+                m.setting.method.id(),
+                m.setting.iterations,
+                m.converged,
+                us(t.total()),
+                us(t.rotate),
+                us(t.assemble),
+                us(t.factorize),
+                us(t.solve),
+                e.total,
+                e.discretization,
+                e.iteration,
+                e.model,
+                e.bound(),
+                m.pareto
+            );
+        }
+        text
+    }
+
+    /// The study for people: the truth, the front, and what an error costs.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let mut text = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);
+        text.push_str("nothing measured is both faster and surer than these (error: at most the sum of its parts):\n");
+        text.push_str("    time, ms    at most, %     measured   mesh error  stopped early  linear theory   setting\n");
+        for m in self.front() {
+            let e = &m.error;
+            let _ = writeln!(
+                text,
+                "{:12.4} {:12.4} {:12.4} {:12.4} {:14.4} {:14.4}   {}",
+                m.time.total().as_secs_f64() * 1e3,
+                e.bound(),
+                e.total,
+                e.discretization,
+                e.iteration,
+                e.model,
+                m.setting
+            );
+        }
+        text.push('\n');
+        for percent in [10.0, 1.0, 0.1] {
+            let words = self.cheapest_within(percent).map_or_else(
+                || "not reached".to_owned(),
+                |m| format!("{:.4} ms, {}", m.time.total().as_secs_f64() * 1e3, m.setting),
+            );
+            let _ = writeln!(text, "an error of {percent} % costs {words}");
+            for element in ElementKind::ALL {
+                for method in METHODS.iter().map(|m| m.kind) {
+                    let own = self.measurements.iter().filter(|m| {
+                        (m.setting.element, m.setting.method) == (element, method) && m.error.bound() <= percent
+                    });
+                    let words = own.min_by_key(|m| m.time.total()).map_or_else(
+                        || "not reached".to_owned(),
+                        |m| format!("{:.4} ms", m.time.total().as_secs_f64() * 1e3),
+                    );
+                    let _ = writeln!(text, "    {} {:<7} {words}", element.id(), method.id());
+                }
+            }
+        }
+        text
+    }
+}

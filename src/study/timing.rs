@@ -1,0 +1,51 @@
+//! What iterations from rest cost: medians over repetitions, warmed up, stages apart.
+
+use std::time::{Duration, Instant};
+
+use crate::method::Profile;
+use crate::simulation::{Simulation, Status};
+
+/// Repetitions that only warm up caches, branch predictors and clocks.
+const WARM_UP: usize = 2;
+/// Repetitions measured …
+const REPETITIONS: usize = 9;
+/// … but no more than this where they take long: long times vary less.
+const FEWEST: usize = 3;
+/// What is long.
+const LONG: Duration = Duration::from_millis(400);
+
+/// The time from rest to the end of each of the first `iterations`, fewer where the solve ends before.
+pub(super) fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Profile> {
+    let mut runs: Vec<Vec<Profile>> = Vec::new();
+    let start = Instant::now();
+    for repetition in 0..WARM_UP + REPETITIONS {
+        if runs.len() >= FEWEST && start.elapsed() > LONG {
+            break;
+        }
+        simulation.reset();
+        let mut run = Vec::new();
+        while simulation.iterations() < iterations && *simulation.status() == Status::Running {
+            simulation.step();
+            run.push(*simulation.profile());
+        }
+        if repetition >= WARM_UP {
+            runs.push(run);
+        }
+    }
+    let count = runs.iter().map(Vec::len).min().unwrap_or(0);
+    (0..count)
+        .map(|i| {
+            let median = |stage: fn(&Profile) -> Duration| {
+                let mut times: Vec<Duration> = runs.iter().map(|run| stage(&run[i])).collect();
+                times.sort_unstable();
+                times[times.len() / 2]
+            };
+            Profile {
+                rotate: median(|p| p.rotate),
+                assemble: median(|p| p.assemble),
+                factorize: median(|p| p.factorize),
+                solve: median(|p| p.solve),
+            }
+        })
+        .collect()
+}
