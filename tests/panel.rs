@@ -11,6 +11,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use warpbeam::app::Lab;
 use warpbeam::scene::{Load, MethodKind, Plane, Source};
 use warpbeam::simulation::{Simulation, Status};
+use warpbeam::study::Demand;
 
 fn harness(id: &str) -> Harness<'static, Lab> {
     let scene = scene(id);
@@ -372,4 +373,101 @@ fn the_view_follows_the_body_under_a_resting_pointer() {
     harness.run();
     let after = harness.state().camera();
     assert!(after.scale > 1.1 * before.scale, "{before:?} {after:?}");
+}
+
+/// Frames until `done`, with a little sleep: a study takes its own time.
+fn wait(harness: &mut Harness<'_, Lab>, what: &str, done: impl Fn(&Lab) -> bool) -> u32 {
+    for frame in 0..6000 {
+        if done(harness.state()) {
+            return frame;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        harness.step();
+    }
+    unreachable!("{what}: never")
+}
+
+fn measured(lab: &Lab) -> usize {
+    lab.study().0.map_or(0, |s| s.measurements.len())
+}
+
+/// The study runs beside the window: results come in, the panel lives on, and it can be called off; what has been
+/// measured stays and can be applied with a click.
+#[test]
+fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
+    let mut harness = harness("cantilever");
+    harness.key_press(Key::B);
+    harness.run();
+    assert!(harness.query_by_label_contains("Nothing measured yet").is_some());
+    assert!(harness.get_by_label("Apply the fastest").accesskit_node().is_disabled());
+    harness.get_by_label("Measure").click();
+    harness.step();
+    harness.step();
+    assert!(harness.state().study().1, "no study runs");
+    wait(&mut harness, "a first mesh", |lab| measured(lab) > 0);
+    // The body follows its sliders meanwhile.
+    let before = force(harness.state());
+    let slider = harness.get_by_role_and_label(Role::Slider, "Force").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    harness.hover_at(at(0.4));
+    harness.drag_at(at(0.4));
+    harness.step();
+    harness.hover_at(at(0.45));
+    harness.step();
+    wait(&mut harness, "the body at rest", |lab| !lab.iterates());
+    harness.drop_at(at(0.45));
+    harness.step();
+    assert_ne!(force(harness.state()), before);
+    assert!(harness.state().study().1, "the study stopped");
+    wait(&mut harness, "six-node meshes", |lab| {
+        lab.study().0.is_some_and(|s| s.measurements.iter().any(|m| m.error.bound() < 5.0)) || !lab.study().1
+    });
+    harness.get_by_label("Cancel").click();
+    harness.step();
+    harness.run();
+    let (study, runs) = harness.state().study();
+    assert!(!runs);
+    let study = study.unwrap().clone();
+    assert!(harness.query_by_label_contains("The body or its load has changed since").is_some());
+
+    type_into(&mut harness, "Error ≤", "5");
+    type_into(&mut harness, "Time ≤", "1e5");
+    let demand = Demand { max_error_percent: 5.0, budget_ms: 1e5 };
+    let meeting = study.meeting(demand);
+    assert!(!meeting.is_empty() && meeting.len() < study.measurements.len());
+    let words = format!("{} of {} settings meet both", meeting.len(), study.measurements.len());
+    assert!(harness.query_by_label(&words).is_some(), "{words}");
+    harness.get_by_label("Apply the fastest").click();
+    harness.run();
+    let best = meeting[0].setting;
+    let lab = harness.state();
+    assert_eq!(lab.scene().element(), best.element);
+    assert_eq!(lab.scene().beam.as_ref().map(|b| b.cells), best.cells);
+    assert_eq!((lab.scene().solver.method, lab.iterations()), (best.method, best.iterations));
+    assert!(meeting.iter().all(|m| m.time.total() >= meeting[0].time.total()));
+    // Another scene is another study.
+    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
+    harness.run();
+    harness.get_by_label("bridge").click();
+    harness.run();
+    assert!(harness.state().study().0.is_none());
+}
+
+/// What `auto` decides is said, frame by frame.
+#[test]
+fn decisions_are_shown() {
+    let mut harness = harness("elastica");
+    harness.get_by_role_and_label(Role::ComboBox, "Method").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "auto").click();
+    harness.run();
+    assert!(harness.query_by_label("Factorized anew.").is_some());
+    type_into(&mut harness, "Force", "0.1");
+    // From where the large load was it takes steps; from there on linear theory does.
+    type_into(&mut harness, "Force", "0.09");
+    assert!(harness.query_by_label("Linear theory serves.").is_some());
+    // A name is no load.
+    type_into(&mut harness, "Density ρ", "1234");
+    assert!(harness.query_by_label("Nothing changed: no solve.").is_some());
+    assert_eq!(harness.state().simulation().iterations(), 0);
 }

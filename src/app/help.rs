@@ -26,6 +26,7 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::Num3, "Colour: largest strain"),
     key(Key::Num4, "Colour: rotation angle"),
     key(Key::L, "Load curve on or off"),
+    key(Key::B, "Budget: error against time, on or off"),
     key(Key::P, "Panel on or off"),
     key(Key::T, "Light or dark"),
     key(Key::S, "Save a screenshot (PNG) here"),

@@ -6,12 +6,14 @@ use egui::{CentralPanel, Key, Panel, Rect, Sense, TextureId, Ui};
 use nalgebra::Vector2;
 
 use super::drawing::Drawing;
-use super::panel::{self, Action, PanelState, Shown, ViewOptions};
+use super::panel::{self, Action, Drawer, PanelState, Shown, ViewOptions};
+use super::trade::{Asked, Trade};
 use super::{help, overlay, plot};
+use crate::method::Profile;
 use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, MethodKind, Scene, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
-use crate::study::LoadCurve;
+use crate::study::{LoadCurve, Study};
 use crate::truth::Truth;
 
 /// Width of the panel, points.
@@ -20,8 +22,11 @@ pub const PANEL_WIDTH: f32 = 324.0;
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 
-/// Height of the load curve's panel, points.
-const CURVE_HEIGHT: f32 = 250.0;
+/// Height of what is shown under the body, points.
+const DRAWER_HEIGHT: f32 = 270.0;
+
+/// Most iterations a frame may be asked for.
+pub(super) const MOST_ITERATIONS: u32 = 100;
 
 /// How long a message stays.
 const TOAST: Duration = Duration::from_secs(4);
@@ -55,6 +60,11 @@ pub struct Lab {
     /// What is known of the scene without a mesh; found when the body has come to rest.
     truth: Known<Vector2<f64>>,
     curve: Known<LoadCurve>,
+    trade: Trade,
+    /// Iterations a frame.
+    iterations: u32,
+    /// Time of the last frame that iterated.
+    frame_time: Profile,
 }
 
 /// Something that takes a while to find, and may not exist.
@@ -116,6 +126,9 @@ impl Lab {
             shape: Shape::default(),
             truth: Known::Unasked,
             curve: Known::Unasked,
+            trade: Trade::default(),
+            iterations: 1,
+            frame_time: Profile::default(),
         };
         lab.solve_linear();
         lab
@@ -131,9 +144,27 @@ impl Lab {
         self.view.panel = shown;
     }
 
-    /// Shows or hides the load curve.
-    pub fn set_curve(&mut self, shown: bool) {
-        self.view.curve = shown;
+    /// Shows the load curve under the body.
+    pub fn show_curve(&mut self) {
+        self.view.drawer = Some(Drawer::Curve);
+    }
+
+    /// Shows a study under the body.
+    pub fn show_study(&mut self, study: Study) {
+        self.view.drawer = Some(Drawer::Trade);
+        self.trade.set(&self.scene, study);
+    }
+
+    /// What has been measured of the scene, and whether more is being measured.
+    #[must_use]
+    pub fn study(&self) -> (Option<&Study>, bool) {
+        (self.trade.study(), self.trade.runs())
+    }
+
+    /// Iterations a frame.
+    #[must_use]
+    pub fn iterations(&self) -> u32 {
+        self.iterations
     }
 
     /// Shows or hides the outlines at rest and of the linear solution.
@@ -182,12 +213,22 @@ impl Lab {
         format!("{} \u{2013} warpbeam", self.scene.name)
     }
 
-    /// Makes one iteration if it runs; says whether there is another to make.
+    /// Makes a frame's iterations if it runs; says whether there is another to make.
     pub fn advance(&mut self) -> bool {
-        if self.running {
-            self.simulation.step();
+        if self.iterates() {
+            self.iterate(self.iterations);
         }
         self.iterates()
+    }
+
+    fn iterate(&mut self, iterations: u32) {
+        self.frame_time = Profile::default();
+        for _ in 0..iterations {
+            if *self.simulation.status() == Status::Running {
+                self.simulation.step();
+                self.frame_time.add(self.simulation.last_frame());
+            }
+        }
     }
 
     /// Whether the next frame changes the body.
@@ -198,7 +239,9 @@ impl Lab {
 
     /// Iterates to the end.
     pub fn solve(&mut self) {
-        self.simulation.solve();
+        while *self.simulation.status() == Status::Running {
+            self.iterate(1);
+        }
     }
 
     /// What is drawn of the body, as of the last [`Self::ui`].
@@ -258,6 +301,7 @@ impl Lab {
         Self::style(ui.ctx());
         let mut actions = Vec::new();
         self.find_truth();
+        self.trade.listen(ui.ctx());
         if self.view.panel {
             let shown = Shown {
                 truth: self.truth.get().copied(),
@@ -265,6 +309,8 @@ impl Lab {
                 scene_name: &self.source.name,
                 simulation: &self.simulation,
                 running: self.running,
+                iterations: self.iterations,
+                frame_time: &self.frame_time,
                 adapter: &self.adapter,
             };
             let panel = Panel::left("panel").exact_size(PANEL_WIDTH).resizable(false);
@@ -275,10 +321,7 @@ impl Lab {
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
-        if self.view.curve {
-            let panel = Panel::bottom("curve").exact_size(CURVE_HEIGHT).resizable(false);
-            panel.show(ui, |ui| plot::show(ui, self.curve.get()));
-        }
+        self.drawer(ui);
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, body));
         help::show(ui.ctx(), &mut self.view.help);
         if self.iterates() {
@@ -294,8 +337,42 @@ impl Lab {
         }
         let scene = &self.scene;
         self.truth.get_or_find(|| Truth::of(scene)?.tip_displacement());
-        if self.view.curve {
+        if self.view.drawer == Some(Drawer::Curve) {
             self.curve.get_or_find(|| LoadCurve::new(scene));
+        }
+    }
+
+    fn drawer(&mut self, ui: &mut Ui) {
+        let Some(drawer) = self.view.drawer else { return };
+        let panel = Panel::bottom("drawer").exact_size(DRAWER_HEIGHT).resizable(false);
+        let asked = panel.show(ui, |ui| match drawer {
+            Drawer::Curve => {
+                plot::show(ui, self.curve.get());
+                None
+            }
+            Drawer::Trade => self.trade.show(ui, &self.scene, self.iterations),
+        });
+        match asked.inner {
+            Some(Asked::Measure(true)) => self.trade.measure(&self.scene),
+            Some(Asked::Measure(false)) => self.trade.cancel(),
+            Some(Asked::Demand(demand)) => {
+                let mut scene = self.scene.clone();
+                scene.solver.budget_ms = demand.budget_ms;
+                scene.solver.max_error_percent = demand.max_error_percent;
+                self.edit(ui.ctx(), scene);
+            }
+            Some(Asked::Apply(setting)) => {
+                self.edit(ui.ctx(), setting.apply(&self.scene));
+                self.iterations = setting.iterations.clamp(1, MOST_ITERATIONS);
+            }
+            None => {}
+        }
+    }
+
+    /// Takes a scene that should be as good as the present one; says so where it is not.
+    fn edit(&mut self, ctx: &egui::Context, scene: Scene) {
+        if let Err(error) = self.set_scene(scene) {
+            self.say(ctx, error.to_string());
         }
     }
 
@@ -390,7 +467,8 @@ impl Lab {
                 Key::Num2 => self.color_with(Field::EnergyDensity),
                 Key::Num3 => self.color_with(Field::LargestStrain),
                 Key::Num4 => self.color_with(Field::RotationAngle),
-                Key::L => self.view.curve ^= true,
+                Key::L => self.view.toggle(Drawer::Curve),
+                Key::B => self.view.toggle(Drawer::Trade),
                 Key::P => self.view.panel ^= true,
                 Key::T => actions.push(Action::ToggleTheme),
                 Key::S => actions.push(Action::Screenshot),
@@ -421,9 +499,10 @@ impl Lab {
             Action::Run(run) => self.running = run,
             Action::Step => {
                 self.running = false;
-                self.simulation.step();
+                self.iterate(1);
             }
             Action::Reset => self.simulation.reset(),
+            Action::Iterations(iterations) => self.iterations = iterations.clamp(1, MOST_ITERATIONS),
             Action::Fit => self.camera = None,
             Action::ToggleTheme => {
                 let dark = ctx.theme() == egui::Theme::Dark;
@@ -460,6 +539,8 @@ impl Lab {
                 self.source = source;
                 self.simulation.reset();
                 self.panel.clear();
+                self.trade = Trade::default();
+                self.iterations = 1;
                 self.camera = None;
                 self.view.fixed_range = None;
             }

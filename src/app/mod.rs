@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use crate::render::RenderError;
 
+mod background;
 mod drawing;
 mod field;
 mod format;
@@ -15,6 +16,7 @@ mod panel;
 mod plot;
 mod shot;
 mod stage;
+mod trade;
 mod window;
 
 pub use lab::{Lab, PANEL_WIDTH};

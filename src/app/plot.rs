@@ -6,6 +6,16 @@ use egui_plot::{Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, 
 use crate::simulation::Status;
 use crate::study::LoadCurve;
 
+/// A colour for every method of the registry, told apart by brightness too.
+pub(super) fn method_colors(dark: bool) -> [Color32; 4] {
+    let of = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
+    if dark {
+        [[240, 150, 60], [255, 105, 97], [90, 200, 250], [110, 220, 140]].map(of)
+    } else {
+        [[200, 90, 0], [190, 20, 30], [0, 100, 180], [0, 120, 80]].map(of)
+    }
+}
+
 /// Shows the plot, or says why there is none.
 pub(super) fn show(ui: &mut Ui, curve: Option<&LoadCurve>) {
     let Some(curve) = curve else {
@@ -14,19 +24,9 @@ pub(super) fn show(ui: &mut Ui, curve: Option<&LoadCurve>) {
         });
         return;
     };
-    let dark = ui.visuals().dark_mode;
     let text = ui.visuals().text_color();
-    let (linear, methods) = if dark {
-        (
-            Color32::from_rgb(240, 150, 60),
-            [Color32::from_rgb(240, 150, 60), Color32::from_rgb(255, 105, 97), Color32::from_rgb(90, 200, 250)],
-        )
-    } else {
-        (
-            Color32::from_rgb(200, 90, 0),
-            [Color32::from_rgb(200, 90, 0), Color32::from_rgb(190, 20, 30), Color32::from_rgb(0, 100, 180)],
-        )
-    };
+    let methods = method_colors(ui.visuals().dark_mode);
+    let [linear, ..] = methods;
     let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {
         curve.samples.iter().map(|s| [100.0 * s.factor, value(s)]).collect()
     };

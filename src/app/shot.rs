@@ -1,5 +1,6 @@
 //! Pictures of a lab without a window.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use egui_wgpu::ScreenDescriptor;
@@ -10,6 +11,7 @@ use super::stage::Stage;
 use crate::render::{FORMAT, Gpu, Picture, RenderError, read_texture};
 use crate::scene::{Scene, Source};
 use crate::simulation::{Simulation, Status};
+use crate::study::{Extent, Study};
 
 /// Largest side of a shot, pixels.
 pub const MAX_SHOT_SIDE: u32 = 8192;
@@ -23,13 +25,15 @@ pub struct ShotOptions {
     pub panel: bool,
     /// Whether the load curve is.
     pub curve: bool,
+    /// Whether error against time is, measured now; in the place of the load curve.
+    pub study: bool,
     /// Light or dark.
     pub theme: ThemeChoice,
 }
 
 impl Default for ShotOptions {
     fn default() -> Self {
-        Self { size: [1280, 800], panel: true, curve: false, theme: ThemeChoice::default() }
+        Self { size: [1280, 800], panel: true, curve: false, study: false, theme: ThemeChoice::default() }
     }
 }
 
@@ -48,7 +52,15 @@ pub fn shot(
     let mut lab = Lab::new(source, scene, simulation);
     lab.set_adapter(gpu.describe());
     lab.set_panel(options.panel);
-    lab.set_curve(options.curve);
+    if options.curve {
+        lab.show_curve();
+    }
+    if options.study {
+        match Study::new(lab.scene(), Extent::Full, &mut |_| ControlFlow::Continue(())) {
+            Ok(study) => lab.show_study(study),
+            Err(error) => log::error!("no study: {error}"),
+        }
+    }
     lab.solve();
     picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?.write_png(output)?;
     Ok(lab.simulation().status().clone())

@@ -111,6 +111,9 @@ enum Command {
         /// With the load–deflection curve.
         #[arg(long)]
         curve: bool,
+        /// With error against time, measured now.
+        #[arg(long, conflicts_with = "curve")]
+        study: bool,
         /// Light or dark.
         #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
         theme: app::ThemeChoice,
@@ -202,8 +205,8 @@ pub fn main() -> ExitCode {
         Command::Curve { scene, out } => curve(&scene.into(), out.as_deref()),
         Command::Study { scene, out, quick } => study(&scene.into(), &out, quick),
         Command::Extremes { out, quick } => extremes(&out, quick),
-        Command::Shot { scene, output, size, no_panel, curve, theme } => {
-            shot(scene.into(), &output, &app::ShotOptions { size, panel: !no_panel, curve, theme })
+        Command::Shot { scene, output, size, no_panel, curve, study, theme } => {
+            shot(scene.into(), &output, &app::ShotOptions { size, panel: !no_panel, curve, study, theme })
         }
     };
     result.unwrap_or_else(|error| {
@@ -293,7 +296,7 @@ fn extent(quick: bool) -> Extent {
 fn watch() -> impl FnMut(Progress<'_>) -> ControlFlow<()> {
     let watched = std::io::IsTerminal::is_terminal(&std::io::stderr());
     move |progress| {
-        if watched {
+        if watched && !progress.now.is_empty() {
             eprintln!("measuring {}", progress.now);
         }
         ControlFlow::Continue(())

@@ -75,7 +75,7 @@ impl Choice {
             }
             let MeshChoice { weight, .. } = *mesh;
             let before = study.measurements.len();
-            study.measure(scene, mesh, &mut |now| check(watch(Progress { share: 0.0, now })))?;
+            study.measure(scene, mesh, &mut |now| check(watch(Progress { share: 0.0, now, so_far: None })))?;
             let added = &study.measurements[before..];
             let met = added.iter().any(|m| m.converged && study.meets(m, demand));
             let fastest = added.iter().map(Measurement::milliseconds).fold(f64::INFINITY, f64::min);

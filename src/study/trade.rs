@@ -28,6 +28,11 @@ pub struct Setting {
     pub iterations: u32,
 }
 
+/// Iterations as words.
+fn iteration_words(iterations: u32) -> String {
+    format!("{iterations} iteration{}", if iterations == 1 { "" } else { "s" })
+}
+
 impl Setting {
     /// The scene on this mesh, with this method.
     #[must_use]
@@ -44,9 +49,8 @@ impl Setting {
 
 impl std::fmt::Display for Setting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let plural = if self.iterations == 1 { "" } else { "s" };
         let mesh = mesh_words(self.element, self.cells);
-        write!(f, "{mesh}, {}, {} iteration{plural}", self.method.id(), self.iterations)
+        write!(f, "{mesh}, {}, {}", self.method.id(), iteration_words(self.iterations))
     }
 }
 
@@ -140,6 +144,8 @@ pub struct Progress<'a> {
     pub share: f64,
     /// What is measured now.
     pub now: &'a str,
+    /// What has been measured so far, each time a mesh is done.
+    pub so_far: Option<&'a Study>,
 }
 
 /// Is told how far a study is, and calls it off with [`ControlFlow::Break`].
@@ -170,15 +176,17 @@ impl Study {
         let mut study = Self::begin(scene, watch)?;
         let mut done = 0.0;
         for mesh in &meshes {
-            study.measure(scene, mesh, &mut |words| check(watch(Progress { share: done / all, now: words })))?;
+            let share = done / all;
+            study.measure(scene, mesh, &mut |now| check(watch(Progress { share, now, so_far: None })))?;
             done += mesh.weight;
+            check(watch(Progress { share: done / all, now: "", so_far: Some(&study) }))?;
         }
         Ok(study)
     }
 
     /// A study with its truth and nothing measured yet.
     pub(super) fn begin(scene: &Scene, watch: Watch<'_>) -> Result<Self, StudyError> {
-        check(watch(Progress { share: 0.0, now: "the truth" }))?;
+        check(watch(Progress { share: 0.0, now: "the truth", so_far: None }))?;
         Ok(Self { scene: scene.name.clone(), reference: Reference::of(scene)?, measurements: Vec::new() })
     }
 

@@ -2,8 +2,9 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{Action, PanelState};
+use super::{Action, PanelState, Shown};
 use crate::app::field::{NumberField, show_message};
+use crate::app::lab::MOST_ITERATIONS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, Plane, Scene, limits};
 
@@ -80,7 +81,8 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
     show_message(ui, &state.messages, "Plane");
 }
 
-pub(super) fn mesh_and_method(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Action>) {
+pub(super) fn mesh_and_method(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let scene = shown.scene;
     for (axis, label, tooltip, most) in [
         (0, "Cells along", "Cells along the beam; each is two triangles.", 400.0),
         (1, "Cells across", "Cells across the beam; each is two triangles.", 40.0),
@@ -134,4 +136,15 @@ pub(super) fn mesh_and_method(ui: &mut Ui, scene: &Scene, state: &mut PanelState
         }
     });
     show_message(ui, &state.messages, "Element");
+    let field = NumberField {
+        label: "Per frame",
+        tooltip: "Iterations a frame: more converge in fewer frames, which take longer.",
+        limit: limits::Limit { unit: "", min: 1.0, max: f64::from(MOST_ITERATIONS) },
+        slider: 1.0..=20.0,
+        logarithmic: None,
+        whole: true,
+    };
+    if let Some(new) = field.show(ui, &mut state.messages, f64::from(shown.iterations)) {
+        actions.push(Action::Iterations(new as u32));
+    }
 }

@@ -4,6 +4,7 @@ use egui::{Button, ComboBox, RichText, ScrollArea, Ui};
 use nalgebra::Vector2;
 
 use super::field::Messages;
+use crate::method::Profile;
 use crate::scene::{Scene, registry};
 use crate::simulation::{Field, Simulation, Status};
 
@@ -21,6 +22,10 @@ pub(super) struct Shown<'a> {
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
     pub running: bool,
+    /// Iterations a frame.
+    pub iterations: u32,
+    /// Time of the last frame that iterated.
+    pub frame_time: &'a Profile,
     /// True displacement of the right edge, m, where one is known.
     pub truth: Option<Vector2<f64>>,
     pub adapter: &'a str,
@@ -47,6 +52,17 @@ pub(super) enum Action {
     Screenshot,
     /// Copy the scene.
     Copy,
+    /// So many iterations a frame.
+    Iterations(u32),
+}
+
+/// What is shown under the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Drawer {
+    /// Load against deflection.
+    Curve,
+    /// Error against time, and the dial.
+    Trade,
 }
 
 /// How to look at the body.
@@ -58,7 +74,7 @@ pub(super) struct ViewOptions {
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
-    pub curve: bool,
+    pub drawer: Option<Drawer>,
     pub panel: bool,
     pub help: bool,
 }
@@ -71,10 +87,17 @@ impl Default for ViewOptions {
             wireframe: true,
             rest_outline: true,
             ghost: true,
-            curve: false,
+            drawer: None,
             panel: true,
             help: false,
         }
+    }
+}
+
+impl ViewOptions {
+    /// Opens a drawer in the place of another, or closes it.
+    pub(super) fn toggle(&mut self, drawer: Drawer) {
+        self.drawer = if self.drawer == Some(drawer) { None } else { Some(drawer) };
     }
 }
 
@@ -114,7 +137,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, view:
             section(ui, "Material");
             body::material(ui, shown.scene, state, &mut actions);
             section(ui, "Mesh and method");
-            body::mesh_and_method(ui, shown.scene, state, &mut actions);
+            body::mesh_and_method(ui, shown, state, &mut actions);
             section(ui, "View");
             view::options(ui, shown, state, view, &mut actions);
             ui.separator();

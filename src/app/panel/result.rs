@@ -48,7 +48,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
         ui.set_min_height(STATUS_HEIGHT);
         ui.add(egui::Label::new(RichText::new(words).color(color)).wrap());
     });
-    let time = simulation.last_frame();
+    let time = shown.frame_time;
     let us = |d: std::time::Duration| format!("{:.0} µs", d.as_secs_f64() * 1e6);
     Grid::new("result").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         let mut row = |name: &str, value: String, tip: &str| {
@@ -82,8 +82,18 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
         let certified = simulation.certificate().stable.filter(|_| *simulation.status() == Status::Converged);
         let word = certified.map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
         row("Equilibrium", word.to_owned(), "Certified: whether the exact tangent A + G is positive definite");
+        let thrift = simulation.thrift();
+        let words = thrift.map_or_else(|| UNKNOWN.to_owned(), |t| sentence(&t.decision.to_string()));
+        let tip = thrift.filter(|t| t.estimated_error.is_finite()).map_or_else(
+            || "What method auto leaves out".to_owned(),
+            |t| {
+                let error = format::short(100.0 * t.estimated_error);
+                format!("Estimated error {error} %, {} back substitutions, {} factorizations", t.solves, t.factorizations)
+            },
+        );
+        row("Auto", words, &tip);
         let unknowns = simulation.system().dofs();
-        row("Frame", format!("{}, {unknowns} unknowns", us(time.total())), "Time of the last iteration");
+        row("Frame", format!("{}, {unknowns} unknowns", us(time.total())), "Time of the last frame's iterations");
     });
     let rho = simulation.certificate().fixed_point_rho;
     let words = rho.map_or_else(|| format!("ρ {UNKNOWN}"), |rho| sentence(&rho_words(rho)));

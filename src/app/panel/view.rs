@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{Action, PanelState, Shown, ViewOptions};
+use super::{Action, Drawer, PanelState, Shown, ViewOptions};
 use crate::app::field::NumberField;
 use crate::scene::limits;
 use crate::simulation::{Field, Simulation};
@@ -77,8 +77,16 @@ pub(super) fn options(
         {
             actions.push(Action::Copy);
         }
-        if ui.selectable_label(view.curve, "Curve").on_hover_text("Load against deflection (L)").clicked() {
-            view.curve ^= true;
+    });
+    ui.horizontal(|ui| {
+        for (drawer, word, tip) in [
+            (Drawer::Curve, "Load curve", "Load against deflection (L)"),
+            (Drawer::Trade, "Budget", "Error against time, and the fastest setting within limits (B)"),
+        ] {
+            let open = view.drawer == Some(drawer);
+            if ui.selectable_label(open, word).on_hover_text(tip).clicked() {
+                view.toggle(drawer);
+            }
         }
         if ui.button("Help").on_hover_text("Keys and mouse (F1)").clicked() {
             view.help = true;

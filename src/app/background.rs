@@ -1,0 +1,93 @@
+//! A study that runs beside the window.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+
+use crate::scene::Scene;
+use crate::study::{Extent, Progress, Study, StudyError};
+
+/// What the study says while it runs.
+enum Message {
+    Now(f32, String),
+    SoFar(Study),
+    Done(Result<Study, StudyError>),
+}
+
+/// How far a study is, as last heard.
+#[derive(Debug)]
+pub(super) enum News {
+    /// It goes on.
+    Running,
+    /// It has ended; `None` where it was called off.
+    Ended(Result<(), String>),
+}
+
+/// A study in a thread of its own. Dropped, it is called off.
+#[derive(Debug)]
+pub(super) struct Background {
+    receiver: Receiver<Message>,
+    cancel: Arc<AtomicBool>,
+    /// Share that is done, and what is measured now.
+    pub share: f32,
+    pub now: String,
+}
+
+impl Background {
+    /// Starts to measure the scene.
+    ///
+    /// # Errors
+    /// The system's words, where it gives no thread.
+    pub(super) fn start(scene: Scene) -> Result<Self, String> {
+        let (sender, receiver) = channel();
+        let cancel = Arc::new(AtomicBool::new(false));
+        let cancelled = cancel.clone();
+        std::thread::Builder::new()
+            .name("study".to_owned())
+            .spawn(move || work(&scene, &sender, &cancelled))
+            .map_err(|error| format!("no thread for the study: {error}"))?;
+        Ok(Self { receiver, cancel, share: 0.0, now: String::new() })
+    }
+
+    /// Takes what has been heard since; measurements go to `study`.
+    pub(super) fn listen(&mut self, study: &mut Option<Study>) -> News {
+        loop {
+            match self.receiver.try_recv() {
+                Ok(Message::Now(share, now)) => (self.share, self.now) = (share, now),
+                Ok(Message::SoFar(so_far)) => *study = Some(so_far),
+                Ok(Message::Done(Ok(done))) => {
+                    *study = Some(done);
+                    return News::Ended(Ok(()));
+                }
+                Ok(Message::Done(Err(StudyError::Cancelled))) => return News::Ended(Ok(())),
+                Ok(Message::Done(Err(error))) => return News::Ended(Err(error.to_string())),
+                Err(TryRecvError::Empty) => return News::Running,
+                Err(TryRecvError::Disconnected) => return News::Ended(Err("the study ended unexpectedly".to_owned())),
+            }
+        }
+    }
+}
+
+impl Drop for Background {
+    fn drop(&mut self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+}
+
+fn work(scene: &Scene, sender: &Sender<Message>, cancelled: &AtomicBool) {
+    // Nobody listening is as good as being called off.
+    let mut watch = |progress: Progress<'_>| {
+        let heard = match progress.so_far {
+            Some(study) => sender.send(Message::SoFar(study.clone())),
+            None => sender.send(Message::Now(progress.share as f32, progress.now.to_owned())),
+        };
+        if heard.is_err() || cancelled.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let done = Study::new(scene, Extent::Full, &mut watch);
+    let _ = sender.send(Message::Done(done));
+}
