@@ -267,3 +267,28 @@ fn an_unstable_equilibrium_is_reported_as_unstable() {
         }
     }
 }
+
+/// Out of iterations, `newton` leaves the last equilibrium it found, of the share of the load that it reports; the
+/// residual is that of the whole load.
+#[test]
+fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
+    let moment = |factor: f64, most: u32| {
+        let mut scene = scene("roll-up");
+        if let warpbeam::scene::Load::Moment { moment, .. } = &mut scene.loads[0] {
+            *moment *= factor;
+        }
+        scene.solver.max_iterations = most;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        simulation.solve();
+        simulation
+    };
+    let stopped = moment(3.0, 50);
+    assert!(matches!(stopped.status(), Status::NotConverged(_)), "{:?}", stopped.status());
+    let (share, steps) = stopped.load_stepping();
+    assert!(share > 0.0 && share < 1.0 && steps > 1, "{share} {steps}");
+    assert!(stopped.residual() > 1e-3, "{}", stopped.residual());
+    assert_eq!(stopped.certificate().stable, Some(true));
+    let exact = moment(3.0 * share, 400);
+    let [a, b] = [&stopped, &exact].map(|s| s.system().probes[0].mean(s.displacement()));
+    assert!((a - b).norm() < 1e-3 * b.norm(), "{a} {b}");
+}

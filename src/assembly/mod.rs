@@ -39,6 +39,8 @@ pub struct System {
     pub moments: Vec<EdgeMoment>,
     /// What is measured.
     pub probes: Vec<NodalProbe>,
+    /// Size of the body at rest: the diagonal of the box around it, m.
+    pub size: f64,
 }
 
 impl System {
@@ -69,7 +71,9 @@ impl System {
         let elements = elements_of(&mesh, scene.material.thickness, &pattern)?;
         let dead_force = boundary::dead_force(scene, &mesh, elements.as_ref())?;
         let probes = boundary::probes(scene, &mesh)?;
+        let (low, high) = mesh.bounds();
         Ok(Self {
+            size: (high - low).norm(),
             material: scene.material,
             lame: scene.material.lame(),
             mesh,

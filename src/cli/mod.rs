@@ -74,16 +74,7 @@ enum Command {
     },
     /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
     /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt).
-    Study {
-        #[command(flatten)]
-        scene: SceneArgs,
-        /// The folder to write to; made if it is not there.
-        #[arg(long, value_name = "DIR")]
-        out: PathBuf,
-        /// Without the finer meshes.
-        #[arg(long)]
-        quick: bool,
-    },
+    Study(StudyArgs),
     /// Solve at the extremes of load, stiffness, Poisson ratio, slenderness and starting state, and count how each method
     /// ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary.
     Extremes {
@@ -135,6 +126,22 @@ struct RequiredSceneArgs {
     scene: String,
     #[command(flatten)]
     set: SetArgs,
+}
+
+#[derive(Debug, Args)]
+struct StudyArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// The folder to write to; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Without the finer meshes.
+    #[arg(long)]
+    quick: bool,
+    /// Also how long rapier2d's soft bodies take for the same (rivals.csv).
+    #[cfg(feature = "rivals")]
+    #[arg(long)]
+    rivals: bool,
 }
 
 #[derive(Debug, Args)]
@@ -203,7 +210,7 @@ pub fn main() -> ExitCode {
         }
         Command::Solve { scene, json, out } => solve(&scene.into(), json, out.as_deref()),
         Command::Curve { scene, out } => curve(&scene.into(), out.as_deref()),
-        Command::Study { scene, out, quick } => study(&scene.into(), &out, quick),
+        Command::Study(args) => study(args),
         Command::Extremes { out, quick } => extremes(&out, quick),
         Command::Shot { scene, output, size, no_panel, curve, study, theme } => {
             shot(scene.into(), &output, &app::ShotOptions { size, panel: !no_panel, curve, study, theme })
@@ -316,13 +323,29 @@ fn write_folder(out: &Path, texts: &[(&str, &str)], picture: &str) -> Result<(),
     Ok(())
 }
 
-fn study(source: &scene::Source, out: &Path, quick: bool) -> Result<ExitCode, CliError> {
-    let (scene, _) = simulate(source)?;
-    let study = Study::new(&scene, extent(quick), &mut watch())
-        .map_err(|error| CliError::Study { scene: source.name.clone(), error })?;
-    let summary = study.summary();
+fn study(args: StudyArgs) -> Result<ExitCode, CliError> {
+    let source = scene::Source::from(args.scene);
+    let (scene, _) = simulate(&source)?;
+    let failed = |error| CliError::Study { scene: source.name.clone(), error };
+    let extent = extent(args.quick);
+    let study = Study::new(&scene, extent, &mut watch()).map_err(failed)?;
+    #[cfg_attr(not(feature = "rivals"), expect(unused_mut, reason = "rivals add to it"))]
+    let mut summary = study.summary();
+    #[cfg(feature = "rivals")]
+    if args.rivals {
+        use crate::study::rivals;
+        match rivals::rivals(&scene, extent).map_err(failed)? {
+            Some(rivals) => {
+                write_folder(&args.out, &[("rivals.csv", &rivals::table(&rivals))], "")?;
+                summary.push('\n');
+                summary.push_str(&rivals::summary(&rivals));
+            }
+            None => summary
+                .push_str("\nrapier2d holds nodes in both directions and knows no follower moments: not measured\n"),
+        }
+    }
     let texts = [("study.csv", study.table()), ("study.svg", plot::svg(&study)), ("study.txt", summary.clone())];
-    write_folder(out, &texts.each_ref().map(|(name, text)| (*name, text.as_str())), "study.svg")?;
+    write_folder(&args.out, &texts.each_ref().map(|(name, text)| (*name, text.as_str())), "study.svg")?;
     report::print(&summary);
     Ok(ExitCode::SUCCESS)
 }

@@ -40,18 +40,24 @@ pub fn rho_words(rho: f64) -> String {
 /// Lanczos steps: the extreme eigenvalue is right to a few digits long before.
 const LANCZOS_STEPS: usize = 24;
 
-/// ρ = |λ|max(A⁻¹ G') at this state, the error factor of the warped iteration: it converges here if ρ < 1.
+/// ρ = |λ|max(A⁻¹ G') at this state and load factor, the error factor of the warped iteration: it converges here if ρ < 1.
 ///
 /// G' is G less the loads' own tangent. Lanczos in the inner product of A, with full reorthogonalization. `None` where A
 /// cannot be factorized.
-pub fn fixed_point_rho(system: &System, u: &[Vector2<f64>], r: &[Rotation], workspace: &mut Workspace) -> Option<f64> {
+pub fn fixed_point_rho(
+    system: &System,
+    u: &[Vector2<f64>],
+    r: &[Rotation],
+    load_factor: f64,
+    workspace: &mut Workspace,
+) -> Option<f64> {
     let n = system.dofs();
     let mut a = vec![0.0; workspace.values.len()];
     system.stiffness(r, &mut a);
     workspace.factor.factorize(&a).ok()?;
     let mut g = vec![0.0; workspace.values.len()];
     system.add_geometric_stiffness(u, r, GeometricShare::All, &mut g);
-    system.add_load_stiffness(u, 1.0, &mut g);
+    system.add_load_stiffness(u, load_factor, &mut g);
 
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
     // Any start that is not orthogonal to the mode wanted: here one without symmetry.

@@ -229,8 +229,7 @@ impl Method for Newton {
             return Verdict::Stop(Reason::Stagnated(self.worse));
         }
         let nodes = (frame.workspace.free.len() as f64 * 0.5).sqrt();
-        let (low, high) = frame.system.mesh.bounds();
-        let too_long = self.last_step / nodes > LONGEST_STEP * (high - low).norm();
+        let too_long = self.last_step / nodes > LONGEST_STEP * frame.system.size;
         let hopeless =
             self.steps > 1 && (too_long || self.worse >= PATIENCE || farthest(frame.system, frame.u) > LONGEST_STEP);
         let late = self.steps >= MAX_STEPS + if residual < CLOSE { LAST_STEPS } else { 0 };
@@ -241,6 +240,7 @@ impl Method for Newton {
         // Descent only ever improves on what it started from.
         if !self.descends {
             self.restore(u);
+            self.target = self.reached;
         }
     }
 

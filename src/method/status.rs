@@ -138,6 +138,5 @@ impl Watch {
 
 /// The largest displacement over the size of the body at rest.
 pub(super) fn farthest(system: &System, u: &[Vector2<f64>]) -> f64 {
-    let (low, high) = system.mesh.bounds();
-    u.iter().map(|u| u.norm()).fold(0.0, f64::max) / (high - low).norm()
+    u.iter().map(|u| u.norm()).fold(0.0, f64::max) / system.size
 }

@@ -233,7 +233,8 @@ impl Simulation {
         if self.status == Status::Running && self.iterations >= self.max_iterations {
             self.status = Reason::IterationLimit(self.max_iterations).status();
             self.method.stop(&mut self.u);
-            self.measure(profile);
+            // What is missing to the whole load.
+            self.measure_at(1.0, profile);
         }
         if self.status != Status::Running {
             self.certify();
@@ -243,22 +244,27 @@ impl Simulation {
     /// What is known of the final state.
     fn certify(&mut self) {
         if self.method.corotates() {
+            let load_factor = self.method.load_factor();
             let Self { system, u, r, workspace, .. } = self;
             self.certificate = Certificate {
-                fixed_point_rho: fixed_point_rho(system, u, r, workspace),
-                stable: Some(is_stable(system, u, r, 1.0, workspace)),
+                fixed_point_rho: fixed_point_rho(system, u, r, load_factor, workspace),
+                stable: Some(is_stable(system, u, r, load_factor, workspace)),
             };
         }
     }
 
-    /// Rotations, forces and residual of the current state.
+    /// Rotations, forces and residual of the current state under the load that is on the body at present.
     fn measure(&mut self, profile: &mut Profile) {
+        self.measure_at(self.method.load_factor(), profile);
+    }
+
+    fn measure_at(&mut self, load_factor: f64, profile: &mut Profile) {
         timed(&mut profile.rotate, || self.method.rotate(&self.system, &self.u, &mut self.r));
         timed(&mut profile.assemble, || {
             self.system.internal_force(&self.u, &self.r, &mut self.internal_force, &mut self.magnitude);
             // Linear theory knows the loads at rest only.
             let seen = if self.method.corotates() { &self.u } else { &self.rest };
-            self.system.external_force(seen, self.method.load_factor(), &mut self.external_force);
+            self.system.external_force(seen, load_factor, &mut self.external_force);
             let forces = self.external_force.iter().zip(&self.internal_force);
             for (imbalance, (external, internal)) in self.imbalance.iter_mut().zip(forces) {
                 *imbalance = external - internal;

@@ -6,6 +6,8 @@ pub mod extremes;
 pub mod plot;
 mod reference;
 mod report;
+#[cfg(feature = "rivals")]
+pub mod rivals;
 mod timing;
 mod trade;
 

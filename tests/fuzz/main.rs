@@ -1,0 +1,234 @@
+//! Fuzz targets: the scene parser, the Gmsh reader, and the solver on small scenes. No panic, no hang, nothing that is
+//! not finite, memory bounded. `cargo test` runs a bounded number of random inputs; README says how coverage guides them.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use peak_alloc::PeakAlloc;
+use warpbeam::mesh::Mesh;
+use warpbeam::scene::{ElementKind, Scene, registry};
+use warpbeam::simulation::{Field, Simulation, Status};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// What any input here may take, all tests of this file at once.
+const MOST_MEMORY_MB: f32 = 256.0;
+
+fn memory_is_bounded() {
+    let peak = MEMORY.peak_usage_as_mb();
+    assert!(peak < MOST_MEMORY_MB, "{peak} MB");
+}
+
+/// Choices taken from the bytes of an input, and from a sequence that they start when they have run out.
+struct Choices<'a> {
+    bytes: &'a [u8],
+    state: u64,
+}
+
+impl<'a> Choices<'a> {
+    fn new(bytes: &'a [u8]) -> Self {
+        // FNV-1a.
+        let hash = |state: u64, byte: &u8| (state ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        Self { bytes, state: bytes.iter().fold(0xcbf2_9ce4_8422_2325, hash) | 1 }
+    }
+
+    fn byte(&mut self) -> u8 {
+        if let Some((first, rest)) = self.bytes.split_first() {
+            self.bytes = rest;
+            return *first;
+        }
+        // Xorshift64 (Marsaglia 2003).
+        self.state ^= self.state << 13;
+        self.state ^= self.state >> 7;
+        self.state ^= self.state << 17;
+        (self.state >> 32) as u8
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        usize::from(u16::from_le_bytes([self.byte(), self.byte()])) % n
+    }
+
+    fn of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[self.below(all.len())]
+    }
+
+    /// Numbers over many decades, and the awkward ones.
+    fn number(&mut self) -> String {
+        match self.byte() {
+            0..=159 => format!("{:e}", 10f64.powf(f64::from(self.byte()) / 32.0 - 3.0)),
+            160..=199 => format!("{:?}", 0.1 + f64::from(self.byte()) / 25.0),
+            200..=229 => format!("{:e}", 10f64.powf(f64::from(self.byte()) / 9.0 - 12.0)),
+            230..=239 => format!("-{:e}", 10f64.powf(f64::from(self.byte()) / 32.0 - 3.0)),
+            _ => self.of(&["0.0", "-0.0", "nan", "inf", "-1.0", "5e-324", "1.7976931348623157e308", "9e99"]).to_owned(),
+        }
+    }
+
+    /// A scene file with every word and number chosen; some are refused, and must be refused politely.
+    fn scene(&mut self) -> String {
+        let edges = ["left", "right", "bottom", "top"];
+        let mut text = format!(
+            "name = \"Random\"\n[beam]\nlength = {}\nheight = {}\ncells = [{}, {}]\nelement = \"{}\"\ndiagonals = \"{}\"\n\
+             [material]\nyoung = {}\npoisson = {:?}\ndensity = {}\nthickness = {}\nplane = \"{}\"\n",
+            self.number(),
+            self.number(),
+            1 + self.below(12),
+            1 + self.below(4),
+            self.of(&["t3", "t6"]),
+            self.of(&["alternating", "same"]),
+            self.number(),
+            f64::from(self.byte()) * 1.49 / 255.0 - 0.99,
+            self.number(),
+            self.number(),
+            self.of(&["stress", "strain"]),
+        );
+        for _ in 0..=self.below(2) {
+            let fix = self.of(&["\"x\", \"y\"", "\"x\", \"y\"", "\"x\"", "\"y\""]);
+            text += &format!("[[support]]\nedge = \"{}\"\nfix = [{fix}]\n", self.of(&edges));
+        }
+        for _ in 0..=self.below(2) {
+            text += &match self.below(5) {
+                0 => format!("[[load]]\nkind = \"gravity\"\nacceleration = [{}, {}]\n", self.number(), self.number()),
+                1 => {
+                    format!("[[load]]\nkind = \"moment\"\nedge = \"{}\"\nmoment = {}\n", self.of(&edges), self.number())
+                }
+                2 => format!(
+                    "[[load]]\nkind = \"force\"\nat = [{}, 0.0]\nforce = [0.0, {}]\n",
+                    self.number(),
+                    self.number()
+                ),
+                _ => format!(
+                    "[[load]]\nkind = \"force\"\nedge = \"{}\"\nforce = [{}, {}]\n",
+                    self.of(&edges),
+                    self.number(),
+                    self.number()
+                ),
+            };
+        }
+        text += &format!("[[probe]]\nname = \"p\"\nedge = \"{}\"\n", self.of(&edges));
+        text += &format!(
+            "[solver]\nmethod = \"{}\"\nmax_iterations = 40\nmax_error_percent = {:e}\n",
+            self.of(&["linear", "warped", "newton", "auto"]),
+            10f64.powi(self.below(5) as i32 - 3)
+        );
+        text
+    }
+
+    /// A text with pieces replaced, removed, doubled or put in.
+    fn damage(&mut self, text: &str) -> String {
+        let mut letters: Vec<char> = text.chars().collect();
+        for _ in 0..=self.below(3) {
+            let at = self.below(letters.len().max(1)).min(letters.len());
+            let end = (at + self.below(24)).min(letters.len());
+            let with =
+                self.of(&["", "", "9", "-", ".", "\"", "\n", "[", "]", "é", "1e99", "nan", "4294967295", "$End", " "]);
+            let piece: Vec<char> = letters[at..end].to_vec();
+            let new = with.chars();
+            match self.below(3) {
+                0 => drop(letters.splice(at..end, new)),
+                1 => drop(letters.splice(at..at, piece)),
+                _ => drop(letters.splice(at..at, new)),
+            }
+        }
+        letters.into_iter().collect()
+    }
+}
+
+/// Solves the scene of a text; says whether it could be set up, and converged after some steps.
+fn solve(text: &str) -> [bool; 2] {
+    let Ok(scene) = Scene::from_toml(text, Path::new("random.toml")) else { return [false; 2] };
+    let Ok(mut simulation) = Simulation::new(&scene) else { return [false; 2] };
+    simulation.solve();
+    assert_ne!(*simulation.status(), Status::Running);
+    assert!(simulation.iterations() <= scene.solver.max_iterations);
+    assert!(simulation.displacement().iter().all(|u| u.x.is_finite() && u.y.is_finite()), "{text}");
+    assert!(simulation.residual().is_finite(), "{text}");
+    let mut values = Vec::new();
+    for field in Field::ALL {
+        simulation.field(field, &mut values);
+        assert!(values.iter().all(|v| v.is_finite()), "{field:?} {text}");
+    }
+    assert!(simulation.certificate().fixed_point_rho.is_none_or(f64::is_finite), "{text}");
+    [true, *simulation.status() == Status::Converged && simulation.iterations() > 2]
+}
+
+#[test]
+fn the_solver_solves_or_refuses_small_scenes() {
+    let counts = [AtomicU32::new(0), AtomicU32::new(0)];
+    bolero::check!().with_iterations(8000).with_max_len(256).for_each(|bytes: &[u8]| {
+        for (count, yes) in counts.iter().zip(solve(&Choices::new(bytes).scene())) {
+            count.fetch_add(u32::from(yes), Ordering::Relaxed);
+        }
+        memory_is_bounded();
+    });
+    let [set_up, converged] = counts.map(AtomicU32::into_inner);
+    println!("{set_up} of 8000 scenes set up, {converged} converged after some steps");
+    assert!(set_up > 800 && converged > 200, "too few of the random scenes are scenes: {set_up}, {converged}");
+}
+
+#[test]
+fn the_scene_parser_reads_or_refuses_any_text() {
+    bolero::check!().with_iterations(6000).with_max_len(512).for_each(|bytes: &[u8]| {
+        let mut choices = Choices::new(bytes);
+        let text = match choices.below(3) {
+            0 => String::from_utf8_lossy(bytes).into_owned(),
+            1 => {
+                let scene = choices.scene();
+                choices.damage(&scene)
+            }
+            _ => {
+                let built_in = choices.of(registry::BUILT_IN);
+                choices.damage(built_in.toml)
+            }
+        };
+        if let Ok(scene) = Scene::from_toml(&text, Path::new("damaged.toml")) {
+            assert!(scene.validate().is_ok(), "{text}");
+        }
+        memory_is_bounded();
+    });
+}
+
+const SQUARE: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 7 \"wall\"\n$EndPhysicalNames\n$Entities\n0 1 1 0\n\
+    4 0 0 0 0 1 0 1 7 0\n1 0 0 0 1 1 0 0 0\n$EndEntities\n$Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n\
+    $Elements\n2 3 1 3\n1 4 1 1\n1 4 1\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
+
+#[test]
+fn the_gmsh_reader_reads_or_refuses_any_file() {
+    assert!(Mesh::from_gmsh(SQUARE, ElementKind::T6).is_ok());
+    bolero::check!().with_iterations(20_000).with_max_len(128).for_each(|bytes: &[u8]| {
+        let mut choices = Choices::new(bytes);
+        let text =
+            if choices.byte() < 8 { String::from_utf8_lossy(bytes).into_owned() } else { choices.damage(SQUARE) };
+        let element = choices.of(&ElementKind::ALL);
+        if let Ok(mesh) = Mesh::from_gmsh(&text, element) {
+            assert!(mesh.nodes.iter().all(|x| x.x.is_finite() && x.y.is_finite()));
+            assert!(mesh.connectivity.iter().all(|&n| (n as usize) < mesh.nodes.len()), "{text}");
+            let fine = mesh.refined();
+            assert_eq!(fine.triangle_count(), 4 * mesh.triangle_count());
+        }
+        memory_is_bounded();
+    });
+}
+
+/// What is too large is refused before room is made for it.
+#[test]
+fn the_enormous_is_refused_before_it_is_allocated() {
+    let built_in = registry::find("article").unwrap().toml;
+    for cells in ["[100000, 100000]", "[4294967295, 1]", "[100000, 3]"] {
+        let text = built_in.replacen("cells = [5, 1]", &format!("cells = {cells}"), 1);
+        assert!(text.contains(cells));
+        assert!(Scene::from_toml(&text, Path::new("large.toml")).is_err(), "{cells}");
+    }
+    for (old, new) in [
+        ("1 4 1 4\n2 1 0 4", "1 4000000000 1 4\n2 1 0 4000000000"),
+        ("2 3 1 3\n1 4 1 1", "2 4000000000 1 3\n1 4 1 4000000000"),
+        ("2 1 2 2\n", "2 1 2 18446744073709551615\n"),
+        ("$PhysicalNames\n1\n", "$PhysicalNames\n4000000000\n"),
+        ("0 1 1 0\n", "0 4000000000 1 0\n"),
+    ] {
+        assert!(SQUARE.contains(old));
+        assert!(Mesh::from_gmsh(&SQUARE.replacen(old, new, 1), ElementKind::T3).is_err(), "{new}");
+    }
+    memory_is_bounded();
+}

@@ -1,0 +1,70 @@
+//! rapier2d as an independent truth, and as a rival: it comes to rest where we do, on the same mesh.
+#![cfg(feature = "rivals")]
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use common::{scene_with, solved, stdout, warpbeam};
+use warpbeam::study::rivals::{Rapier, RapierSolver, Swing};
+
+/// Plane stress and plane strain: another implementation of the same energy has the same equilibrium.
+#[test]
+fn rapier_rests_where_we_do() {
+    for set in [
+        &["material.plane=stress"][..],
+        &["material.plane=strain", "material.poisson=0.4"],
+        &["load.0.force=[-200,-1500]", "material.thickness=0.5"],
+    ] {
+        let set: Vec<&str> = set.iter().copied().chain(["beam.cells=[20,2]", "solver.method=newton"]).collect();
+        let ours = solved(&scene_with("cantilever", &set));
+        let system = ours.system();
+        let end = system.probes[0].mean(ours.displacement());
+        let swing = Swing { solver: RapierSolver::Fem, pace: 0.05, damping: 1.0, cg_iterations: 500 };
+        let mut rapier = Rapier::new(system, end, swing).unwrap();
+        assert_eq!(rapier.displacement().norm(), 0.0);
+        for _ in 0..400 {
+            rapier.step();
+        }
+        let error = (rapier.displacement() - end).norm() / end.norm();
+        assert!(error < 2e-3, "{set:?}: {} {end}", rapier.displacement());
+    }
+}
+
+#[test]
+fn rapier_says_what_it_cannot_have() {
+    let swing = Swing { solver: RapierSolver::Fem, pace: 0.05, damping: 1.0, cg_iterations: 20 };
+    let end = nalgebra::Vector2::new(0.0, 1.0);
+    for (id, set) in
+        [("roll-up", "beam.element=t3"), ("cantilever", "beam.element=t6"), ("cantilever", "support.0.fix=[\"x\"]")]
+    {
+        let also = "support=[{edge=\"left\",fix=[\"x\"]},{at=[0,0],fix=[\"y\"]}]";
+        let set = if set.starts_with("support") { also } else { set };
+        let scene = scene_with(id, &[set]);
+        let system = warpbeam::assembly::System::new(&scene).unwrap();
+        assert!(Rapier::new(&system, end, swing).is_none(), "{id} {set}");
+    }
+}
+
+/// The command measures it beside our own methods.
+#[test]
+fn study_measures_rivals() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    // One small mesh from a file: the least that can be measured.
+    let mesh = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 7 \"wall\"\n$EndPhysicalNames\n$Entities\n0 1 1 0\n\
+        4 0 0 0 0 1 0 1 7 0\n1 0 0 0 1 1 0 0 0\n$EndEntities\n$Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n\
+        $Elements\n2 3 1 3\n1 4 1 1\n1 4 1\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
+    std::fs::write(folder.path().join("square.msh"), mesh).unwrap();
+    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"force\"\nat = [1, 0]\nforce = [0, -100]\n[[probe]]\nname = \"corner\"\nat = [1, 0]\n";
+    let path = folder.path().join("square.toml");
+    std::fs::write(&path, scene).unwrap();
+    let output = warpbeam(&["study", path.to_str().unwrap(), "--quick", "--rivals", "--out", out]);
+    assert_eq!(output.status.code(), Some(0), "{}", common::stderr(&output));
+    assert!(stdout(&output).contains("rapier2d on the same three-node meshes"));
+    let table = std::fs::read_to_string(folder.path().join("rivals.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|l| l.split(',').collect()).collect();
+    assert_eq!(rows.iter().map(|r| r[0]).collect::<Vec<_>>(), ["fem", "constraints"]);
+    assert!(rows.iter().all(|r| r.len() == 15 && r[4].parse::<f64>().unwrap() > 0.0), "{table}");
+    assert!(rows[0][5].parse::<u32>().unwrap() > 0, "fem never rests: {table}");
+}
