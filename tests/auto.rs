@@ -152,6 +152,16 @@ fn where_nothing_has_changed_nothing_is_solved() {
         assert_eq!(thrift(&auto).decision, Decision::Unchanged);
         assert_eq!((thrift(&auto).solves, thrift(&auto).factorizations), (0, 0));
         assert_eq!(auto.displacement(), before);
+        // More accuracy is a change; less is none.
+        for (asked, solves) in [(5.0, false), (1e-4, true)] {
+            let estimate = thrift(&auto).estimated_error;
+            scene.solver.max_error_percent = asked;
+            auto.change_scene(&scene).unwrap();
+            assert_eq!(auto.iterations(), 0);
+            auto.solve();
+            assert_eq!(auto.iterations() > 0, solves, "{asked}");
+            assert!(solves || thrift(&auto).estimated_error == estimate);
+        }
         auto.change_scene(&scaled(&scene, 1.001)).unwrap();
         auto.solve();
         assert!(auto.iterations() > 0 && thrift(&auto).decision != Decision::Unchanged);

@@ -279,7 +279,25 @@ pub fn counts(entries: &[Entry]) -> BTreeMap<(&'static str, &'static str), [usiz
     counts
 }
 
-/// The counts for people.
+/// The loads of the atlas, small to large.
+fn alphas(entries: &[Entry]) -> Vec<f64> {
+    let mut alphas: Vec<f64> = entries.iter().map(|e| e.case.alpha).collect();
+    alphas.sort_by(f64::total_cmp);
+    alphas.dedup();
+    alphas
+}
+
+/// Percent of the cases from rest under a load that end well, as the method counts it.
+fn percent_well(entries: &[Entry], element: ElementKind, method: MethodKind, alpha: f64) -> f64 {
+    let here = entries.iter().filter(|e| {
+        let c = &e.case;
+        (c.element, c.method, c.start) == (element, method, Start::Rest) && c.alpha == alpha
+    });
+    let well = |e: &&Entry| matches!(e.outcome, Outcome::Certified | Outcome::Converged);
+    100.0 * here.clone().filter(well).count() as f64 / here.count().max(1) as f64
+}
+
+/// The counts for people, and where each method stops working.
 #[must_use]
 pub fn summary(entries: &[Entry]) -> String {
     let mut text = format!("{} cases, plane strain\n\nelement method ", entries.len());
@@ -294,6 +312,19 @@ pub fn summary(entries: &[Entry]) -> String {
         }
         text.push('\n');
     }
+    text.push_str("\ncertified or converged, percent of the cases from rest, by load α = P L²/EI\nelement method ");
+    let alphas = alphas(entries);
+    for alpha in &alphas {
+        let _ = write!(text, " {:>6}", crate::scene::limits::number(*alpha));
+    }
+    text.push('\n');
+    for (element, method) in ElementKind::ALL.into_iter().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
+        let _ = write!(text, "{:<7} {:<7}", element.id(), method.id());
+        for &alpha in &alphas {
+            let _ = write!(text, " {:>6.0}", percent_well(entries, element, method, alpha));
+        }
+        text.push('\n');
+    }
     text
 }
 
@@ -305,9 +336,7 @@ pub fn heat_map(entries: &[Entry]) -> String {
     const MARGIN: [f64; 2] = [96.0, 64.0];
     const GAP: f64 = 56.0;
     const LEGEND: f64 = 128.0;
-    let mut columns: Vec<f64> = entries.iter().map(|e| e.case.alpha).collect();
-    columns.sort_by(f64::total_cmp);
-    columns.dedup();
+    let columns = alphas(entries);
     // Rows: slenderness from rest, then the other starts.
     let mut rows: Vec<(String, Start, f64)> = entries
         .iter()

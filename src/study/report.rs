@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::trade::Study;
 use crate::method::METHODS;
-use crate::scene::ElementKind;
+use crate::scene::{ElementKind, MethodKind};
 
 impl Study {
     /// The study as CSV; times in microseconds.
@@ -53,7 +53,7 @@ impl Study {
             let _ = writeln!(
                 text,
                 "{:12.4} {:12.4} {:12.4} {:12.4} {:14.4} {:14.4}   {}",
-                m.time.total().as_secs_f64() * 1e3,
+                m.milliseconds(),
                 e.bound(),
                 e.total,
                 e.discretization,
@@ -64,20 +64,22 @@ impl Study {
         }
         text.push('\n');
         for percent in [10.0, 1.0, 0.1] {
-            let words = self.cheapest_within(percent).map_or_else(
-                || "not reached".to_owned(),
-                |m| format!("{:.4} ms, {}", m.time.total().as_secs_f64() * 1e3, m.setting),
-            );
+            let words = self
+                .cheapest_within(percent)
+                .map_or_else(|| "not reached".to_owned(), |m| format!("{:.4} ms, {}", m.milliseconds(), m.setting));
             let _ = writeln!(text, "an error of {percent} % costs {words}");
             for element in ElementKind::ALL {
                 for method in METHODS.iter().map(|m| m.kind) {
                     let own = self.measurements.iter().filter(|m| {
                         (m.setting.element, m.setting.method) == (element, method) && m.error.bound() <= percent
                     });
-                    let words = own.min_by_key(|m| m.time.total()).map_or_else(
-                        || "not reached".to_owned(),
-                        |m| format!("{:.4} ms", m.time.total().as_secs_f64() * 1e3),
-                    );
+                    let words = match own.min_by_key(|m| m.time.total()) {
+                        Some(m) => format!("{:.4} ms", m.milliseconds()),
+                        None if method == MethodKind::Auto && percent < self.asked_percent => {
+                            format!("asked for {} % only", self.asked_percent)
+                        }
+                        None => "not reached".to_owned(),
+                    };
                     let _ = writeln!(text, "    {} {:<7} {words}", element.id(), method.id());
                 }
             }

@@ -116,6 +116,8 @@ pub struct Study {
     pub scene: String,
     /// What errors are measured against.
     pub reference: Reference,
+    /// The error that `auto` was asked for, percent.
+    pub asked_percent: f64,
     /// By element, mesh, method, iterations.
     pub measurements: Vec<Measurement>,
 }
@@ -187,7 +189,12 @@ impl Study {
     /// A study with its truth and nothing measured yet.
     pub(super) fn begin(scene: &Scene, watch: Watch<'_>) -> Result<Self, StudyError> {
         check(watch(Progress { share: 0.0, now: "the truth", so_far: None }))?;
-        Ok(Self { scene: scene.name.clone(), reference: Reference::of(scene)?, measurements: Vec::new() })
+        Ok(Self {
+            scene: scene.name.clone(),
+            reference: Reference::of(scene)?,
+            asked_percent: scene.solver.max_error_percent,
+            measurements: Vec::new(),
+        })
     }
 
     /// Adds every method on a mesh, and marks the front anew. `say` is told what is measured, and calls it off.
