@@ -97,19 +97,20 @@ fn results_stay_within_the_asked_error_of_the_truth() {
 #[test]
 fn a_dragged_load_seldom_needs_a_new_factor() {
     for id in ["cantilever", "elastica"] {
-        drag(scene(id));
+        drag(scene(id), 60, 1.0);
+        // So slowly that one step's length says nothing of how far the factor is behind.
+        drag(scene(id), 300, 0.2);
     }
 }
 
-fn drag(mut scene: Scene) {
-    const FRAMES: u32 = 60;
+fn drag(mut scene: Scene, frames: u32, asked: f64) {
     scene.solver.method = MethodKind::Auto;
-    scene.solver.max_error_percent = 1.0;
+    scene.solver.max_error_percent = asked;
     let Load::Force { force, .. } = scene.loads[0].clone() else { unreachable!("a force") };
     let mut auto: Option<Simulation> = None;
     let (mut factorizations, mut newtons, mut old) = (0, 0, 0);
-    for frame in 0..FRAMES {
-        let share = f64::from(frame) / f64::from(FRAMES - 1);
+    for frame in 0..frames {
+        let share = f64::from(frame) / f64::from(frames - 1);
         let (s, c) = (0.5 * share).sin_cos();
         let size = 0.2 + 0.8 * share;
         let turned = [size * (c * force[0] - s * force[1]), size * (s * force[0] + c * force[1])];
@@ -128,12 +129,12 @@ fn drag(mut scene: Scene) {
         simulation.solve();
         let exact = run(&scene, MethodKind::Newton);
         let error = distance(simulation, &exact);
-        assert!(error <= 1.0, "frame {frame}: {error} %, {:?}", thrift(simulation));
+        assert!(error <= asked, "{} frame {frame}: {error} %, {:?}", scene.name, thrift(simulation));
         factorizations += thrift(simulation).factorizations;
         newtons += exact.iterations();
         old += u32::from(thrift(simulation).decision == Decision::OldFactor);
     }
-    assert!(old >= FRAMES / 2, "the old factor served {old} of {FRAMES} frames");
+    assert!(old >= frames / 2, "the old factor served {old} of {frames} frames");
     assert!(3 * factorizations <= newtons, "{factorizations} factorizations, newton's {newtons}");
 }
 
