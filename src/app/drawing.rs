@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use crate::mesh::{Mesh, Segment};
 use crate::scene::ElementKind;
@@ -19,8 +19,9 @@ pub(super) struct Drawing {
     weights: Vec<f64>,
     /// Triangles between points.
     pub triangles: Vec<[u32; 3]>,
-    /// The quadrature point whose value each triangle shows.
+    /// The first quadrature point of each triangle's element, and the weights of that and the next ones in its value.
     value_of: Vec<u32>,
+    value_weights: Vec<f64>,
     /// Element sides.
     pub lines: Vec<[u32; 2]>,
     /// The lines around the body, each closed, counter-clockwise.
@@ -86,7 +87,10 @@ impl Drawing {
         let points = element.quadrature_points();
         let mut small = |corners: [[u32; 2]; 3]| {
             self.triangles.push(corners.map(point));
-            self.value_of.push(number * points.len() as u32 + nearest(points, corners.map(local)));
+            self.value_of.push(number * points.len() as u32);
+            let linear = linear_weights(points, corners.map(local));
+            let mean = || vec![1.0 / points.len() as f64; points.len()];
+            self.value_weights.extend(linear.unwrap_or_else(mean));
         };
         for (i, j) in (0..pieces).flat_map(|j| (0..pieces - j).map(move |i| (i, j))) {
             small([[i, j], [i + 1, j], [i, j + 1]]);
@@ -116,16 +120,21 @@ impl Drawing {
     /// The value of every triangle, from those of the quadrature points.
     pub(super) fn values(&self, at_points: &[f64], values: &mut Vec<f64>) {
         values.clear();
-        values.extend(self.value_of.iter().map(|&q| at_points.get(q as usize).copied().unwrap_or(0.0)));
+        let stride = self.value_weights.len() / self.value_of.len().max(1);
+        values.extend(self.value_of.iter().zip(self.value_weights.chunks(stride.max(1))).map(|(&first, weights)| {
+            let own = at_points.get(first as usize..).unwrap_or_default();
+            own.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f64>()
+        }));
     }
 }
 
-/// The quadrature point nearest to the middle of a small triangle, in area coordinates.
-fn nearest(points: &[[f64; 3]], corners: [[f64; 3]; 3]) -> u32 {
-    let middle = [0, 1, 2].map(|k| corners.iter().map(|l| l[k]).sum::<f64>() / 3.0);
-    let distance = |q: &[f64; 3]| (0..3).map(|k| (q[k] - middle[k]).powi(2)).sum::<f64>();
-    let order = |a: &(u32, &[f64; 3]), b: &(u32, &[f64; 3])| distance(a.1).total_cmp(&distance(b.1));
-    (0..).zip(points).min_by(order).map_or(0, |(q, _)| q)
+/// The weights on an element's quadrature points with which a linear field has its value in the middle of a small
+/// triangle; `None` for other than three points, whose value is the element's.
+fn linear_weights(points: &[[f64; 3]], corners: [[f64; 3]; 3]) -> Option<Vec<f64>> {
+    let &[a, b, c] = points else { return None };
+    let middle = Vector3::from([0, 1, 2].map(|k| corners.iter().map(|l| l[k]).sum::<f64>() / 3.0));
+    let weights = Matrix3::from_columns(&[a, b, c].map(Vector3::from)).try_inverse()? * middle;
+    Some(weights.iter().copied().collect())
 }
 
 #[cfg(test)]
@@ -154,6 +163,15 @@ mod tests {
             let around: f64 = line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
             assert!((around - 10.0).abs() < 1e-12, "{element:?}: {around}");
             assert_eq!(drawing.triangles.len(), drawing.value_of.len());
+            // A field that is linear within elements is drawn as it is: its mean over the body is that of its points.
+            let count = mesh.triangle_count() * element.quadrature_points().len();
+            let at_points: Vec<f64> = (0..count).map(|q| (q % 7) as f64).collect();
+            let mut values = Vec::new();
+            drawing.values(&at_points, &mut values);
+            let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+            assert!((mean(&values) - mean(&at_points)).abs() < 1e-12, "{element:?}");
+            drawing.values(&vec![5.0; count], &mut values);
+            assert!(values.iter().all(|v| (v - 5.0).abs() < 1e-12), "{element:?}");
         }
     }
 }

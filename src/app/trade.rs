@@ -153,7 +153,7 @@ fn dial(ui: &mut Ui, shown: &Shown<'_>, messages: &mut Messages, asked: &mut Opt
             }
             let words = match (shown.error, shown.study) {
                 (Some(error), _) => RichText::new(error).small().color(ui.visuals().error_fg_color),
-                (None, None) => RichText::new("Nothing measured yet: takes about ten seconds.").small(),
+                (None, None) => RichText::new("Nothing measured yet: it takes some seconds.").small(),
                 (None, Some(_)) if !shown.current => {
                     let color = ui.visuals().warn_fg_color;
                     RichText::new("The body or its load has changed since.").small().color(color)

@@ -32,8 +32,10 @@ pub fn is_stable(
 pub fn rho_words(rho: f64) -> String {
     if rho < 1.0 {
         format!("the warped iteration converges near here: ρ = {rho:.3} < 1")
-    } else {
+    } else if rho < 1000.0 {
         format!("the warped iteration cannot converge here: ρ = {rho:.3} > 1")
+    } else {
+        format!("the warped iteration cannot converge here: ρ = {rho:.1e} > 1")
     }
 }
 
