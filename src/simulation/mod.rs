@@ -1,5 +1,7 @@
 //! The state of a scene, one [`Simulation::step`] a frame, and what is known of the result.
 
+use std::cell::{OnceCell, RefCell};
+
 use nalgebra::Vector2;
 use thiserror::Error;
 
@@ -47,7 +49,8 @@ pub struct Simulation {
     method: Box<dyn Method>,
     goal: Goal,
     max_iterations: u32,
-    workspace: Workspace,
+    /// Borrowed for a certificate too, which is asked of a state at rest.
+    workspace: RefCell<Workspace>,
     /// Displacement x − X of every node, m.
     u: Vec<Vector2<f64>>,
     previous_u: Vec<Vector2<f64>>,
@@ -61,7 +64,7 @@ pub struct Simulation {
     residual: f64,
     iterations: u32,
     status: Status,
-    certificate: Certificate,
+    certificate: OnceCell<Certificate>,
     profile: Profile,
     last_frame: Profile,
 }
@@ -94,7 +97,7 @@ impl Simulation {
             method: (kind.entry().start)(),
             goal: goal(scene),
             max_iterations: scene.solver.max_iterations,
-            workspace,
+            workspace: RefCell::new(workspace),
             u: zero.clone(),
             previous_u: zero.clone(),
             rest: zero.clone(),
@@ -106,7 +109,7 @@ impl Simulation {
             residual: 0.0,
             iterations: 0,
             status: Status::Running,
-            certificate: Certificate::default(),
+            certificate: OnceCell::new(),
             profile: Profile::default(),
             last_frame: Profile::default(),
             system,
@@ -161,7 +164,7 @@ impl Simulation {
     fn begin(&mut self, occasion: Occasion) {
         self.iterations = 0;
         self.status = Status::Running;
-        self.certificate = Certificate::default();
+        self.certificate = OnceCell::new();
         self.method.begin(occasion);
         self.profile = Profile::default();
         self.last_frame = Profile::default();
@@ -216,7 +219,7 @@ impl Simulation {
             residual: self.residual,
             goal: self.goal,
             u: &mut self.u,
-            workspace: &mut self.workspace,
+            workspace: self.workspace.get_mut(),
             profile,
         };
         work(self.method.as_mut(), &mut frame)
@@ -235,21 +238,6 @@ impl Simulation {
             self.method.stop(&mut self.u);
             // What is missing to the whole load.
             self.measure_at(1.0, profile);
-        }
-        if self.status != Status::Running {
-            self.certify();
-        }
-    }
-
-    /// What is known of the final state.
-    fn certify(&mut self) {
-        if self.method.corotates() {
-            let load_factor = self.method.load_factor();
-            let Self { system, u, r, workspace, .. } = self;
-            self.certificate = Certificate {
-                fixed_point_rho: fixed_point_rho(system, u, r, load_factor, workspace),
-                stable: Some(is_stable(system, u, r, load_factor, workspace)),
-            };
         }
     }
 
@@ -300,10 +288,19 @@ impl Simulation {
         self.kind
     }
 
-    /// What is known of the final state.
+    /// What is known of the final state: found when it is first asked for, at the price of some solves, and remembered.
     #[must_use]
     pub fn certificate(&self) -> Certificate {
-        self.certificate
+        if self.status == Status::Running || !self.method.corotates() {
+            return Certificate::default();
+        }
+        *self.certificate.get_or_init(|| {
+            let (workspace, load_factor) = (&mut *self.workspace.borrow_mut(), self.method.load_factor());
+            Certificate {
+                fixed_point_rho: fixed_point_rho(&self.system, &self.u, &self.r, load_factor, workspace),
+                stable: Some(is_stable(&self.system, &self.u, &self.r, load_factor, workspace)),
+            }
+        })
     }
 
     /// Share of the load that is on the body, and load steps taken so far.

@@ -111,7 +111,7 @@ impl Simulation {
             iterations: self.iterations,
             load_steps: self.method.load_steps(),
             residual: self.residual,
-            certificate: self.certificate,
+            certificate: self.certificate(),
             max_rotation_deg: max_rotation.to_degrees(),
             max_strain,
             inverted_elements: inverted,
