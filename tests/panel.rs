@@ -471,3 +471,36 @@ fn decisions_are_shown() {
     assert!(harness.query_by_label("Nothing changed: no solve.").is_some());
     assert_eq!(harness.state().simulation().iterations(), 0);
 }
+
+/// The window's fonts have every letter that its texts use.
+#[test]
+fn no_text_has_letters_that_the_fonts_lack() {
+    fn sources(folder: &std::path::Path, texts: &mut Vec<String>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                sources(&path, texts);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = std::fs::read_to_string(path).unwrap();
+                texts.extend(text.lines().map(|line| line.split("//").next().unwrap_or_default().to_owned()));
+            }
+        }
+    }
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut texts = Vec::new();
+    for folder in ["app", "method", "element", "scene", "simulation"] {
+        sources(&root.join("src").join(folder), &mut texts);
+    }
+    let about = common::scene_ids().into_iter().map(|id| scene(id).about);
+    texts.extend(about);
+    texts.push("\u{2013}\u{201c}\u{201d}\u{2212}".to_owned());
+    let letters: std::collections::BTreeSet<char> =
+        texts.iter().flat_map(|t| t.chars()).filter(|c| !c.is_ascii()).collect();
+    assert!(letters.contains(&'≤') && letters.contains(&'ρ'));
+    let harness = harness("article");
+    let lacks = |font: egui::FontId| -> Vec<char> {
+        harness.ctx.fonts_mut(|fonts| letters.iter().copied().filter(|&c| !fonts.has_glyph(&font, c)).collect())
+    };
+    assert_eq!(lacks(egui::FontId::proportional(14.0)), Vec::<char>::new());
+    assert_eq!(lacks(egui::FontId::monospace(14.0)), Vec::<char>::new());
+}

@@ -10,8 +10,7 @@ use super::{Frame, FrameError, Method, Occasion, Verdict};
 use crate::assembly::System;
 use crate::rotation::Rotation;
 
-pub(super) const ABOUT: &str =
-    "Warped stiffness: the article's iteration R K (Rᵀ x − X) = f. Large rotations, but it diverges under large loads.";
+pub(super) const ABOUT: &str = "Warped stiffness: the article's iteration, every element seen turned back. Large rotations, but it diverges under large loads.";
 
 /// The article's iteration.
 #[derive(Clone, Debug, Default)]

@@ -97,11 +97,12 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
     });
     let rho = simulation.certificate().fixed_point_rho;
     let words = rho.map_or_else(|| format!("ρ {UNKNOWN}"), |rho| sentence(&rho_words(rho)));
-    ui.add(egui::Label::new(RichText::new(words).small()).truncate())
-        .on_hover_text("ρ = |λ|max(A⁻¹G), the error factor of the warped iteration, where an iteration has ended");
+    ui.add(egui::Label::new(RichText::new(words).small()).truncate()).on_hover_text(
+        "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended",
+    );
     let stages = [
         ("rotate", time.rotate, "Element maps and polar decompositions"),
-        ("assemble", time.assemble, "Stiffness R K Rᵀ, forces, residual"),
+        ("assemble", time.assemble, "Stiffness of the turned elements, forces, residual"),
         ("factorize", time.factorize, "Sparse Cholesky"),
         ("solve", time.solve, "Forward and back substitution"),
     ];
