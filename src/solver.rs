@@ -109,9 +109,18 @@ impl Factor {
         factorized.map(|_| ()).map_err(|_| SolverError::NotPositiveDefinite)
     }
 
+    /// Factorizes a symmetric matrix, as positive definite if it is that; says whether it is.
+    pub fn factorize_symmetric(&mut self, matrix: &[f64]) -> bool {
+        let definite = self.factorize(matrix).is_ok();
+        if !definite {
+            self.factorize_indefinite(matrix);
+        }
+        definite
+    }
+
     /// Factorizes a symmetric matrix that need not be definite. One that is singular gives solutions that are not
     /// finite.
-    pub fn factorize_indefinite(&mut self, matrix: &[f64]) {
+    fn factorize_indefinite(&mut self, matrix: &[f64]) {
         let matrix = SparseColMatRef::new(self.structure.as_ref(), &matrix[..self.structure.row_idx().len()]);
         self.kind = Kind::Indefinite;
         self.symbolic.factorize_numeric_intranode_lblt(

@@ -51,9 +51,7 @@ fn study_measures_rivals() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     // One small mesh from a file: the least that can be measured.
-    let mesh = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 7 \"wall\"\n$EndPhysicalNames\n$Entities\n0 1 1 0\n\
-        4 0 0 0 0 1 0 1 7 0\n1 0 0 0 1 1 0 0 0\n$EndEntities\n$Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n\
-        $Elements\n2 3 1 3\n1 4 1 1\n1 4 1\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
+    let mesh = include_str!("data/square.msh");
     std::fs::write(folder.path().join("square.msh"), mesh).unwrap();
     let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
         fix = [\"x\", \"y\"]\n[[load]]\nkind = \"force\"\nat = [1, 0]\nforce = [0, -100]\n[[probe]]\nname = \"corner\"\nat = [1, 0]\n";

@@ -20,7 +20,7 @@ enum Message {
 pub(super) enum News {
     /// It goes on.
     Running,
-    /// It has ended; `None` where it was called off.
+    /// It has ended, or was called off; or why it could not.
     Ended(Result<(), String>),
 }
 

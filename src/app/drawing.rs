@@ -30,15 +30,11 @@ pub(super) struct Drawing {
     pub boundary: Vec<Segment>,
 }
 
-fn key(side: &Segment) -> (u32, u32) {
-    (side.ends[0].min(side.ends[1]), side.ends[0].max(side.ends[1]))
-}
-
 impl Drawing {
     pub(super) fn new(mesh: &Mesh) -> Self {
         let mut drawing = Self { stride: mesh.element.nodes(), ..Self::default() };
         drawing.boundary = mesh.outline();
-        let boundary: HashSet<_> = drawing.boundary.iter().map(key).collect();
+        let boundary: HashSet<_> = drawing.boundary.iter().map(Segment::key).collect();
         let mut drawn = HashSet::new();
         // Every boundary side's end corner and points, by its first corner.
         let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();
@@ -46,10 +42,10 @@ impl Drawing {
             let sides = drawing.add(mesh.element, number, triangle);
             for (side, points) in Mesh::sides(triangle).iter().zip(sides) {
                 let pieces = || points.windows(2).map(|w| [w[0], w[1]]);
-                if drawn.insert(key(side)) {
+                if drawn.insert(side.key()) {
                     drawing.lines.extend(pieces());
                 }
-                if boundary.contains(&key(side)) {
+                if boundary.contains(&side.key()) {
                     around.entry(side.ends[0]).or_default().push((side.ends[1], points.clone()));
                 }
             }

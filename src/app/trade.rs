@@ -11,6 +11,7 @@ use super::format;
 use super::plot::method_colors;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, Scene, SolverSettings, limits};
+use crate::study::plot::drawn_error;
 use crate::study::{Demand, Measurement, Setting, Study};
 
 /// The study of the lab's scene.
@@ -85,6 +86,7 @@ impl Trade {
         let shown = Shown {
             scene,
             study: self.study.as_ref(),
+            meeting: self.study.as_ref().map(|s| s.meeting(Demand::from(&scene.solver))).unwrap_or_default(),
             current: self.of.as_ref() == Some(&question(scene)),
             progress: self.background.as_ref().map(|b| (b.share, b.now.as_str())),
             error: self.error.as_deref(),
@@ -111,6 +113,8 @@ impl Trade {
 struct Shown<'a> {
     scene: &'a Scene,
     study: Option<&'a Study>,
+    /// What of it meets the scene's demand, fastest first.
+    meeting: Vec<&'a Measurement>,
     /// Whether the study is of the body and loads that the lab shows.
     current: bool,
     /// Share that is done and what is measured now, while a study runs.
@@ -133,10 +137,6 @@ pub(super) enum Asked {
 }
 
 const DIAL_WIDTH: f32 = 384.0;
-/// Errors below this are drawn at it: they are rounding, or chance.
-const SMALLEST_ERROR: f64 = 1e-3;
-/// Errors above this are drawn at it: iterations that diverge are off the picture.
-const LARGEST_ERROR: f64 = 1e3;
 
 fn dial(ui: &mut Ui, shown: &Shown<'_>, messages: &mut Messages, asked: &mut Option<Asked>) {
     ui.horizontal(|ui| {
@@ -164,32 +164,29 @@ fn dial(ui: &mut Ui, shown: &Shown<'_>, messages: &mut Messages, asked: &mut Opt
         }
     });
     let demand = Demand::from(&shown.scene.solver);
-    let fields = [
-        NumberField {
-            label: "Time ≤",
-            tooltip: "At most so many milliseconds a frame. A frame at 60 Hz has 16.",
-            limit: limits::BUDGET_MS,
-            slider: 1e-3..=1e3,
-            logarithmic: Some(1e-3),
-            whole: false,
-        },
-        NumberField {
-            label: "Error ≤",
-            tooltip: "At most so many percent of the true displacement.",
-            limit: limits::MAX_ERROR_PERCENT,
-            slider: 1e-3..=100.0,
-            logarithmic: Some(1e-3),
-            whole: false,
-        },
-    ];
-    let [time, error] = fields;
+    let time = NumberField {
+        label: "Time ≤",
+        tooltip: "At most so many milliseconds a frame. A frame at 60 Hz has 16.",
+        limit: limits::BUDGET_MS,
+        slider: 1e-3..=1e3,
+        logarithmic: Some(1e-3),
+        whole: false,
+    };
+    let error = NumberField {
+        label: "Error ≤",
+        tooltip: "At most so many percent of the true displacement.",
+        limit: limits::MAX_ERROR_PERCENT,
+        slider: 1e-3..=100.0,
+        logarithmic: Some(1e-3),
+        whole: false,
+    };
     if let Some(budget_ms) = time.show(ui, messages, demand.budget_ms) {
         *asked = Some(Asked::Demand(Demand { budget_ms, ..demand }));
     }
     if let Some(max_error_percent) = error.show(ui, messages, demand.max_error_percent) {
         *asked = Some(Asked::Demand(Demand { max_error_percent, ..demand }));
     }
-    let meeting = shown.study.map(|s| s.meeting(demand)).unwrap_or_default();
+    let meeting = &shown.meeting;
     ui.horizontal(|ui| {
         let best = meeting.first();
         let apply = ui.add_enabled(best.is_some(), Button::new("Apply the fastest"));
@@ -202,15 +199,13 @@ fn dial(ui: &mut Ui, shown: &Shown<'_>, messages: &mut Messages, asked: &mut Opt
         let measured = shown.study.map_or(0, |s| s.measurements.len());
         ui.label(format!("{} of {measured} settings meet both", meeting.len()));
     });
-    list(ui, shown, &meeting, asked);
+    list(ui, shown, asked);
 }
 
 /// The settings that meet the demand, fastest first; a click applies one.
-fn list(ui: &mut Ui, shown: &Shown<'_>, meeting: &[&Measurement], asked: &mut Option<Asked>) {
-    let applied = |setting: &Setting| {
-        let scene = shown.scene;
-        setting.apply(scene) == *scene && setting.iterations == shown.iterations
-    };
+fn list(ui: &mut Ui, shown: &Shown<'_>, asked: &mut Option<Asked>) {
+    let meeting = &shown.meeting;
+    let applied = Setting::of(shown.scene, shown.iterations);
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
@@ -221,7 +216,7 @@ fn list(ui: &mut Ui, shown: &Shown<'_>, meeting: &[&Measurement], asked: &mut Op
                 m.setting
             );
             let label = ui.add(
-                Button::selectable(applied(&m.setting), RichText::new(words).font(FontId::monospace(11.0))).truncate(),
+                Button::selectable(m.setting == applied, RichText::new(words).font(FontId::monospace(11.0))).truncate(),
             );
             let e = &m.error;
             let parts = format!(
@@ -250,8 +245,7 @@ fn decade_words(mark: GridMark) -> String {
 
 /// Where a measurement is in the plot: both logarithms.
 fn place(m: &Measurement) -> [f64; 2] {
-    let error = m.error.bound().clamp(SMALLEST_ERROR, LARGEST_ERROR);
-    [m.milliseconds().max(f64::MIN_POSITIVE).log10(), error.log10()]
+    [m.milliseconds().max(f64::MIN_POSITIVE).log10(), drawn_error(m).log10()]
 }
 
 /// What colours and shapes mean, in one line: the plot has no room for a list.
@@ -313,7 +307,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>) {
             let style = LineStyle::dashed_dense();
             plot.vline(VLine::new("at most", demand.budget_ms.log10()).color(limit).style(style));
             plot.hline(HLine::new("at most", demand.max_error_percent.log10()).color(limit).style(style));
-            if let Some(best) = shown.study.and_then(|s| s.meeting(demand).first().copied()) {
+            if let Some(best) = shown.meeting.first() {
                 let ring = Points::new("fastest", vec![place(best)]).color(text).filled(false).radius(8.0);
                 plot.points(ring);
             }

@@ -234,9 +234,12 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
 
 fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
     let scene = scene::open(source)?;
-    let failed = |error| CliError::Simulation { scene: source.name.clone(), error };
-    let simulation = Simulation::new(&scene).map_err(failed)?;
+    let simulation = set_up(source, &scene)?;
     Ok((scene, simulation))
+}
+
+fn set_up(source: &scene::Source, scene: &Scene) -> Result<Simulation, CliError> {
+    Simulation::new(scene).map_err(|error| CliError::Simulation { scene: source.name.clone(), error })
 }
 
 fn exit_code(status: &Status) -> ExitCode {
@@ -266,8 +269,7 @@ fn solve(source: &scene::Source, json: bool, out: Option<&Path>) -> Result<ExitC
     let choice = choose(source, &scene)?;
     if let Some(choice) = &choice {
         scene = choice.chosen.setting.apply(&scene);
-        let failed = |error| CliError::Simulation { scene: source.name.clone(), error };
-        simulation = Simulation::new(&scene).map_err(failed)?;
+        simulation = set_up(source, &scene)?;
     }
     let status = simulation.solve().clone();
     if let Some(path) = out {

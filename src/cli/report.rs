@@ -7,6 +7,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use crate::method::rho_words;
+use crate::scene::limits::count;
 use crate::scene::{Scene, registry};
 use crate::simulation::{Certificate, Solution, Status};
 use crate::study::{Choice, LoadCurve};
@@ -28,10 +29,6 @@ pub(super) fn scenes() -> String {
         let _ = writeln!(text, "{:<12} {name}\n{:12} {about}", built_in.id, "");
     }
     text
-}
-
-fn count(n: u32, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// A result for people, and why `auto` chose as it did.

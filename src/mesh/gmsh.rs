@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::{Mesh, MeshError, Segment};
+use super::{Mesh, MeshError, Middles, Segment};
 use crate::scene::ElementKind;
 use crate::scene::limits::{COORDINATE, TOTAL_CELLS};
 
@@ -209,7 +209,7 @@ impl File {
             .map_err(|_| GmshError::Content(format!("expected at most {} triangles", 2.0 * TOTAL_CELLS.max)))?;
         // Only the nodes of triangles: what else the file holds would be free to float away.
         let mut builder =
-            Builder { tags: &self.nodes, numbers: HashMap::new(), nodes: Vec::new(), middles: HashMap::new() };
+            Builder { tags: &self.nodes, numbers: HashMap::new(), nodes: Vec::new(), middles: Middles::default() };
         let mut connectivity = Vec::new();
         for (line, triangle) in &self.triangles {
             let missing =
@@ -270,7 +270,7 @@ struct Builder<'a> {
     tags: &'a HashMap<u64, Vector2<f64>>,
     numbers: HashMap<u64, u32>,
     nodes: Vec<Vector2<f64>>,
-    middles: HashMap<(u32, u32), u32>,
+    middles: Middles,
 }
 
 impl Builder<'_> {
@@ -285,11 +285,10 @@ impl Builder<'_> {
         Some(number)
     }
 
-    fn middle(&mut self, [a, b]: [u32; 2]) -> u32 {
-        *self.middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-            let position = (self.nodes[a as usize] + self.nodes[b as usize]) * 0.5;
-            self.nodes.push(position);
-            (self.nodes.len() - 1) as u32
+    fn middle(&mut self, ends: [u32; 2]) -> u32 {
+        self.middles.between(&mut self.nodes, ends, |nodes| {
+            let [a, b] = ends.map(|n| nodes[n as usize]);
+            (a + b) * 0.5
         })
     }
 }

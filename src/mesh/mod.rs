@@ -1,6 +1,6 @@
 //! Triangle meshes: nodes, connectivity, named edges. Areas are checked once, here.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -45,6 +45,34 @@ pub enum MeshError {
     },
 }
 
+/// The nodes made between two others, each once.
+#[derive(Debug, Default)]
+struct Middles(HashMap<[u32; 2], u32>);
+
+/// Two nodes, smaller number first: the same for the side of either triangle.
+fn side_key([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+impl Middles {
+    /// The node between two of `nodes`, made where `place` says if there is none yet.
+    fn between(
+        &mut self,
+        nodes: &mut Vec<Vector2<f64>>,
+        ends: [u32; 2],
+        place: impl FnOnce(&[Vector2<f64>]) -> Vector2<f64>,
+    ) -> u32 {
+        *self.0.entry(side_key(ends)).or_insert_with(|| {
+            nodes.push(place(nodes));
+            (nodes.len() - 1) as u32
+        })
+    }
+
+    fn get(&self, ends: [u32; 2]) -> Option<u32> {
+        self.0.get(&side_key(ends)).copied()
+    }
+}
+
 /// One side of a triangle on a named edge, by node numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
@@ -55,6 +83,12 @@ pub struct Segment {
 }
 
 impl Segment {
+    /// Its ends, smaller number first: the same for the side of either triangle.
+    #[must_use]
+    pub fn key(&self) -> [u32; 2] {
+        side_key(self.ends)
+    }
+
     /// All its nodes.
     pub fn nodes(&self) -> impl Iterator<Item = u32> {
         self.ends.into_iter().chain(self.middle)
@@ -161,8 +195,7 @@ impl Mesh {
     #[must_use]
     pub fn outline(&self) -> Vec<Segment> {
         let mut sides: Vec<Segment> = self.triangles().flat_map(Self::sides).collect();
-        let key = |s: &Segment| (s.ends[0].min(s.ends[1]), s.ends[0].max(s.ends[1]));
-        sides.sort_unstable_by_key(key);
-        sides.chunk_by(|a, b| key(a) == key(b)).filter(|same| same.len() == 1).map(|same| same[0]).collect()
+        sides.sort_unstable_by_key(Segment::key);
+        sides.chunk_by(|a, b| a.key() == b.key()).filter(|same| same.len() == 1).map(|same| same[0]).collect()
     }
 }

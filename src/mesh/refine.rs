@@ -1,30 +1,8 @@
 //! Uniform refinement: every triangle into four, curved sides along their own curve.
 
-use std::collections::BTreeMap;
-
 use nalgebra::Vector2;
 
-use super::{Mesh, Segment};
-
-/// Nodes by the two nodes that they lie between.
-struct Middles<'a> {
-    nodes: &'a mut Vec<Vector2<f64>>,
-    known: BTreeMap<[u32; 2], u32>,
-}
-
-impl Middles<'_> {
-    /// The node between `a` and `b`, made at `position` where there is none yet.
-    fn between(&mut self, a: u32, b: u32, position: impl FnOnce() -> Vector2<f64>) -> u32 {
-        *self.known.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            self.nodes.push(position());
-            self.nodes.len() as u32 - 1
-        })
-    }
-
-    fn get(&self, a: u32, b: u32) -> Option<u32> {
-        self.known.get(&[a.min(b), a.max(b)]).copied()
-    }
-}
+use super::{Mesh, Middles, Segment};
 
 /// The corners of the four triangles, by corner (0, 1, 2) and middle of a side (3: between 0 and 1, then on).
 const PARTS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
@@ -39,7 +17,7 @@ impl Mesh {
     pub fn refined(&self) -> Self {
         let quadratic = self.element.degree() > 1;
         let mut nodes = self.nodes.clone();
-        let mut middles = Middles { nodes: &mut nodes, known: BTreeMap::new() };
+        let mut middles = Middles::default();
         let mut connectivity = Vec::with_capacity(4 * self.connectivity.len());
         for triangle in self.triangles() {
             let place = |l: [f64; 3]| -> Vector2<f64> {
@@ -51,7 +29,7 @@ impl Mesh {
             if !quadratic {
                 for side in 0..3 {
                     let at = PLACES[3 + side];
-                    six[3 + side] = middles.between(six[side], six[(side + 1) % 3], || place(at));
+                    six[3 + side] = middles.between(&mut nodes, [six[side], six[(side + 1) % 3]], |_| place(at));
                 }
             }
             for part in PARTS {
@@ -60,16 +38,15 @@ impl Mesh {
                     for side in 0..3 {
                         let (a, b) = (part[side], part[(side + 1) % 3]);
                         let at = [0, 1, 2].map(|i| 0.5 * (PLACES[a][i] + PLACES[b][i]));
-                        connectivity.push(middles.between(six[a], six[b], || place(at)));
+                        connectivity.push(middles.between(&mut nodes, [six[a], six[b]], |_| place(at)));
                     }
                 }
             }
         }
         let halves = |segment: &Segment| {
             let [a, b] = segment.ends;
-            let middle = segment.middle.or_else(|| middles.get(a, b));
-            let half =
-                |ends: [u32; 2]| Segment { ends, middle: if quadratic { middles.get(ends[0], ends[1]) } else { None } };
+            let middle = segment.middle.or_else(|| middles.get([a, b]));
+            let half = |ends: [u32; 2]| Segment { ends, middle: if quadratic { middles.get(ends) } else { None } };
             // A segment that no triangle has stays whole; a mesh's edges are sides of its triangles.
             middle.map_or_else(|| vec![*segment], |m| vec![half([a, m]), half([m, b])])
         };

@@ -28,7 +28,7 @@ impl Method for Linear {
     }
 
     fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
-        frame.step_with_warped_stiffness().map(|step| self.0.stepped(step))
+        frame.step_with_warped_stiffness().map(|step| self.0.steps.stepped(step))
     }
 
     fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict {

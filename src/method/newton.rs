@@ -179,11 +179,7 @@ impl Method for Newton {
         }
         let Workspace { values, factor, .. } = &mut *frame.workspace;
         timed(&mut frame.profile.assemble, || tangent(frame.system, frame.u, frame.r, self.target, values));
-        timed(&mut frame.profile.factorize, || {
-            if factor.factorize(values).is_err() {
-                factor.factorize_indefinite(values);
-            }
-        });
+        timed(&mut frame.profile.factorize, || factor.factorize_symmetric(values));
         frame.solve_for_step()?;
         frame.advance(1.0);
         self.last_step = frame.step_length();

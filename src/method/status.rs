@@ -97,21 +97,30 @@ const FARTHEST: f64 = 1e6;
 pub(super) struct Watch {
     best: Option<f64>,
     waiting: u32,
-    last_step: f64,
+    pub(super) steps: Steps,
+}
+
+/// The lengths of steps as they go by.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Steps {
+    last: f64,
     ratio: Option<f64>,
 }
 
-impl Watch {
-    pub(super) fn step_ratio(&self) -> Option<f64> {
-        self.ratio
-    }
-
+impl Steps {
     /// Takes the length of a step.
     pub(super) fn stepped(&mut self, step: f64) {
-        self.ratio = (self.last_step > 0.0).then(|| step / self.last_step).filter(|r| r.is_finite());
-        self.last_step = step;
+        self.ratio = (self.last > 0.0).then(|| step / self.last).filter(|r| r.is_finite());
+        self.last = step;
     }
 
+    /// Length of the last step over that of the one before.
+    pub(super) fn ratio(&self) -> Option<f64> {
+        self.ratio
+    }
+}
+
+impl Watch {
     /// Judges a state by its residual and by its largest displacement over the size of the body.
     pub(super) fn judge(&mut self, residual: f64, tolerance: f64, farthest: f64) -> Verdict {
         if residual <= tolerance {
@@ -138,5 +147,10 @@ impl Watch {
 
 /// The largest displacement over the size of the body at rest.
 pub(super) fn farthest(system: &System, u: &[Vector2<f64>]) -> f64 {
-    u.iter().map(|u| u.norm()).fold(0.0, f64::max) / system.size
+    largest(u) / system.size
+}
+
+/// The largest length in a nodal field.
+pub(super) fn largest(field: &[Vector2<f64>]) -> f64 {
+    field.iter().map(|v| v.norm()).fold(0.0, f64::max)
 }

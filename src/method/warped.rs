@@ -30,11 +30,11 @@ impl Method for Warped {
     }
 
     fn step_ratio(&self) -> Option<f64> {
-        self.0.step_ratio()
+        self.0.steps.ratio()
     }
 
     fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
-        frame.step_with_warped_stiffness().map(|step| self.0.stepped(step))
+        frame.step_with_warped_stiffness().map(|step| self.0.steps.stepped(step))
     }
 
     fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict {

@@ -43,6 +43,12 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// A number of things, as words: `1 iteration`, `2 iterations`.
+#[must_use]
+pub fn count(n: u32, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
 /// Beam length.
 pub const LENGTH: Limit = Limit::new("m", 1e-6, 1e6);
 /// Beam height.

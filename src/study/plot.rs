@@ -13,6 +13,14 @@ const TOP: f64 = 48.0;
 const BOTTOM: f64 = 60.0;
 /// Errors below this are drawn at it: they are rounding, or chance.
 const SMALLEST_ERROR: f64 = 1e-3;
+/// Errors above this are drawn at it: those of an iteration that diverges are off the picture.
+const LARGEST_ERROR: f64 = 1e3;
+
+/// The error at which a measurement is drawn, percent.
+#[must_use]
+pub fn drawn_error(m: &Measurement) -> f64 {
+    m.error.bound().clamp(SMALLEST_ERROR, LARGEST_ERROR)
+}
 
 struct Axis {
     from: f64,
@@ -56,11 +64,8 @@ fn color(method: MethodKind) -> &'static str {
 /// Draws the study.
 #[must_use]
 pub fn svg(study: &Study) -> String {
-    let error = |m: &Measurement| m.error.bound().max(SMALLEST_ERROR);
     let x = Axis::new(study.measurements.iter().map(Measurement::milliseconds), LEFT, SIZE[0] - LEFT - RIGHT);
-    // Errors of a diverged iteration are off the picture.
-    let errors = study.measurements.iter().map(|m| error(m).min(1e3));
-    let y = Axis::new(errors, SIZE[1] - BOTTOM, -(SIZE[1] - TOP - BOTTOM));
+    let y = Axis::new(study.measurements.iter().map(drawn_error), SIZE[1] - BOTTOM, -(SIZE[1] - TOP - BOTTOM));
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" font-family=\"Ubuntu, sans-serif\" font-size=\"13\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{LEFT}\" y=\"28\" font-size=\"16\">{}: error against time</text>\n",
@@ -98,11 +103,11 @@ pub fn svg(study: &Study) -> String {
     );
     let mut points = String::new();
     for m in study.front() {
-        let _ = write!(points, "{:.1},{:.1} ", x.place(m.milliseconds()), y.place(error(m)));
+        let _ = write!(points, "{:.1},{:.1} ", x.place(m.milliseconds()), y.place(drawn_error(m)));
     }
     let _ = writeln!(svg, "<polyline points=\"{points}\" fill=\"none\" stroke=\"#333\" stroke-width=\"1.5\"/>");
     for m in &study.measurements {
-        mark(&mut svg, x.place(m.milliseconds()), y.place(error(m)), m);
+        mark(&mut svg, x.place(m.milliseconds()), y.place(drawn_error(m)), m);
     }
     let mut row = TOP + 10.0;
     for method in METHODS.iter().map(|m| m.kind) {

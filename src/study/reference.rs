@@ -8,7 +8,7 @@ use crate::assembly::System;
 use crate::mesh::Mesh;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::truth::Truth;
+use crate::truth::{Truth, error_percent};
 
 /// The true displacement of a scene's first probe.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +59,7 @@ impl Reference {
         };
         moving(match (beam, Self::fine(scene)) {
             (Some(beam), Ok(fine)) => {
-                let off = 100.0 * (beam - fine.displacement).norm() / beam.norm().max(f64::MIN_POSITIVE);
+                let off = error_percent(fine.displacement, beam).unwrap_or(0.0);
                 let agrees = off <= BEAM_AGREES;
                 if agrees { exact(beam, off) } else { Self { beam_off_by_percent: Some(off), ..fine } }
             }
@@ -67,6 +67,11 @@ impl Reference {
             (Some(beam), Err(StudyError::NoTruth)) => exact(beam, 0.0),
             (_, fine) => fine?,
         })
+    }
+
+    /// The distance between two displacements over the true one's length, percent.
+    pub(super) fn percent(&self, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
+        100.0 * (a - b).norm() / self.displacement.norm()
     }
 
     /// The fine six-node solution.
@@ -80,18 +85,17 @@ impl Reference {
                     if let Some(beam) = &mut scene.beam {
                         beam.cells = [along, across];
                     }
-                    let system = System::new(&scene).map_err(SimulationError::from)?;
-                    equilibrium(&scene, system)
+                    end(&scene, MethodKind::Newton, system_of(&scene)?)
                 };
                 (solve(FINE / 2)?, solve(FINE)?, "a fine t6 solution")
             }
             None => {
-                let system = System::new(&scene).map_err(SimulationError::from)?;
+                let system = system_of(&scene)?;
                 let mut mesh = system.mesh.clone();
-                let mut coarse = equilibrium(&scene, system)?;
+                let mut coarse = end(&scene, MethodKind::Newton, system)?;
                 let solve = |mesh: &Mesh| {
                     let system = System::with_mesh(&scene, mesh.clone()).map_err(SimulationError::from)?;
-                    equilibrium(&scene, system)
+                    end(&scene, MethodKind::Newton, system)
                 };
                 mesh = mesh.refined();
                 let mut fine = solve(&mesh)?;
@@ -102,7 +106,7 @@ impl Reference {
                 (coarse, fine, "the t6 solution of its refined mesh")
             }
         };
-        let error_percent = 100.0 * (fine - coarse).norm() / fine.norm().max(f64::MIN_POSITIVE);
+        let error_percent = error_percent(coarse, fine).unwrap_or(0.0);
         Ok(Self { displacement: fine, source, error_percent, beam_off_by_percent: None })
     }
 }
@@ -112,9 +116,9 @@ fn moving(reference: Reference) -> Result<Reference, StudyError> {
     if reference.displacement.norm() > 0.0 { Ok(reference) } else { Err(StudyError::NoProbe) }
 }
 
-/// The first probe's displacement at the exact equilibrium.
-fn equilibrium(scene: &Scene, system: System) -> Result<Vector2<f64>, StudyError> {
-    end(scene, MethodKind::Newton, system)
+/// The equations of a scene.
+pub(super) fn system_of(scene: &Scene) -> Result<System, StudyError> {
+    Ok(System::new(scene).map_err(SimulationError::from)?)
 }
 
 /// Displacement of the first probe where a method ends, given all the iterations it needs.

@@ -6,12 +6,10 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::Vector2;
-
-use super::reference::{Reference, end, probe};
+use super::reference::{Reference, end, probe, system_of};
 use super::timing::times_from_rest;
-use crate::assembly::System;
 use crate::method::{METHODS, Profile};
+use crate::scene::limits::count;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
 
@@ -28,12 +26,14 @@ pub struct Setting {
     pub iterations: u32,
 }
 
-/// Iterations as words.
-fn iteration_words(iterations: u32) -> String {
-    format!("{iterations} iteration{}", if iterations == 1 { "" } else { "s" })
-}
-
 impl Setting {
+    /// The scene's own, with so many iterations a frame.
+    #[must_use]
+    pub fn of(scene: &Scene, iterations: u32) -> Self {
+        let cells = scene.beam.as_ref().map(|b| b.cells);
+        Self { element: scene.element(), cells, method: scene.solver.method, iterations }
+    }
+
     /// The scene on this mesh, with this method.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
@@ -50,15 +50,16 @@ impl Setting {
 impl std::fmt::Display for Setting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mesh = mesh_words(self.element, self.cells);
-        write!(f, "{mesh}, {}, {}", self.method.id(), iteration_words(self.iterations))
+        write!(f, "{mesh}, {}, {}", self.method.id(), count(self.iterations, "iteration"))
     }
 }
 
 fn mesh_words(element: ElementKind, cells: Option<[u32; 2]>) -> String {
-    match cells {
-        Some([along, across]) => format!("{} {along}×{across}", element.id()),
-        None => format!("{} as meshed", element.id()),
-    }
+    format!("{} {}", element.id(), cells_words(cells))
+}
+
+pub(super) fn cells_words(cells: Option<[u32; 2]>) -> String {
+    cells.map_or_else(|| "as meshed".to_owned(), |[along, across]| format!("{along}×{across}"))
 }
 
 /// An error and where it comes from, percent of the true displacement. The parts are lengths of displacements: their sum
@@ -207,15 +208,15 @@ impl Study {
         let MeshChoice { element, cells, .. } = *mesh;
         let words = mesh_words(element, cells);
         let truth = self.reference.displacement;
-        let percent = |a: Vector2<f64>, b: Vector2<f64>| 100.0 * (a - b).norm() / truth.norm();
+        let percent = |a, b| self.reference.percent(a, b);
         let with = |method| Setting { element, cells, method, iterations: 1 }.apply(scene);
-        let system = || System::new(&with(MethodKind::Linear)).map_err(SimulationError::from);
+        let meshed = with(MethodKind::Newton);
         say(&words)?;
-        let exact = end(&with(MethodKind::Newton), MethodKind::Newton, system()?)?;
-        let linear = end(&with(MethodKind::Linear), MethodKind::Linear, system()?)?;
+        let exact = end(&meshed, MethodKind::Newton, system_of(&meshed)?)?;
+        let linear = end(&meshed, MethodKind::Linear, system_of(&meshed)?)?;
         for method in METHODS.iter().map(|m| m.kind) {
             say(&format!("{words}, {}", method.id()))?;
-            let mut simulation = Simulation::with_system(&with(method), system()?)?;
+            let mut simulation = Simulation::new(&with(method))?;
             // `auto` has no number of iterations to choose: it ends by itself.
             let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };
             let times = times_from_rest(&mut simulation, most);

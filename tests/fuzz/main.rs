@@ -189,9 +189,8 @@ fn the_scene_parser_reads_or_refuses_any_text() {
     });
 }
 
-const SQUARE: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 7 \"wall\"\n$EndPhysicalNames\n$Entities\n0 1 1 0\n\
-    4 0 0 0 0 1 0 1 7 0\n1 0 0 0 1 1 0 0 0\n$EndEntities\n$Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n\
-    $Elements\n2 3 1 3\n1 4 1 1\n1 4 1\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
+/// A square of two triangles, its left side named.
+const SQUARE: &str = include_str!("../data/square.msh");
 
 #[test]
 fn the_gmsh_reader_reads_or_refuses_any_file() {

@@ -5,6 +5,7 @@ use egui::{Grid, RichText, Ui};
 use super::Shown;
 use crate::app::format;
 use crate::method::rho_words;
+use crate::scene::limits::count;
 use crate::simulation::Status;
 use crate::truth::error_percent;
 
@@ -88,7 +89,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             || "What method auto leaves out".to_owned(),
             |t| {
                 let error = format::short(100.0 * t.estimated_error);
-                format!("Estimated error {error} %, {} back substitutions, {} factorizations", t.solves, t.factorizations)
+                let [solves, factors] = [count(t.solves, "back substitution"), count(t.factorizations, "factorization")];
+                format!("Estimated error {error} %, {solves}, {factors}")
             },
         );
         row("Auto", words, &tip);

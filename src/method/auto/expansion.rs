@@ -6,6 +6,7 @@ use super::Thrift;
 use crate::assembly::System;
 use crate::method::certificate::is_stable;
 use crate::method::frame::timed;
+use crate::method::status::largest;
 use crate::method::{Frame, FrameError};
 use crate::rotation::Rotation;
 use crate::solver::Factor;
@@ -148,11 +149,6 @@ pub(super) fn solve_nodal(
         frame.system.add_free(free, displacement);
     });
     if free.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(FrameError::NotFinite) }
-}
-
-/// The largest length in a nodal field.
-pub(super) fn largest(field: &[Vector2<f64>]) -> f64 {
-    field.iter().map(|v| v.norm()).fold(0.0, f64::max)
 }
 
 /// The size of `part` over that of `whole`: of the field, or of what the first probe sees of it if that is more.

@@ -11,11 +11,11 @@
 
 use nalgebra::Vector2;
 
-use self::expansion::{Expansion, largest, share, solve_nodal};
+use self::expansion::{Expansion, share, solve_nodal};
 use super::certificate::tangent;
 use super::frame::timed;
 use super::newton::Newton;
-use super::status::farthest;
+use super::status::{Steps, farthest, largest};
 use super::{Frame, FrameError, Method, Occasion, Verdict};
 use crate::assembly::System;
 use crate::rotation::Rotation;
@@ -70,9 +70,7 @@ pub struct Auto {
     /// Whether the present state is linear theory's.
     linear: bool,
     steps: u32,
-    /// Length of the last step, and over the one before.
-    last_step: f64,
-    ratio: Option<f64>,
+    lengths: Steps,
     newton: Option<Newton>,
     thrift: Thrift,
     /// The last step, over nodes.
@@ -111,15 +109,10 @@ impl Auto {
         if self.linear || from_rest {
             let linear = self.expansion.linear();
             frame.u.copy_from_slice(linear);
-            self.stepped(linear.iter().map(|u| u.norm_squared()).sum::<f64>().sqrt());
+            self.lengths.stepped(linear.iter().map(|u| u.norm_squared()).sum::<f64>().sqrt());
             return Ok(true);
         }
         Ok(false)
-    }
-
-    fn stepped(&mut self, step: f64) {
-        self.ratio = (self.last_step > 0.0).then(|| step / self.last_step).filter(|r| r.is_finite());
-        self.last_step = step;
     }
 
     /// One corotated step, with the old factor if that serves.
@@ -139,13 +132,7 @@ impl Auto {
             Some(tangent) => tangent.factor,
             None => Factor::new(&system.pattern)?,
         };
-        let definite = timed(&mut frame.profile.factorize, || {
-            let definite = factor.factorize(values).is_ok();
-            if !definite {
-                factor.factorize_indefinite(values);
-            }
-            definite
-        });
+        let definite = timed(&mut frame.profile.factorize, || factor.factorize_symmetric(values));
         self.thrift.factorizations += 1;
         self.thrift.decision = Decision::NewFactor;
         self.tangent = Some(Tangent { factor, definite, trusted: frame.residual <= TRUSTED, serves: false });
@@ -166,13 +153,13 @@ impl Auto {
     /// Takes the step in the workspace, which is this share of the displacement.
     fn advance(&mut self, frame: &mut Frame<'_>, step: f64, fresh: bool) {
         frame.advance(1.0);
-        self.stepped(frame.step_length());
+        self.lengths.stepped(frame.step_length());
         if let Some(tangent) = &mut self.tangent {
             let near = tangent.definite && tangent.trusted && (!fresh || step <= NEAR);
-            tangent.serves = near && self.ratio.is_none_or(|r| r <= SERVES);
+            tangent.serves = near && self.lengths.ratio().is_none_or(|r| r <= SERVES);
         }
         // What is left is no more than the step just made, where steps at least halve; else their geometric series.
-        self.thrift.estimated_error = match self.ratio {
+        self.thrift.estimated_error = match self.lengths.ratio() {
             Some(ratio) if ratio >= 1.0 => f64::INFINITY,
             Some(ratio) => step * (ratio / (1.0 - ratio)).max(1.0),
             // One step says nothing of what it leaves: an old factor may be far too stiff for the way left.
@@ -245,7 +232,7 @@ impl Method for Auto {
     }
 
     fn step_ratio(&self) -> Option<f64> {
-        self.ratio
+        self.lengths.ratio()
     }
 
     fn thrift(&self) -> Option<Thrift> {

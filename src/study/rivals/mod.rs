@@ -10,12 +10,11 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector2;
 
-use super::reference::{Reference, end};
+use super::reference::{Reference, end, system_of};
 use super::timing::times_from_rest;
-use super::trade::{Extent, Setting, StudyError, meshes};
-use crate::assembly::System;
+use super::trade::{Extent, Setting, StudyError, cells_words, meshes};
 use crate::scene::{ElementKind, MethodKind, Scene};
-use crate::simulation::{Simulation, SimulationError};
+use crate::simulation::Simulation;
 
 mod rapier;
 
@@ -74,18 +73,18 @@ const RESTS: u32 = 200;
 /// # Errors
 /// [`StudyError`].
 pub fn rivals(scene: &Scene, extent: Extent) -> Result<Option<Vec<Rival>>, StudyError> {
-    let truth = Reference::of(scene)?.displacement;
+    let reference = Reference::of(scene)?;
+    let truth = reference.displacement;
     let mut rivals = Vec::new();
     let meshes = meshes(scene, extent).into_iter().filter(|m| m.element == ElementKind::T3);
     for mesh in meshes.skip(if scene.beam.is_some() { 2 } else { 0 }) {
         let method = MethodKind::Newton;
         let setting = Setting { element: mesh.element, cells: mesh.cells, method, iterations: 1 };
         let scene = setting.apply(scene);
-        let system = || System::new(&scene).map_err(SimulationError::from);
-        let own = end(&scene, method, system()?)?;
-        let times = times_from_rest(&mut Simulation::with_system(&scene, system()?)?, u32::MAX);
+        let system = system_of(&scene)?;
+        let own = end(&scene, method, system_of(&scene)?)?;
+        let times = times_from_rest(&mut Simulation::new(&scene)?, u32::MAX);
         let ours = times.last().map(crate::method::Profile::total).unwrap_or_default();
-        let system = system()?;
         for solver in RapierSolver::ALL {
             let mut best: Option<Rival> = None;
             for swing in swings(solver) {
@@ -93,7 +92,6 @@ pub fn rivals(scene: &Scene, extent: Extent) -> Result<Option<Vec<Rival>>, Study
                 let limit = best.as_ref().and_then(|b| b.own).map_or(MOST_TIME, |own| own.time);
                 let Some(body) = Rapier::new(&system, own, swing) else { return Ok(None) };
                 let run = run(body, [own, truth], limit);
-                let percent = |u: Vector2<f64>| 100.0 * (u - truth).norm() / truth.norm();
                 let rival = Rival {
                     swing,
                     cells: mesh.cells,
@@ -101,8 +99,8 @@ pub fn rivals(scene: &Scene, extent: Extent) -> Result<Option<Vec<Rival>>, Study
                     step: run.step,
                     own: run.own,
                     truth: run.truth,
-                    error_percent: percent(run.end),
-                    mesh_error_percent: percent(own),
+                    error_percent: reference.percent(run.end, truth),
+                    mesh_error_percent: reference.percent(own, truth),
                     ours,
                 };
                 let better = best.as_ref().is_none_or(|best| match (rival.own, best.own) {
@@ -233,7 +231,7 @@ pub fn summary(rivals: &[Rival]) -> String {
          mesh      solver         one step   until its mesh's rest within 1 %   until the truth within 1 %   newton t3\n",
     );
     for r in rivals {
-        let mesh = r.cells.map_or_else(|| "as meshed".to_owned(), |[along, across]| format!("{along}×{across}"));
+        let mesh = cells_words(r.cells);
         let until = |at: Option<Moment>| {
             let words = |at: Moment| format!("{:.1} ({} steps)", milliseconds(at.time), at.steps);
             at.map_or_else(|| "never".to_owned(), words)
