@@ -1,11 +1,14 @@
 //! One step of rapier2d's soft bodies beside one iteration of `newton`, on the same meshes:
-//! `cargo bench --features rivals --bench rivals`. What such steps are worth is `warpbeam study --rivals`' to say.
+//! `cargo bench --features rivals --bench rivals`. What such steps are worth, the program `rivals` says.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
 
+#[path = "../src/bin/rivals/rapier.rs"]
+mod rapier;
+
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use rapier::{Rapier, RapierSolver, Swing};
 use warpbeam::scene::{Source, open};
 use warpbeam::simulation::{Simulation, Status};
-use warpbeam::study::rivals::{Rapier, RapierSolver, Swing};
 
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
@@ -14,12 +17,12 @@ fn steps(c: &mut Criterion) {
         let scene = open(&Source { name: "cantilever".to_owned(), assignments }).unwrap();
         let mut newton = Simulation::new(&scene).unwrap();
         newton.solve();
-        let end = newton.system().probes[0].mean(newton.displacement());
+        let end = newton.probe("tip").unwrap();
         let ours = Simulation::new(&scene).unwrap();
         let dofs = ours.system().dofs();
         for solver in RapierSolver::ALL {
             let swing = Swing { solver, pace: 0.02, damping: 1.0, cg_iterations: 20 };
-            let mut rapier = Rapier::new(ours.system(), end, swing).unwrap();
+            let mut rapier = Rapier::new(ours.problem(), end, swing).unwrap();
             group.bench_function(BenchmarkId::new(format!("rapier2d {}", solver.id()), dofs), |b| {
                 b.iter(|| rapier.step())
             });

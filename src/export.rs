@@ -68,7 +68,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
 
 fn csv(simulation: &Simulation) -> String {
     let mut text = String::from("node,rest_x,rest_y,x,y,u_x,u_y\n");
-    let nodes = simulation.system().mesh.nodes.iter().zip(simulation.displacement());
+    let nodes = simulation.system().mesh().nodes().iter().zip(simulation.displacement());
     for (i, (rest, u)) in nodes.enumerate() {
         let x = rest + u;
         let _ = writeln!(text, "{i},{},{},{},{},{},{}", rest.x, rest.y, x.x, x.y, u.x, u.y);
@@ -77,31 +77,30 @@ fn csv(simulation: &Simulation) -> String {
 }
 
 fn vtu(simulation: &Simulation) -> String {
-    let mesh = &simulation.system().mesh;
-    let (points, cells) = (mesh.nodes.len(), mesh.triangle_count());
-    let cell_type = mesh.element.vtk_cell_type();
-    let nodes = mesh.element.nodes();
-    let per_element = simulation.system().elements.points_per_element();
+    let mesh = simulation.system().mesh();
+    let (points, cells) = (mesh.nodes().len(), mesh.element_count());
+    let entry = mesh.element().entry();
+    let per_element = simulation.system().elements().points_per_element();
     let mut text = String::new();
     let _ = writeln!(text, r#"<?xml version="1.0"?>"#);
     let _ = writeln!(text, r#"<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">"#);
     let _ = writeln!(text, r#"<UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}">"#);
     let _ = writeln!(text, r#"<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">"#);
-    for x in &mesh.nodes {
+    for x in mesh.nodes() {
         let _ = writeln!(text, "{} {} 0", x.x, x.y);
     }
     let _ = writeln!(text, "</DataArray></Points>\n<Cells>");
     let _ = writeln!(text, r#"<DataArray type="Int32" Name="connectivity" format="ascii">"#);
-    for triangle in mesh.triangles() {
-        let _ = writeln!(text, "{}", triangle.iter().map(u32::to_string).collect::<Vec<_>>().join(" "));
+    for nodes in mesh.elements() {
+        let _ = writeln!(text, "{}", nodes.iter().map(u32::to_string).collect::<Vec<_>>().join(" "));
     }
     let _ = writeln!(text, "</DataArray>\n<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">");
     for cell in 1..=cells {
-        let _ = writeln!(text, "{}", cell * nodes);
+        let _ = writeln!(text, "{}", cell * entry.nodes.len());
     }
     let _ = writeln!(text, "</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">");
     for _ in 0..cells {
-        let _ = writeln!(text, "{cell_type}");
+        let _ = writeln!(text, "{}", entry.vtk_type);
     }
     let _ = writeln!(text, "</DataArray>\n</Cells>\n<PointData Vectors=\"displacement\">");
     let _ = writeln!(text, r#"<DataArray type="Float64" Name="displacement" NumberOfComponents="3" format="ascii">"#);
@@ -112,6 +111,8 @@ fn vtu(simulation: &Simulation) -> String {
     let mut values = Vec::new();
     for field in Field::ALL {
         simulation.field(field, &mut values);
+        // VTK has no word for a value that is absent: a field that lacks one is left out.
+        let Some(values) = values.iter().copied().collect::<Option<Vec<f64>>>() else { continue };
         let unit = if field.unit().is_empty() { String::new() } else { format!(" [{}]", field.unit()) };
         let _ = writeln!(text, r#"<DataArray type="Float64" Name="{}{unit}" format="ascii">"#, field.name());
         for element in values.chunks_exact(per_element) {

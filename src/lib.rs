@@ -2,18 +2,16 @@
 //! each method costs and how wrong it is.
 //!
 //! ```
-//! use warpbeam::scene::{Scene, Source, open};
-//! use warpbeam::simulation::{Simulation, Status};
+//! use warpbeam::{Scene, Simulation, Status};
 //!
-//! let source = Source { name: "cantilever".into(), assignments: vec!["load.0.force=[0,-500]".into()] };
-//! let scene: Scene = open(&source)?;
+//! let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
 //! let mut beam = Simulation::new(&scene)?;
 //! while *beam.status() == Status::Running {
-//!     beam.step(); // one frame: rotations → assemble → factorize → solve → update
+//!     beam.step(); // one iteration: rotations → assemble → factorize → solve → update
 //! }
-//! let tip = &beam.solution(None).probes[0];
-//! assert!((tip.u.y + 1.869).abs() < 1e-3, "the tip went down by {} m", -tip.u.y);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! let tip = beam.probe("tip").unwrap_or_default();
+//! assert!((tip.y + 1.935).abs() < 1e-3, "the tip went down by {} m", -tip.y);
+//! # Ok::<(), warpbeam::SimulationError>(())
 //! ```
 //!
 //! # Notation
@@ -32,41 +30,58 @@
 //! | `ρ` | error factor of the warped iteration, largest eigenvalue of A⁻¹G in magnitude | scalar |
 //! | `f_ext`, `f_int` | external force, and Σ R Ke (Rᵀ x − X) | n × 2, N |
 //!
-//! # The frame
+//! # The iteration
 //!
 //! ```text
 //! rotations(F(x)) → assemble A, f → factorize → solve → update x → (draw)
 //! ```
 //!
-//! Data flows one way, and the modules say so: [`scene`] → [`mesh`] → [`element`] → [`assembly`] → [`solver`] →
-//! [`method`] → [`simulation`] → [`study`] → the app; [`truth`] stands beside them. Without the feature `app` (on by default) there is no window, no GPU and no
-//! command line in the dependency tree.
+//! Data flows one way, and the modules say so; each imports only from its left:
+//!
+//! [`words`], [`scene`] → [`rotation`], [`material`] → [`element`] → [`mesh`] → [`solver`], [`state`] → [`assembly`] →
+//! [`method`] → [`simulation`] → [`study`] → the commands and the window. [`truth`] needs the scene only; [`article`]
+//! stands beside.
+//!
+//! The feature `app` (on by default) is the window and the commands; `cli` is the commands alone, without a GPU or a
+//! window. With neither the library names no GPU, window or command line crate.
 //!
 //! # Sources
 //!
 //! - M. Müller, M. Gross, *Interactive Virtual Materials*, Graphics Interface 2004: warped stiffness.
 //! - "实时物理模拟之 Warped Stiffness 方法" (*the article*): the equation numbers in these pages are its own. Its errata
-//!   are documented where they matter: [`rotation::polar`], [`rotation::decomposition::polar3`],
-//!   [`rotation::decomposition::Polar::left`], [`rotation::decomposition::polar_from_svd`].
+//!   are documented where they matter: [`rotation::polar`], [`article::decomposition::polar3`],
+//!   [`article::decomposition::Polar::left`], [`article::decomposition::polar_from_svd`].
 //! - faer for sparse Cholesky, nalgebra for small matrices.
 
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "app")]
 pub mod app;
+pub mod article;
 pub mod assembly;
-#[cfg(feature = "app")]
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod element;
 pub mod export;
 pub mod material;
 pub mod mesh;
 pub mod method;
+#[cfg(feature = "cli")]
+pub mod picture;
 #[cfg(feature = "app")]
 pub mod render;
 pub mod rotation;
 pub mod scene;
 pub mod simulation;
 pub mod solver;
+pub mod state;
 pub mod study;
 pub mod truth;
+pub mod words;
+
+pub use nalgebra;
+
+pub use mesh::Mesh;
+pub use scene::{Axis, Beam, ElementKind, Load, Material, MethodKind, Place, Plane, Scene, SceneError};
+pub use simulation::{Field, Simulation, SimulationError, Solution, Status};
+pub use state::State;

@@ -1,16 +1,32 @@
-//! Isotropic linear elasticity in the plane: E, ν → Lamé constants.
+//! Isotropic linear elasticity in the plane: E, ν → Lamé constants, stress, energy.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3};
 
 use crate::scene::{Material, Plane};
 
-/// Lamé constants of the plane problem, Pa.
+/// Lamé constants of the plane problem, Pa; times a thickness, N/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lame {
     /// λ: Eν/(1−ν²) for plane stress, Eν/((1+ν)(1−2ν)) for plane strain.
     pub lambda: f64,
     /// μ = E/(2(1+ν)), the shear modulus.
     pub mu: f64,
+}
+
+impl Lame {
+    /// T = 2 μ ε + λ tr(ε) I, Pa, for a strain ε. With the Biot strain S − I this is the Biot stress.
+    #[must_use]
+    #[inline]
+    pub fn stress(self, strain: &Matrix2<f64>) -> Matrix2<f64> {
+        strain * (2.0 * self.mu) + Matrix2::identity() * (self.lambda * strain.trace())
+    }
+
+    /// ψ = μ ‖ε‖² + λ/2 tr²(ε), J/m³.
+    #[must_use]
+    #[inline]
+    pub fn energy_density(self, strain: &Matrix2<f64>) -> f64 {
+        self.mu * strain.norm_squared() + 0.5 * self.lambda * strain.trace().powi(2)
+    }
 }
 
 impl Material {
@@ -23,6 +39,19 @@ impl Material {
             Plane::Strain => e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
         };
         Lame { lambda, mu: e / (2.0 * (1.0 + nu)) }
+    }
+
+    /// The Lamé constants times the thickness, N/m: what elements integrate over their area.
+    #[must_use]
+    pub fn membrane(&self) -> Lame {
+        let Lame { lambda, mu } = self.lame();
+        Lame { lambda: lambda * self.thickness, mu: mu * self.thickness }
+    }
+
+    /// Mass per area of the plane, kg/m².
+    #[must_use]
+    pub fn area_density(&self) -> f64 {
+        self.density * self.thickness
     }
 
     /// The matrix C of σ = C ε with ε = (ε_xx, ε_yy, 2 ε_xy), Pa.

@@ -48,7 +48,7 @@ pub struct Tip {
 /// An equilibrium on the way up from no load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
-    /// Share of the load.
+    /// Fraction of the load.
     pub factor: f64,
     /// The tip.
     pub tip: Tip,
@@ -62,7 +62,7 @@ const SEGMENTS: usize = 32;
 const STEPS: usize = 24;
 /// Newton iterations a load step may take.
 const MAX_ITERATIONS: u32 = 20;
-/// The share of the load in the first step, of a load that is one in these units.
+/// The smallest load step, relative to a load of one in these units.
 const SMALLEST_LOAD_STEP: f64 = 1e-4;
 
 /// θ and M at a point, and the way from the start of the piece to it.
@@ -89,10 +89,10 @@ impl ClampedBeam {
         let mut state = State { theta, moment, x: Vector2::zeros() };
         for step in 0..STEPS {
             let s = (piece * STEPS + step) as f64 * h;
-            let at = |k: &State, share: f64| State {
-                theta: state.theta + share * k.theta,
-                moment: state.moment + share * k.moment,
-                x: state.x + k.x * share,
+            let at = |k: &State, step: f64| State {
+                theta: state.theta + step * k.theta,
+                moment: state.moment + step * k.moment,
+                x: state.x + k.x * step,
             };
             let k1 = self.derivative(s, &state, factor);
             let k2 = self.derivative(s + 0.5 * h, &at(&k1, 0.5 * h), factor);
@@ -235,7 +235,7 @@ pub fn error_percent(u: Vector2<f64>, truth: Vector2<f64>) -> Option<f64> {
 
 /// A scene whose right edge has a known displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Truth {
+pub enum BeamTruth {
     /// Clamped left, loaded on the right edge or by its weight: the geometrically exact beam.
     Cantilever(ClampedBeam),
     /// Pulled along its axis, free to thin: P L / (E A).
@@ -245,7 +245,7 @@ pub enum Truth {
     },
 }
 
-impl Truth {
+impl BeamTruth {
     /// The truth of a scene, if there is one.
     ///
     /// A rectangle clamped on its left edge whose loads are forces and moments on the right edge, and gravity; or one
@@ -283,13 +283,13 @@ impl Truth {
             }
         }
         let left = |axes: &[Axis]| {
-            scene.supports.iter().any(|s| s.edge.as_deref() == Some("left") && axes.iter().all(|a| s.fix.contains(a)))
+            scene.supports.iter().any(|s| s.place == Place::from("left") && axes.iter().all(|a| s.fix.contains(a)))
         };
         if scene.supports.len() == 1 && left(&[Axis::X, Axis::Y]) {
             return Some(Self::Cantilever(clamped));
         }
         let axial = clamped.tip_force.y == 0.0 && clamped.tip_moment == 0.0 && clamped.weight == Vector2::zeros();
-        let point = scene.supports.iter().any(|s| s.at.is_some() && s.fix == [Axis::Y]);
+        let point = scene.supports.iter().any(|s| matches!(s.place, Place::At(_)) && s.fix == [Axis::Y]);
         (scene.supports.len() == 2 && left(&[Axis::X]) && point && axial)
             .then(|| Self::Bar { stretch: clamped.tip_force.x * beam.length * clamped.stretch_compliance })
     }

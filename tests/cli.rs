@@ -6,7 +6,7 @@ mod common;
 use std::fs;
 
 use common::{scene, scene_ids, solve_json, stderr, stdout, warpbeam, warpbeam_in};
-use warpbeam::scene::{Scene, registry};
+use warpbeam::scene::registry;
 
 #[test]
 fn every_command_has_help() {
@@ -17,6 +17,9 @@ fn every_command_has_help() {
         &["solve", "--help"],
         &["shot", "--help"],
         &["curve", "--help"],
+        &["study", "--help"],
+        &["tune", "--help"],
+        &["extremes", "--help"],
     ] {
         let output = warpbeam(args);
         assert_eq!(output.status.code(), Some(0), "{args:?}");
@@ -24,7 +27,7 @@ fn every_command_has_help() {
         assert!(text.contains("Usage: warpbeam"), "{args:?}: {text}");
         assert!(text.lines().all(|line| line.len() < 200));
     }
-    for command in ["run", "scenes", "solve", "curve", "study", "extremes", "shot"] {
+    for command in ["run", "scenes", "solve", "curve", "study", "tune", "extremes", "shot"] {
         assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
     }
     assert!(stdout(&warpbeam(&["solve", "--help"])).contains("Exit codes"));
@@ -41,17 +44,9 @@ fn scenes_lists_every_scene_with_its_sentence() {
 }
 
 #[test]
-fn built_in_scenes_are_what_their_files_say() {
-    for built_in in registry::BUILT_IN {
-        let file = fs::read_to_string(format!("assets/scenes/{}.toml", built_in.id)).unwrap();
-        assert_eq!(file, built_in.toml);
-        // Through TOML and back.
-        let scene = scene(built_in.id);
-        let again = Scene::from_toml(&scene.to_toml().unwrap(), "copy".as_ref()).unwrap();
-        assert_eq!(scene, again);
-    }
+fn every_scene_file_is_in_the_registry() {
     let files = fs::read_dir("assets/scenes").unwrap().count();
-    assert_eq!(files, registry::BUILT_IN.len(), "a scene file that is not in the registry");
+    assert_eq!(files, registry::BUILT_IN.len());
 }
 
 #[test]
@@ -85,6 +80,8 @@ fn json_has_every_field_of_the_contract() {
         for key in ["name", "x", "u", "truth_u", "error_percent"] {
             assert!(probe.get(key).is_some(), "{id}: {key}");
         }
+        // A body at rest neither moves nor dissipates: what is not there is null.
+        assert!(json["energy"]["kinetic"].is_null() && json["energy"]["dissipated"].is_null());
         for (object, keys) in [
             ("energy", &["elastic", "external", "kinetic", "dissipated"][..]),
             ("reaction", &["force", "moment"]),
@@ -332,7 +329,7 @@ fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
     assert!((full[3] - truth[0].as_f64().unwrap()).abs() < 1e-6 && (full[4] - truth[1].as_f64().unwrap()).abs() < 1e-6);
     let none = warpbeam(&["curve", "shear"]);
     assert_eq!(none.status.code(), Some(2));
-    assert!(stderr(&none).contains("no truth is known"));
+    assert!(stderr(&none).contains("no exact beam is known"));
 }
 
 /// Sentences of the physics that the JSON carries: certificate, ρ, truth and error.
@@ -345,8 +342,24 @@ fn json_certifies_its_result() {
     let linear = solve_json(&["elastica", "--set", "solver.method=linear"]);
     assert!(linear["stable"].is_null() && linear["fixed_point_rho"].is_null());
     assert!(linear["probes"][0]["error_percent"].as_f64().unwrap() > 100.0);
-    let none = solve_json(&["shear"]);
+    // Where no beam theory serves, or is too far off, a fine solution is the truth, and named.
+    for (id, source) in [
+        ("elastica", "the exact beam"),
+        ("article", "a fine t6 solution"),
+        ("shear", "a fine t6 solution"),
+        ("bracket", "the t6 solution of its refined mesh"),
+    ] {
+        let probe = &solve_json(&[id])["probes"][0];
+        assert_eq!(probe["truth_source"], source, "{id}");
+        assert!(probe["error_percent"].as_f64().unwrap() > 0.0);
+        let text = stdout(&warpbeam(&["solve", id]));
+        assert!(text.contains(&format!("  {source}: (")), "{id}: {text}");
+    }
+    let none = solve_json(&["shear", "--no-truth"]);
     assert!(none["probes"][0]["truth_u"].is_null() && none["probes"][0]["error_percent"].is_null());
+    // A probe that moves only by rounding has a truth, and no error relative to it.
+    let still = solve_json(&["shear", "--set", "load.0.force=[0,0]"]);
+    assert!(still["probes"][0]["error_percent"].is_null());
 }
 
 /// The stability atlas: every case classified, everything finite, every count accounted for.
@@ -371,7 +384,7 @@ fn extremes_writes_the_stability_atlas() {
         let all = count(element, "newton", "");
         // What rounding takes: L/H = 1000 with ν = 0.4999, and a cube under a thousand times what bends it.
         assert!(count(element, "newton", "certified") * 100 >= 80 * all, "{element}");
-        assert!(count(element, "warped", "limit_cycle") > count(element, "newton", "limit_cycle"), "{element}");
+        assert!(count(element, "warped", "stalled") > count(element, "newton", "stalled"), "{element}");
         // Every starting state, however bad, ends in a certified equilibrium.
         let bad_starts: Vec<_> =
             rows.iter().filter(|r| (r[0], r[1]) == (element, "newton") && r[2] != "rest").collect();
@@ -385,7 +398,7 @@ fn extremes_writes_the_stability_atlas() {
         let words: Vec<&str> = line.split_whitespace().collect();
         words.starts_with(&["t6", "newton"]) && words[2] == certified.to_string()
     }));
-    assert!(fs::read_to_string(out.join("extremes.svg")).unwrap().contains("limit cycle"));
+    assert!(fs::read_to_string(out.join("extremes.svg")).unwrap().contains("stalled"));
     assert!(fs::metadata(out.join("extremes.png")).unwrap().len() > 10_000);
 }
 
@@ -448,54 +461,87 @@ fn study_measures_error_against_time() {
     assert!(total > 5.0 && discretization < 0.5 && (model - total).abs() < 0.5);
 }
 
-/// `auto` measures, chooses, says why, and stays within what was asked; what cannot be had ends with exit code 1.
+/// `tune` measures, chooses, says why, and its scene solves within what was asked; what cannot be had ends with exit
+/// code 1, and the closest.
 #[test]
-fn auto_chooses_a_setting_that_meets_the_demand() {
+fn tune_chooses_a_setting_that_meets_the_demand() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tuned.toml");
+    let path = path.to_str().unwrap();
     for (id, force, asked) in [
-        ("cantilever", "[0,-1000]", 5.0),
-        ("cantilever", "[0,-1000]", 1.0),
-        ("cantilever", "[0,-2]", 1.0),
-        ("elastica", "[0,-20]", 2.0),
+        ("cantilever", "[0,-1000]", "5%"),
+        ("cantilever", "[0,-1000]", "1"),
+        ("cantilever", "[0,-2]", "1 %"),
+        ("elastica", "[0,-20]", "2%"),
     ] {
-        let set = [format!("load.0.force={force}"), format!("solver.max_error_percent={asked}")];
-        let json = solve_json(&[
-            id,
-            "--set",
-            "solver.method=auto",
-            "--set",
-            "solver.budget_ms=1e5",
-            "--set",
-            &set[0],
-            "--set",
-            &set[1],
-        ]);
-        let auto = &json["auto"]["choice"];
-        assert_eq!(auto["met"], true, "{json}");
-        let chosen = &auto["chosen"];
-        let bound = chosen["error_percent"]["at_most"].as_f64().unwrap();
-        assert!(bound <= asked, "{json}");
-        assert_eq!(chosen["element"], json["element"]);
-        assert_eq!(chosen["method"], json["method"]);
+        let set = format!("load.0.force={force}");
+        let tune = warpbeam(&["tune", id, "--error", asked, "--time", "100s", "--set", &set, "--write", path]);
+        let text = stdout(&tune);
+        assert_eq!(tune.status.code(), Some(0), "{text}{}", stderr(&tune));
+        assert!(text.contains("settings measured here meet at most") && text.contains("; the fastest:"), "{text}");
+        let bound: f64 = text.split("error at most ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        let asked: f64 = asked.trim_end_matches([' ', '%']).parse().unwrap();
+        assert!(bound <= asked, "{text}");
+        let json = solve_json(&[path]);
         let error = json["probes"][0]["error_percent"].as_f64().unwrap();
-        assert!(error <= bound * (1.0 + 1e-6) && error <= asked, "{error} % of {bound} %: {json}");
-        assert!(auto["settings_meeting"].as_u64().unwrap() >= 1);
-        assert_eq!(json["auto"]["thrift"].is_null(), json["method"] != "auto");
+        assert!(error <= bound * (1.0 + 1e-3) + 1e-4, "{error} %: {text}");
+        let chosen = format!("  {} ", json["element"].as_str().unwrap());
+        assert!(text.lines().any(|line| line.starts_with(&chosen)), "{text}");
     }
-    // A truth without formula counts with its own error.
-    let json = solve_json(&["bracket", "--set", "solver.method=auto", "--set", "solver.budget_ms=1e5"]);
-    assert!(json["auto"]["choice"]["chosen"]["error_percent"]["truth"].as_f64().unwrap() > 0.0);
-    // In words; and a demand nothing meets.
-    let text =
-        stdout(&warpbeam(&["solve", "cantilever", "--set", "solver.method=auto", "--set", "solver.budget_ms=1e5"]));
-    assert!(
-        text.contains("settings measured here meet at most 1 % error and 100000 ms a frame; the fastest:"),
-        "{text}"
-    );
-    let hopeless = warpbeam(&["solve", "cantilever", "--set", "solver.method=auto", "--set", "solver.budget_ms=1e-6"]);
+    // With a time alone, the closest within it; a truth without formula counts with its own error.
+    let text = stdout(&warpbeam(&["tune", "bracket", "--time", "100s"]));
+    assert!(text.contains("meet at most 100000 ms; the closest:"), "{text}");
+    assert!(!text.contains("the truth's own 0.0000 %"), "{text}");
+    let hopeless = warpbeam(&["tune", "cantilever", "--error", "1%", "--time", "1e-6ms"]);
     assert_eq!(hopeless.status.code(), Some(1));
     assert!(stdout(&hopeless).contains("none of"), "{}", stdout(&hopeless));
-    // Nothing to measure at: the scene's own mesh, and the decisions while it runs.
-    let text = stdout(&warpbeam(&["solve", "article", "--set", "probe=[]", "--set", "solver.method=auto"]));
-    assert!(text.contains("method auto") && text.contains("estimated error"), "{text}");
+    for wrong in [["--error", "0%"], ["--error", "much"], ["--time", "-1ms"], ["--time", "1 kg"]] {
+        let refused = warpbeam(&[&["tune", "cantilever"][..], &wrong].concat());
+        assert_eq!(refused.status.code(), Some(2), "{wrong:?}");
+        assert!(stderr(&refused).contains("expected"), "{wrong:?}: {}", stderr(&refused));
+    }
+    let nothing = warpbeam(&["tune", "article", "--set", "probe=[]"]);
+    assert_eq!(nothing.status.code(), Some(2));
+    assert!(stderr(&nothing).contains("a probe that moves"), "{}", stderr(&nothing));
+}
+
+/// A tuned scene finds its mesh file from wherever it was written.
+#[test]
+fn a_tuned_scene_keeps_its_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let [from, to] = ["from", "to"].map(|name| folder.path().join(name));
+    for folder in [&from, &to] {
+        fs::create_dir(folder).unwrap();
+    }
+    fs::write(from.join("square.msh"), include_str!("data/square.msh")).unwrap();
+    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"force\"\nat = [1, 0]\nforce = [0, -100]\n[[probe]]\nname = \"corner\"\nat = [1, 0]\n";
+    fs::write(from.join("square.toml"), scene).unwrap();
+    let (source, tuned) = (from.join("square.toml"), to.join("tuned.toml"));
+    let (source, tuned) = (source.to_str().unwrap(), tuned.to_str().unwrap());
+    // Two triangles cannot meet one percent: the closest is written all the same.
+    let tune = warpbeam(&["tune", source, "--write", tuned]);
+    assert_eq!(tune.status.code(), Some(1), "{}", stderr(&tune));
+    assert_eq!(solve_json(&[tuned])["element"], "t6");
+}
+
+/// `auto` is one thing everywhere: what it says and finds is the same from `solve` whenever it is asked, on the scene's
+/// own mesh.
+#[test]
+fn auto_keeps_the_mesh_and_its_answer() {
+    for id in ["article", "elastica"] {
+        let args = [id, "--set", "solver.method=auto"];
+        let (once, again) = (solve_json(&args), solve_json(&args));
+        let own = solve_json(&[id]);
+        assert_eq!((&once["element"], &once["dofs"]), (&own["element"], &own["dofs"]));
+        for key in ["probes", "iterations", "residual", "auto", "energy"] {
+            assert_eq!(once[key], again[key], "{id}: {key}");
+        }
+        assert!(once["auto"]["decision"].is_string() && own.get("auto").is_none());
+        let text = stdout(&warpbeam(&["solve", id, "--set", "solver.method=auto"]));
+        assert!(text.contains("method auto") && text.contains("estimated error"), "{text}");
+    }
     assert_eq!(warpbeam(&["solve", "article", "--set", "solver.max_error_percent=0"]).status.code(), Some(2));
+    let gone = warpbeam(&["solve", "article", "--set", "solver.budget_ms=1"]);
+    assert_eq!(gone.status.code(), Some(2));
 }

@@ -5,13 +5,10 @@ mod common;
 
 use common::{cantilever, cantilever_table, scene, scene_with, solved};
 use nalgebra::Vector2;
-use warpbeam::assembly::System;
-use warpbeam::mesh::Mesh;
-use warpbeam::scene::{Beam, Diagonals, ElementKind, Load, MethodKind, Place};
-use warpbeam::simulation::{Simulation, Status};
+use warpbeam::{ElementKind, Load, Mesh, MethodKind, Place, Scene, Simulation, Status};
 
 fn tip(simulation: &Simulation) -> Vector2<f64> {
-    simulation.solution(None).probes[0].x
+    simulation.solution().probes[0].x
 }
 
 /// Every row of the table with T6 20×1, and the slender ones with 40×2.
@@ -34,7 +31,7 @@ fn the_reference_table_is_met() {
             scene.loads = if row.gravity {
                 vec![Load::Gravity { acceleration: (direction * per_length / 1000.0).into() }]
             } else {
-                vec![Load::Force { place: Place::edge("right"), force: (direction * per_length * length).into() }]
+                vec![Load::Force { place: Place::from("right"), force: (direction * per_length * length).into() }]
             };
             let error = (tip(&solved(&scene)) / length - row.reissner).norm();
             worst[slot] = worst[slot].max(error);
@@ -63,11 +60,11 @@ fn newton_needs_few_solves() {
             for &length in lengths {
                 for &alpha in alphas {
                     let scene = cantilever(length, alpha, &[&format!("material.poisson={nu}")]);
-                    let simulation = solved(&scene);
+                    let mut simulation = solved(&scene);
                     let solves = simulation.iterations();
                     most[class] = most[class].max(solves);
                     assert!(solves <= bound, "L/H {length}, α {alpha}, ν {nu}: {solves} solves");
-                    assert_eq!(simulation.certificate().stable, Some(true));
+                    assert_eq!(simulation.certify().stable, Some(true));
                 }
             }
         }
@@ -95,7 +92,7 @@ fn every_case_of_the_box_is_certified() {
                         let mut simulation = Simulation::new(&cantilever(length, alpha, &set)).unwrap();
                         let status = simulation.solve().clone();
                         assert!(simulation.displacement().iter().all(|u| u.x.is_finite() && u.y.is_finite()));
-                        if status != Status::Converged || simulation.certificate().stable != Some(true) {
+                        if status != Status::Converged || simulation.certify().stable != Some(true) {
                             missed.push(format!(
                                 "L/H {length} ν {nu} {plane} {element} α {alpha}: {status:?} after {}",
                                 simulation.iterations()
@@ -112,19 +109,19 @@ fn every_case_of_the_box_is_certified() {
 /// An end moment of 2πEI/L closes the beam to a circle.
 #[test]
 fn the_beam_rolls_up_to_a_circle() {
-    let simulation = solved(&scene("roll-up"));
+    let mut simulation = solved(&scene("roll-up"));
     let gap = tip(&simulation).norm() / 50.0;
     assert!(gap < 0.005, "{gap}");
     assert!(simulation.iterations() <= 30, "{} solves", simulation.iterations());
-    assert_eq!(simulation.certificate().stable, Some(true));
+    assert_eq!(simulation.certify().stable, Some(true));
     println!("gap {:.3} % of L after {} solves", 100.0 * gap, simulation.iterations());
 }
 
 /// Compression through buckling: the side load decides, and the equilibrium found is the buckled, stable one.
 #[test]
 fn the_column_buckles() {
-    let simulation = solved(&scene("column"));
-    assert_eq!(simulation.certificate().stable, Some(true));
+    let mut simulation = solved(&scene("column"));
+    assert_eq!(simulation.certify().stable, Some(true));
     assert!(tip(&simulation).y > 5.0);
     let other = solved(&scene_with("column", &["load.0.force=[-700,-2]"]));
     // The mirror image, but for the mesh's diagonals, which have none.
@@ -134,8 +131,8 @@ fn the_column_buckles() {
     let mut straight =
         Simulation::new(&scene_with("column", &["load.0.force=[-700,0]", "beam.diagonals=same"])).unwrap();
     straight.solve();
-    let result = (straight.status().clone(), straight.certificate().stable);
-    assert!(matches!(result, (Status::Converged, Some(_))), "{result:?}");
+    assert_eq!((straight.certify().stable, straight.status()), (Some(false), &Status::Converged));
+    assert!(tip(&straight).y.abs() < 1e-3, "{}", tip(&straight));
 }
 
 /// ρ says which loads `warped` converges for.
@@ -145,7 +142,7 @@ fn rho_predicts_where_the_warped_iteration_converges() {
     for length in [10.0, 50.0] {
         for alpha in [0.5, 1.0, 2.0, 2.5, 4.0, 5.0, 7.0, 10.0, 20.0] {
             let scene = cantilever(length, alpha, &["solver.max_iterations=1000", "solver.tolerance=1e-7"]);
-            let rho = solved(&scene).certificate().fixed_point_rho.unwrap();
+            let rho = solved(&scene).certify().fixed_point_rho.unwrap();
             let mut warped = scene.clone();
             warped.solver.method = MethodKind::Warped;
             let mut simulation = Simulation::new(&warped).unwrap();
@@ -166,45 +163,24 @@ fn rho_predicts_where_the_warped_iteration_converges() {
     assert!(below >= 6 && above >= 6, "{below} below 1, {above} above");
 }
 
-/// A warped result is an exact equilibrium: Newton, from rest, finds the same.
-#[test]
-fn warped_and_newton_agree_where_both_converge() {
-    for id in ["article", "cantilever", "gravity", "bridge", "stretch", "shear"] {
-        let mut newton = scene_with(id, &["solver.tolerance=1e-11", "solver.max_iterations=500"]);
-        let warped = solved(&newton);
-        newton.solver.method = MethodKind::Newton;
-        let newton = solved(&newton);
-        for (a, b) in warped.displacement().iter().zip(newton.displacement()) {
-            assert!((a - b).norm() < 1e-7, "{id}: {a} {b}");
-        }
-        assert!(newton.iterations() < warped.iterations() || id == "stretch", "{id}");
-        assert_eq!(warped.certificate().stable, Some(true));
-    }
-}
-
 /// Cook's membrane on meshes of n × n cells: the middle of the loaded edge rises by 23.96.
 #[test]
 fn cooks_membrane_converges() {
     let middle = |element: ElementKind, n: u32| {
-        let mut scene = scene_with("cook", &[&format!("mesh.element={}", element.id())]);
         // A unit square, mapped.
-        let beam = Beam { length: 1.0, height: 1.0, cells: [n, n], element, diagonals: Diagonals::Alternating };
-        let mut mesh = Mesh::beam(&beam).unwrap();
-        for x in &mut mesh.nodes {
+        let square = Scene::beam(1.0, 1.0).with_cells(n, n).with_element(element);
+        let mesh = Mesh::beam(square.beam.as_ref().unwrap()).unwrap();
+        let map = |x: Vector2<f64>| {
             let (a, b) = (x.x, x.y + 0.5);
             let (low, high) = (44.0 * a, 44.0 + 16.0 * a);
-            *x = Vector2::new(48.0 * a, low + b * (high - low));
-        }
-        for (from, to) in [("left", "clamp"), ("right", "end")] {
-            let edge = mesh.edges.remove(from).unwrap();
-            mesh.edges.insert(to.to_owned(), edge);
-        }
-        scene.mesh = None;
-        scene.beam = Some(beam);
-        let system = System::with_mesh(&scene, mesh).unwrap();
-        let mut simulation = Simulation::with_system(&scene, system).unwrap();
+            Vector2::new(48.0 * a, low + b * (high - low))
+        };
+        let rename = |name: &str| if name == "left" { "clamp" } else { "end" }.to_owned();
+        let edges = ["left", "right"].map(|name| (rename(name), mesh.edges()[name].clone()));
+        let mesh = mesh.moved(map).unwrap().with_edges(edges.into()).unwrap();
+        let mut simulation = Simulation::with_mesh(&scene("cook"), mesh).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged);
-        simulation.solution(None).probes[0].u.y
+        simulation.solution().probes[0].u.y
     };
     let t3: Vec<f64> = [8, 16, 32, 64].map(|n| middle(ElementKind::T3, n)).to_vec();
     let t6: Vec<f64> = [4, 8, 16, 32].map(|n| middle(ElementKind::T6, n)).to_vec();
@@ -229,7 +205,7 @@ fn a_failure_keeps_the_last_good_state() {
         assert!(size < 40.0, "after {limit}: {size}");
         if status != Status::Converged {
             assert_eq!(simulation.iterations(), limit);
-            assert_eq!(simulation.certificate().stable, Some(true), "after {limit}: not a stable state");
+            assert_eq!(simulation.certify().stable, Some(true), "after {limit}: not a stable state");
             kept += 1;
         }
     }
@@ -260,10 +236,10 @@ fn an_unstable_equilibrium_is_reported_as_unstable() {
             let set: Vec<&str> = set.iter().map(String::as_str).collect();
             let mut simulation = Simulation::new(&scene_with("column", &set)).unwrap();
             let u: Vec<_> =
-                simulation.system().mesh.nodes.iter().map(|x| Vector2::new(-force / 1e6 * x.x, 0.0)).collect();
-            simulation.start_from(&u);
+                simulation.system().mesh().nodes().iter().map(|x| Vector2::new(-force / 1e6 * x.x, 0.0)).collect();
+            simulation.start_from(&u).unwrap();
             assert_eq!(*simulation.status(), Status::Converged, "residual {:e}", simulation.residual());
-            assert_eq!(simulation.certificate().stable, Some(stable), "{share} of Euler's load, {method}");
+            assert_eq!(simulation.certify().stable, Some(stable), "{share} of Euler's load, {method}");
         }
     }
 }
@@ -274,21 +250,19 @@ fn an_unstable_equilibrium_is_reported_as_unstable() {
 fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
     let moment = |factor: f64, most: u32| {
         let mut scene = scene("roll-up");
-        if let warpbeam::scene::Load::Moment { moment, .. } = &mut scene.loads[0] {
-            *moment *= factor;
-        }
+        scene.scale_loads(factor);
         scene.solver.max_iterations = most;
         let mut simulation = Simulation::new(&scene).unwrap();
         simulation.solve();
         simulation
     };
-    let stopped = moment(3.0, 50);
+    let mut stopped = moment(3.0, 50);
     assert!(matches!(stopped.status(), Status::NotConverged(_)), "{:?}", stopped.status());
     let (share, steps) = stopped.load_stepping();
     assert!(share > 0.0 && share < 1.0 && steps > 1, "{share} {steps}");
     assert!(stopped.residual() > 1e-3, "{}", stopped.residual());
-    assert_eq!(stopped.certificate().stable, Some(true));
+    assert_eq!(stopped.certify().stable, Some(true));
     let exact = moment(3.0 * share, 400);
-    let [a, b] = [&stopped, &exact].map(|s| s.system().probes[0].mean(s.displacement()));
+    let [a, b] = [&stopped, &exact].map(|s| s.probe("tip").unwrap());
     assert!((a - b).norm() < 1e-3 * b.norm(), "{a} {b}");
 }

@@ -5,11 +5,10 @@ mod common;
 
 use std::fs;
 
-use common::{scene, stderr, warpbeam};
+use common::{stderr, warpbeam};
 use nalgebra::Vector2;
-use warpbeam::assembly::System;
+use warpbeam::ElementKind;
 use warpbeam::mesh::{GmshError, Mesh, MeshError};
-use warpbeam::scene::{ElementKind, Load};
 
 /// Two triangles, the second clockwise; the left side is a physical curve.
 const SQUARE: &str = r#"$MeshFormat
@@ -56,38 +55,38 @@ $EndElements
 fn a_small_file_is_read() {
     let mesh = Mesh::from_gmsh(SQUARE, ElementKind::T3).unwrap();
     // The fifth node belongs to no triangle.
-    assert_eq!((mesh.nodes.len(), mesh.triangle_count()), (4, 2));
+    assert_eq!((mesh.nodes().len(), mesh.element_count()), (4, 2));
     let area: f64 = mesh
-        .triangles()
-        .map(|t| [t[0], t[1], t[2]].map(|n| mesh.nodes[n as usize]))
+        .elements()
+        .map(|t| [t[0], t[1], t[2]].map(|n| mesh.nodes()[n as usize]))
         .map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a)))
         .inspect(|area| assert!(*area > 0.0, "a clockwise triangle was not turned"))
         .sum();
     assert!((area - 1.0).abs() < 1e-15);
     let wall = mesh.edge_nodes("wall").unwrap();
     assert_eq!(wall.len(), 2);
-    assert!(wall.iter().all(|&n| mesh.nodes[n as usize].x == 0.0));
+    assert!(wall.iter().all(|&n| mesh.nodes()[n as usize].x == 0.0));
     // As six-node triangles: five sides, five middles.
     let mesh = Mesh::from_gmsh(SQUARE, ElementKind::T6).unwrap();
-    assert_eq!(mesh.nodes.len(), 9);
+    assert_eq!(mesh.nodes().len(), 9);
     assert_eq!(mesh.edge_nodes("wall").unwrap().len(), 3);
-    assert!(mesh.edges["wall"][0].middle.is_some_and(|n| mesh.nodes[n as usize] == Vector2::new(0.0, 0.5)));
+    assert!(mesh.edges()["wall"][0].nodes().iter().any(|&n| mesh.nodes()[n as usize] == Vector2::new(0.0, 0.5)));
 }
 
 #[test]
 fn shipped_meshes_are_read_with_their_curved_sides() {
     let text = include_str!("../assets/meshes/bracket.msh");
     let mesh = Mesh::from_gmsh(text, ElementKind::T6).unwrap();
-    assert_eq!(mesh.edges.keys().collect::<Vec<_>>(), ["end", "fillet", "wall"]);
+    assert_eq!(mesh.edges().keys().collect::<Vec<_>>(), ["end", "fillet", "wall"]);
     // The fillet's middle nodes lie on its circle, not on its chords.
-    for segment in &mesh.edges["fillet"] {
-        let middle = mesh.nodes[segment.middle.unwrap() as usize];
+    for segment in &mesh.edges()["fillet"] {
+        let middle = mesh.nodes()[segment.nodes()[1] as usize];
         assert!(((middle - Vector2::new(0.5, 0.5)).norm() - 0.2).abs() < 1e-9);
     }
     let straight = Mesh::from_gmsh(text, ElementKind::T3).unwrap();
-    assert_eq!(straight.triangle_count(), mesh.triangle_count());
-    assert!(straight.nodes.len() < mesh.nodes.len() / 2);
-    assert!(straight.edges["fillet"].iter().all(|s| s.middle.is_none()));
+    assert_eq!(straight.element_count(), mesh.element_count());
+    assert!(straight.nodes().len() < mesh.nodes().len() / 2);
+    assert!(straight.edges()["fillet"].iter().all(|s| s.nodes().len() == 2));
 }
 
 #[test]
@@ -117,8 +116,8 @@ fn what_cannot_be_used_is_said_with_its_line() {
     }
     let flat = SQUARE.replacen("0 1 0\n9", "2 2 0\n9", 1);
     let error = Mesh::from_gmsh(&flat, ElementKind::T3).unwrap_err();
-    assert!(matches!(error, GmshError::Mesh(MeshError::Degenerate { triangle: 1, .. })), "{error}");
-    assert!(error.to_string().contains("triangle 1 has no area"), "{error}");
+    assert!(matches!(error, GmshError::Mesh(MeshError::Degenerate { element: 1, .. })), "{error}");
+    assert!(error.to_string().contains("element 1 has no area"), "{error}");
     assert!(matches!(Mesh::from_gmsh("", ElementKind::T3), Err(GmshError::Syntax { .. })));
 }
 
@@ -133,7 +132,7 @@ fn damaged_files_never_panic() {
         for with in ["9", "-", " ", "\n", "$", "e", "999999999999999999999"] {
             let damaged = format!("{}{with}{}", &text[..at], &text[at + 1..]);
             if let Ok(mesh) = Mesh::from_gmsh(&damaged, ElementKind::T6) {
-                assert!(mesh.nodes.iter().all(|x| x.x.is_finite() && x.y.is_finite()));
+                assert!(mesh.nodes().iter().all(|x| x.x.is_finite() && x.y.is_finite()));
             }
         }
     }
@@ -161,37 +160,5 @@ fn a_scene_file_names_its_mesh_relative_to_itself() {
         let output = warpbeam(&["solve", path.to_str().unwrap()]);
         assert_eq!(output.status.code(), Some(code), "{file}: {}", stderr(&output));
         assert!(stderr(&output).contains(message), "{file}: {}", stderr(&output));
-    }
-}
-
-/// Refinement keeps the body, its edges and its nodes' numbers, also where sides are curved, and solutions converge.
-#[test]
-fn refined_meshes_are_the_same_body() {
-    for (id, element) in ["cook", "bracket", "cantilever"].into_iter().flat_map(|id| ElementKind::ALL.map(|e| (id, e)))
-    {
-        let mut scene = scene(id);
-        scene.set_element(element);
-        let mesh = System::new(&scene).unwrap().mesh;
-        let fine = mesh.refined();
-        assert_eq!(fine.triangle_count(), 4 * mesh.triangle_count());
-        assert_eq!(fine.nodes[..mesh.nodes.len()], mesh.nodes[..]);
-        let checked = Mesh::new(fine.nodes.clone(), element, fine.connectivity.clone(), fine.edges.clone()).unwrap();
-        assert_eq!(checked, fine, "{id} {element:?}: triangles turned over");
-        assert_eq!(fine.outline().len(), 2 * mesh.outline().len(), "{id} {element:?}: not conforming");
-        let weight = |mesh: Mesh| -> f64 {
-            let mut heavy = scene.clone();
-            heavy.loads = vec![Load::Gravity { acceleration: [0.0, -1.0] }];
-            System::with_mesh(&heavy, mesh).unwrap().dead_force.iter().map(|f| f.y).sum()
-        };
-        let (coarse, refined) = (weight(mesh.clone()), weight(fine.clone()));
-        assert!((coarse - refined).abs() < 1e-9 * coarse.abs(), "{id} {element:?}: {coarse} {refined}");
-        for (name, segments) in &mesh.edges {
-            assert_eq!(fine.edges[name].len(), 2 * segments.len());
-            let length = |mesh: &Mesh, segments: &[warpbeam::mesh::Segment]| -> f64 {
-                segments.iter().map(|s| (mesh.nodes[s.ends[0] as usize] - mesh.nodes[s.ends[1] as usize]).norm()).sum()
-            };
-            // Halves of a curved side are no shorter than its chord.
-            assert!(length(&fine, &fine.edges[name]) >= length(&mesh, segments) * (1.0 - 1e-12), "{id} {name}");
-        }
     }
 }

@@ -40,7 +40,7 @@ fn force(lab: &Lab) -> [f64; 2] {
 }
 
 fn tip(lab: &Lab) -> [f64; 2] {
-    lab.simulation().solution(None).probes[0].u.into()
+    lab.simulation().solution().probes[0].u.into()
 }
 
 /// Types a number into the field of this label.
@@ -112,7 +112,7 @@ fn typed_values_take_effect_also_beyond_the_slider() {
     type_into(&mut harness, "Cells along", "40");
     type_into(&mut harness, "Cells across", "3");
     assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, [40, 3]);
-    assert_eq!(harness.state().simulation().system().mesh.triangle_count(), 240);
+    assert_eq!(harness.state().simulation().system().mesh().element_count(), 240);
 }
 
 /// Out of range: refused, with a message that says what was expected; never clamped, never taken.
@@ -312,6 +312,7 @@ fn scrolling_zooms_to_the_pointer_and_f_fits() {
 #[test]
 fn at_rest_nothing_is_redrawn() {
     let mut harness = harness("article");
+    wait(&mut harness, "the truth", |lab| !lab.is_searching());
     harness.run_steps(3);
     assert!(!harness.state().iterates());
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
@@ -327,6 +328,8 @@ fn results_are_certified_and_compared_with_the_truth() {
     let words = "The warped iteration cannot converge here: ρ = 4.039 > 1.";
     assert!(harness.query_by_label(words).is_some());
     assert!((json["fixed_point_rho"].as_f64().unwrap() - 4.039).abs() < 1e-3);
+    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    harness.run();
     let error = json["probes"][0]["error_percent"].as_f64().unwrap();
     let shown = format!("{:.4} % of", (error * 1e5).round() / 1e5);
     assert!(harness.query_by_label_contains(&shown[..5]).is_some(), "{shown}");
@@ -432,7 +435,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
 
     type_into(&mut harness, "Error ≤", "5");
     type_into(&mut harness, "Time ≤", "1e5");
-    let demand = Demand { max_error_percent: 5.0, budget_ms: 1e5 };
+    let demand = Demand { max_error_percent: Some(5.0), max_time_ms: Some(1e5) };
     let meeting = study.meeting(demand);
     assert!(!meeting.is_empty() && meeting.len() < study.measurements.len());
     let words = format!("{} of {} settings meet both", meeting.len(), study.measurements.len());

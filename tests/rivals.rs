@@ -4,8 +4,14 @@
 
 mod common;
 
-use common::{scene_with, solved, stdout, warpbeam};
-use warpbeam::study::rivals::{Rapier, RapierSolver, Swing};
+#[path = "../src/bin/rivals/rapier.rs"]
+mod rapier;
+
+use std::process::Command;
+
+use common::{scene_with, solved, stdout};
+use rapier::{Rapier, RapierSolver, Swing};
+use warpbeam::assembly::{Problem, System};
 
 /// Plane stress and plane strain: another implementation of the same energy has the same equilibrium.
 #[test]
@@ -17,10 +23,9 @@ fn rapier_rests_where_we_do() {
     ] {
         let set: Vec<&str> = set.iter().copied().chain(["beam.cells=[20,2]", "solver.method=newton"]).collect();
         let ours = solved(&scene_with("cantilever", &set));
-        let system = ours.system();
-        let end = system.probes[0].mean(ours.displacement());
+        let end = ours.probe("tip").unwrap();
         let swing = Swing { solver: RapierSolver::Fem, pace: 0.05, damping: 1.0, cg_iterations: 500 };
-        let mut rapier = Rapier::new(system, end, swing).unwrap();
+        let mut rapier = Rapier::new(ours.problem(), end, swing).unwrap();
         assert_eq!(rapier.displacement().norm(), 0.0);
         for _ in 0..400 {
             rapier.step();
@@ -40,14 +45,14 @@ fn rapier_says_what_it_cannot_have() {
         let also = "support=[{edge=\"left\",fix=[\"x\"]},{at=[0,0],fix=[\"y\"]}]";
         let set = if set.starts_with("support") { also } else { set };
         let scene = scene_with(id, &[set]);
-        let system = warpbeam::assembly::System::new(&scene).unwrap();
-        assert!(Rapier::new(&system, end, swing).is_none(), "{id} {set}");
+        let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
+        assert!(Rapier::new(&problem, end, swing).is_none(), "{id} {set}");
     }
 }
 
 /// The command measures it beside our own methods.
 #[test]
-fn study_measures_rivals() {
+fn the_program_measures_rivals() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     // One small mesh from a file: the least that can be measured.
@@ -57,7 +62,8 @@ fn study_measures_rivals() {
         fix = [\"x\", \"y\"]\n[[load]]\nkind = \"force\"\nat = [1, 0]\nforce = [0, -100]\n[[probe]]\nname = \"corner\"\nat = [1, 0]\n";
     let path = folder.path().join("square.toml");
     std::fs::write(&path, scene).unwrap();
-    let output = warpbeam(&["study", path.to_str().unwrap(), "--quick", "--rivals", "--out", out]);
+    let args = [path.to_str().unwrap(), "--quick", "--out", out];
+    let output = Command::new(env!("CARGO_BIN_EXE_rivals")).args(args).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", common::stderr(&output));
     assert!(stdout(&output).contains("rapier2d on the same three-node meshes"));
     let table = std::fs::read_to_string(folder.path().join("rivals.csv")).unwrap();

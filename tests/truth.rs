@@ -5,7 +5,7 @@ mod common;
 
 use common::{scene, scene_with};
 use nalgebra::Vector2;
-use warpbeam::truth::{ClampedBeam, Truth};
+use warpbeam::truth::{BeamTruth, ClampedBeam};
 
 /// ν = 0, unit length and bending stiffness.
 fn beam(length_over_height: f64) -> ClampedBeam {
@@ -101,13 +101,13 @@ fn very_large_loads_are_followed() {
 #[test]
 fn scenes_with_a_truth_are_recognised() {
     for id in ["article", "cantilever", "gravity", "elastica", "roll-up", "incline", "column"] {
-        assert!(matches!(Truth::of(&scene(id)), Some(Truth::Cantilever(_))), "{id}");
+        assert!(matches!(BeamTruth::of(&scene(id)), Some(BeamTruth::Cantilever(_))), "{id}");
     }
-    let stretch = Truth::of(&scene("stretch")).unwrap().tip_displacement().unwrap();
+    let stretch = BeamTruth::of(&scene("stretch")).unwrap().tip_displacement().unwrap();
     assert!((stretch - Vector2::new(0.4, 0.0)).norm() < 1e-15);
     for id in ["bridge", "shear", "cook", "bracket"] {
-        assert_eq!(Truth::of(&scene(id)), None, "{id}");
+        assert_eq!(BeamTruth::of(&scene(id)), None, "{id}");
     }
     // A load elsewhere has no such truth.
-    assert_eq!(Truth::of(&scene_with("cantilever", &["load.0.edge=top"])), None);
+    assert_eq!(BeamTruth::of(&scene_with("cantilever", &["load.0.edge=top"])), None);
 }

@@ -1,12 +1,25 @@
-//! A study that runs beside the window.
+//! The study that runs beside the window.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
+use thiserror::Error;
+
 use crate::scene::Scene;
 use crate::study::{Extent, Progress, Study, StudyError};
+
+/// Why a study gave no result.
+#[derive(Debug, Error)]
+pub(super) enum BackgroundError {
+    #[error("no thread for the study: {0}")]
+    NoThread(#[from] std::io::Error),
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    #[error("the study ended unexpectedly")]
+    Died,
+}
 
 /// What the study says while it runs.
 enum Message {
@@ -21,7 +34,7 @@ pub(super) enum News {
     /// It goes on.
     Running,
     /// It has ended, or was called off; or why it could not.
-    Ended(Result<(), String>),
+    Ended(Result<(), BackgroundError>),
 }
 
 /// A study in a thread of its own. Dropped, it is called off.
@@ -29,8 +42,8 @@ pub(super) enum News {
 pub(super) struct Background {
     receiver: Receiver<Message>,
     cancel: Arc<AtomicBool>,
-    /// Share that is done, and what is measured now.
-    pub share: f32,
+    /// Fraction that is done, and what is measured now.
+    pub fraction: f32,
     pub now: String,
 }
 
@@ -38,32 +51,29 @@ impl Background {
     /// Starts to measure the scene.
     ///
     /// # Errors
-    /// The system's words, where it gives no thread.
-    pub(super) fn start(scene: Scene) -> Result<Self, String> {
+    /// [`BackgroundError::NoThread`].
+    pub(super) fn start(scene: Scene) -> Result<Self, BackgroundError> {
         let (sender, receiver) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let cancelled = cancel.clone();
-        std::thread::Builder::new()
-            .name("study".to_owned())
-            .spawn(move || work(&scene, &sender, &cancelled))
-            .map_err(|error| format!("no thread for the study: {error}"))?;
-        Ok(Self { receiver, cancel, share: 0.0, now: String::new() })
+        std::thread::Builder::new().name("study".to_owned()).spawn(move || work(&scene, &sender, &cancelled))?;
+        Ok(Self { receiver, cancel, fraction: 0.0, now: String::new() })
     }
 
     /// Takes what has been heard since; measurements go to `study`.
     pub(super) fn listen(&mut self, study: &mut Option<Study>) -> News {
         loop {
             match self.receiver.try_recv() {
-                Ok(Message::Now(share, now)) => (self.share, self.now) = (share, now),
+                Ok(Message::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
                 Ok(Message::SoFar(so_far)) => *study = Some(so_far),
                 Ok(Message::Done(Ok(done))) => {
                     *study = Some(done);
                     return News::Ended(Ok(()));
                 }
                 Ok(Message::Done(Err(StudyError::Cancelled))) => return News::Ended(Ok(())),
-                Ok(Message::Done(Err(error))) => return News::Ended(Err(error.to_string())),
+                Ok(Message::Done(Err(error))) => return News::Ended(Err(error.into())),
                 Err(TryRecvError::Empty) => return News::Running,
-                Err(TryRecvError::Disconnected) => return News::Ended(Err("the study ended unexpectedly".to_owned())),
+                Err(TryRecvError::Disconnected) => return News::Ended(Err(BackgroundError::Died)),
             }
         }
     }
@@ -77,10 +87,10 @@ impl Drop for Background {
 
 fn work(scene: &Scene, sender: &Sender<Message>, cancelled: &AtomicBool) {
     // Nobody listening is as good as being called off.
-    let mut watch = |progress: Progress<'_>| {
+    let mut observe = |progress: Progress<'_>| {
         let heard = match progress.so_far {
             Some(study) => sender.send(Message::SoFar(study.clone())),
-            None => sender.send(Message::Now(progress.share as f32, progress.now.to_owned())),
+            None => sender.send(Message::Now(progress.fraction as f32, progress.now.to_owned())),
         };
         if heard.is_err() || cancelled.load(Ordering::Relaxed) {
             ControlFlow::Break(())
@@ -88,6 +98,6 @@ fn work(scene: &Scene, sender: &Sender<Message>, cancelled: &AtomicBool) {
             ControlFlow::Continue(())
         }
     };
-    let done = Study::new(scene, Extent::Full, &mut watch);
+    let done = Study::new(scene, Extent::Full, &mut observe);
     let _ = sender.send(Message::Done(done));
 }

@@ -2,13 +2,10 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::Vector2;
 
+use crate::element::ElementType;
 use crate::mesh::{Mesh, Segment};
-use crate::scene::ElementKind;
-
-/// Pieces a side is drawn in that may be curved.
-const PIECES: u32 = 4;
 
 /// What is drawn of a mesh. Points are weighted sums of nodes.
 #[derive(Debug, Default)]
@@ -32,21 +29,23 @@ pub(super) struct Drawing {
 
 impl Drawing {
     pub(super) fn new(mesh: &Mesh) -> Self {
-        let mut drawing = Self { stride: mesh.element.nodes(), ..Self::default() };
-        drawing.boundary = mesh.outline();
+        let entry = mesh.element().entry();
+        let mut drawing = Self { stride: entry.nodes.len(), boundary: mesh.outline(), ..Self::default() };
+        let pattern = CellPattern::new(entry);
         let boundary: HashSet<_> = drawing.boundary.iter().map(Segment::key).collect();
         let mut drawn = HashSet::new();
         // Every boundary side's end corner and points, by its first corner.
         let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();
-        for (number, triangle) in (0..).zip(mesh.triangles()) {
-            let sides = drawing.add(mesh.element, number, triangle);
-            for (side, points) in Mesh::sides(triangle).iter().zip(sides) {
-                let pieces = || points.windows(2).map(|w| [w[0], w[1]]);
+        for (number, nodes) in (0..).zip(mesh.elements()) {
+            let first = drawing.add(&pattern, number, nodes);
+            for (side, points) in mesh.sides(nodes).zip(&pattern.sides) {
+                let points: Vec<u32> = points.iter().map(|p| first + p).collect();
                 if drawn.insert(side.key()) {
-                    drawing.lines.extend(pieces());
+                    drawing.lines.extend(points.windows(2).map(|w| [w[0], w[1]]));
                 }
                 if boundary.contains(&side.key()) {
-                    around.entry(side.ends[0]).or_default().push((side.ends[1], points.clone()));
+                    let [from, to] = side.ends();
+                    around.entry(from).or_default().push((to, points));
                 }
             }
         }
@@ -66,39 +65,19 @@ impl Drawing {
         drawing
     }
 
-    /// A triangle cut into a lattice, of one piece where its sides are straight; returns the points of its sides.
-    fn add(&mut self, element: ElementKind, number: u32, triangle: &[u32]) -> [Vec<u32>; 3] {
-        let pieces = if element.degree() == 1 { 1 } else { PIECES };
+    /// Adds an element; returns the number of its first point.
+    fn add(&mut self, pattern: &CellPattern, number: u32, nodes: &[u32]) -> u32 {
         let first = (self.nodes.len() / self.stride) as u32;
-        let local = |[i, j]: [u32; 2]| {
-            let [b, c] = [i, j].map(|k| f64::from(k) / f64::from(pieces));
-            [1.0 - b - c, b, c]
-        };
-        // Rows of the lattice get shorter: row j holds pieces + 1 − j points.
-        let point = |[i, j]: [u32; 2]| first + j * (pieces + 1) - j * j.saturating_sub(1) / 2 + i;
-        for (i, j) in (0..=pieces).flat_map(|j| (0..=pieces - j).map(move |i| (i, j))) {
-            self.nodes.extend(triangle);
-            self.weights.extend(element.shape(local([i, j])));
+        for weights in &pattern.points {
+            self.nodes.extend(nodes);
+            self.weights.extend(weights);
         }
-        let points = element.quadrature_points();
-        let mut small = |corners: [[u32; 2]; 3]| {
-            self.triangles.push(corners.map(point));
-            self.value_of.push(number * points.len() as u32);
-            let linear = linear_weights(points, corners.map(local));
-            let mean = || vec![1.0 / points.len() as f64; points.len()];
-            self.value_weights.extend(linear.unwrap_or_else(mean));
-        };
-        for (i, j) in (0..pieces).flat_map(|j| (0..pieces - j).map(move |i| (i, j))) {
-            small([[i, j], [i + 1, j], [i, j + 1]]);
-            if i + j + 2 <= pieces {
-                small([[i + 1, j], [i + 1, j + 1], [i, j + 1]]);
-            }
+        for (corners, weights) in &pattern.triangles {
+            self.triangles.push(corners.map(|p| first + p));
+            self.value_of.push(number * weights.len() as u32);
+            self.value_weights.extend(weights);
         }
-        [
-            (0..=pieces).map(|i| point([i, 0])).collect(),
-            (0..=pieces).map(|j| point([pieces - j, j])).collect(),
-            (0..=pieces).map(|j| point([0, pieces - j])).collect(),
-        ]
+        first
     }
 
     /// Where point `p` is, for nodes that are where `place` says.
@@ -113,39 +92,55 @@ impl Drawing {
         positions.extend((0..(self.nodes.len() / self.stride.max(1)) as u32).map(|p| self.point(p, place)));
     }
 
-    /// The value of every triangle, from those of the quadrature points.
-    pub(super) fn values(&self, at_points: &[f64], values: &mut Vec<f64>) {
+    /// The value of every triangle, from those of the quadrature points; absent where one of these is.
+    pub(super) fn values(&self, at_points: &[Option<f64>], values: &mut Vec<Option<f64>>) {
         values.clear();
         let stride = self.value_weights.len() / self.value_of.len().max(1);
         values.extend(self.value_of.iter().zip(self.value_weights.chunks(stride.max(1))).map(|(&first, weights)| {
             let own = at_points.get(first as usize..).unwrap_or_default();
-            own.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f64>()
+            own.iter().zip(weights).map(|(value, weight)| Some((*value)? * weight)).sum::<Option<f64>>()
         }));
     }
 }
 
-/// The weights on an element's quadrature points with which a linear field has its value in the middle of a small
-/// triangle; `None` for other than three points, whose value is the element's.
-fn linear_weights(points: &[[f64; 3]], corners: [[f64; 3]; 3]) -> Option<Vec<f64>> {
-    let &[a, b, c] = points else { return None };
-    let middle = Vector3::from([0, 1, 2].map(|k| corners.iter().map(|l| l[k]).sum::<f64>() / 3.0));
-    let weights = Matrix3::from_columns(&[a, b, c].map(Vector3::from)).try_inverse()? * middle;
-    Some(weights.iter().copied().collect())
+/// How every element of a kind is drawn.
+struct CellPattern {
+    /// Shape functions at its points.
+    points: Vec<Vec<f64>>,
+    /// Triangles between points, with the weights of the quadrature points' values in the middle of each.
+    triangles: Vec<([u32; 3], Vec<f64>)>,
+    /// Points along each side.
+    sides: Vec<Vec<u32>>,
+}
+
+impl CellPattern {
+    fn new(entry: &ElementType) -> Self {
+        let lattice = (entry.cell.lattice)(entry.drawn_pieces);
+        let place = |p: u32| Vector2::from(lattice.points[p as usize]);
+        let middle = |corners: &[u32; 3]| corners.iter().map(|&p| place(p)).sum::<Vector2<f64>>() / 3.0;
+        let triangles = lattice.triangles.iter().map(|t| (*t, (entry.point_weights)(middle(t).into())));
+        Self {
+            points: lattice.points.iter().map(|&at| (entry.shape)(at)).collect(),
+            triangles: triangles.collect(),
+            sides: lattice.sides.clone(),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Beam, Diagonals};
+    use crate::Scene;
+    use crate::scene::ElementKind;
 
     #[test]
     fn drawn_triangles_cover_the_body_once() {
-        for element in ElementKind::ALL {
-            let beam = Beam { length: 3.0, height: 2.0, cells: [3, 2], element, diagonals: Diagonals::Alternating };
-            let mesh = Mesh::beam(&beam).unwrap();
+        for element in ElementKind::all() {
+            let scene = Scene::beam(3.0, 2.0).with_cells(3, 2).with_element(element);
+            let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
             let drawing = Drawing::new(&mesh);
             let mut points = Vec::new();
-            drawing.points(&|n| mesh.nodes[n as usize], &mut points);
+            drawing.points(&|n| mesh.nodes()[n as usize], &mut points);
             let area: f64 = drawing
                 .triangles
                 .iter()
@@ -160,14 +155,16 @@ mod tests {
             assert!((around - 10.0).abs() < 1e-12, "{element:?}: {around}");
             assert_eq!(drawing.triangles.len(), drawing.value_of.len());
             // A field that is linear within elements is drawn as it is: its mean over the body is that of its points.
-            let count = mesh.triangle_count() * element.quadrature_points().len();
-            let at_points: Vec<f64> = (0..count).map(|q| (q % 7) as f64).collect();
+            let count = mesh.element_count() * element.entry().points.len();
+            let at_points: Vec<Option<f64>> = (0..count).map(|q| Some((q % 7) as f64)).collect();
             let mut values = Vec::new();
             drawing.values(&at_points, &mut values);
-            let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+            let mean = |v: &[Option<f64>]| v.iter().flatten().sum::<f64>() / v.len() as f64;
             assert!((mean(&values) - mean(&at_points)).abs() < 1e-12, "{element:?}");
-            drawing.values(&vec![5.0; count], &mut values);
-            assert!(values.iter().all(|v| (v - 5.0).abs() < 1e-12), "{element:?}");
+            drawing.values(&vec![Some(5.0); count], &mut values);
+            assert!(values.iter().flatten().all(|v| (v - 5.0).abs() < 1e-12), "{element:?}");
+            drawing.values(&vec![None; count], &mut values);
+            assert!(values.iter().all(Option::is_none), "{element:?}");
         }
     }
 }

@@ -5,9 +5,12 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use egui::{DragValue, Slider, SliderClamping, Ui};
+use thiserror::Error;
 
 use super::format;
-use crate::scene::limits::{Limit, number};
+use crate::scene::OutOfRange;
+use crate::scene::limits::Limit;
+use crate::words::number;
 
 /// Messages next to fields, by the field's label.
 pub(super) type Messages = BTreeMap<&'static str, String>;
@@ -26,6 +29,15 @@ pub(super) struct NumberField {
     pub logarithmic: Option<f64>,
     /// Whole numbers only.
     pub whole: bool,
+}
+
+/// Why a typed number is refused.
+#[derive(Debug, Error)]
+enum FieldError {
+    #[error("expected a whole number, got {0}")]
+    NotWhole(String),
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
 }
 
 const LABEL_WIDTH: f32 = 78.0;
@@ -81,7 +93,7 @@ impl NumberField {
         });
         let accepted = match (unparsed.into_inner(), edited) {
             (Some(text), _) => {
-                messages.insert(self.label, self.limit.expected(&format!("\u{201c}{text}\u{201d}")));
+                messages.insert(self.label, self.limit.expected(&format!("\u{201c}{text}\u{201d}")).to_string());
                 None
             }
             (None, Some(new)) => match self.check(new) {
@@ -89,8 +101,8 @@ impl NumberField {
                     messages.remove(self.label);
                     Some(new)
                 }
-                Err(message) => {
-                    messages.insert(self.label, message);
+                Err(error) => {
+                    messages.insert(self.label, error.to_string());
                     None
                 }
             },
@@ -100,11 +112,11 @@ impl NumberField {
         accepted.filter(|&new| new != value)
     }
 
-    fn check(&self, value: f64) -> Result<(), String> {
+    fn check(&self, value: f64) -> Result<(), FieldError> {
         if self.whole && value.fract() != 0.0 {
-            return Err(format!("expected a whole number, got {}", number(value)));
+            return Err(FieldError::NotWhole(number(value)));
         }
-        self.limit.check(value)
+        Ok(self.limit.check(value)?)
     }
 }
 

@@ -8,7 +8,7 @@ pub(super) fn short(value: f64) -> String {
 /// As many digits as fit a field of the panel.
 pub(super) fn editable(value: f64) -> String {
     const FITS: usize = 9;
-    let exact = crate::scene::limits::number(value);
+    let exact = crate::words::number(value);
     if exact.len() <= FITS { exact } else { significant(value, 6) }
 }
 

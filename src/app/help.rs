@@ -1,38 +1,8 @@
 //! The overlay that lists keys and mouse.
 
-use egui::{Align2, Context, Key};
+use egui::{Align2, Context};
 
-/// A key and what it does.
-pub(super) struct Shortcut {
-    pub key: Key,
-    pub does: &'static str,
-}
-
-const fn key(key: Key, does: &'static str) -> Shortcut {
-    Shortcut { key, does }
-}
-
-/// Every key, in the order of the list.
-pub(super) const SHORTCUTS: &[Shortcut] = &[
-    key(Key::Space, "Run or pause the iteration"),
-    key(Key::N, "One iteration"),
-    key(Key::R, "Reset to rest"),
-    key(Key::F, "Fit the view"),
-    key(Key::W, "Wireframe on or off"),
-    key(Key::O, "Rest outline on or off"),
-    key(Key::G, "Ghost of the linear solution on or off"),
-    key(Key::Num1, "Colour: von Mises stress"),
-    key(Key::Num2, "Colour: strain energy density"),
-    key(Key::Num3, "Colour: largest strain"),
-    key(Key::Num4, "Colour: rotation angle"),
-    key(Key::L, "Load curve on or off"),
-    key(Key::B, "Budget: error against time, on or off"),
-    key(Key::P, "Panel on or off"),
-    key(Key::T, "Light or dark"),
-    key(Key::S, "Save a screenshot (PNG) here"),
-    key(Key::C, "Copy the scene as TOML, with its command"),
-    key(Key::F1, "This list"),
-];
+use super::keys::SHORTCUTS;
 
 const MOUSE: &[(&str, &str)] =
     &[("Drag", "Move the view"), ("Scroll, pinch", "Zoom to the pointer"), ("Double click", "Fit the view")];

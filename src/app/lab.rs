@@ -2,19 +2,22 @@
 
 use std::time::Duration;
 
-use egui::{CentralPanel, Key, Panel, Rect, Sense, TextureId, Ui};
+use egui::{CentralPanel, Panel, Rect, Sense, TextureId, Ui};
 use nalgebra::Vector2;
 
+use super::action::{Action, Drawer, MOST_ITERATIONS, ViewOptions};
+use super::budget::{Budget, question};
 use super::drawing::Drawing;
-use super::panel::{self, Action, Drawer, PanelState, Shown, ViewOptions};
-use super::trade::{Asked, Trade};
-use super::{help, overlay, plot};
-use crate::method::Profile;
+use super::finder::Finder;
+use super::overlay::{self, Overlay};
+use super::panel::{self, PanelInput, PanelState, status_words};
+use super::pointer::{self, Look};
+use super::{help, keys, plot};
+use crate::method::Timings;
 use crate::render::{Camera, Frame, Margins};
-use crate::scene::{self, MethodKind, Scene, Source};
-use crate::simulation::{Field, Simulation, SimulationError, Status};
-use crate::study::{LoadCurve, Study};
-use crate::truth::Truth;
+use crate::scene::{self, MethodKind, Scene, SceneError, Source};
+use crate::simulation::{Simulation, SimulationError, Status};
+use crate::study::{LoadCurve, Reference, Study};
 
 /// Width of the panel, points.
 pub const PANEL_WIDTH: f32 = 324.0;
@@ -25,13 +28,10 @@ const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 /// Height of what is shown under the body, points.
 const DRAWER_HEIGHT: f32 = 270.0;
 
-/// Most iterations a frame may be asked for.
-pub(super) const MOST_ITERATIONS: u32 = 100;
-
 /// How long a message stays.
 const TOAST: Duration = Duration::from_secs(4);
 
-/// What the surroundings of the lab must do; the lab cannot.
+/// What the lab asks of the window that shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
     /// Save a picture.
@@ -57,39 +57,23 @@ pub struct Lab {
     toast: Option<(String, f64)>,
     drawing: Drawing,
     shape: Shape,
-    /// What is known of the scene without a mesh; found when the body has come to rest.
-    truth: Known<Vector2<f64>>,
-    curve: Known<LoadCurve>,
-    trade: Trade,
-    /// Iterations a frame.
+    /// What errors are measured against; looked for when the body has come to rest.
+    truth: Finder<Reference>,
+    curve: Finder<LoadCurve>,
+    budget: Budget,
+    /// Iterations a displayed frame.
     iterations: u32,
-    /// Time of the last frame that iterated.
-    frame_time: Profile,
+    /// Time of the last iterations made for one displayed frame.
+    timings: Timings,
 }
 
-/// Something that takes a while to find, and may not exist.
-#[derive(Debug, Default)]
-enum Known<T> {
-    #[default]
-    Unasked,
-    None,
-    Some(T),
-}
-
-impl<T> Known<T> {
-    fn get_or_find(&mut self, find: impl FnOnce() -> Option<T>) -> Option<&T> {
-        if let Self::Unasked = self {
-            *self = find().map_or(Self::None, Self::Some);
-        }
-        self.get()
-    }
-
-    fn get(&self) -> Option<&T> {
-        match self {
-            Self::Some(value) => Some(value),
-            Self::Unasked | Self::None => None,
-        }
-    }
+/// Why a scene is not shown.
+#[derive(Debug, thiserror::Error)]
+enum OpenError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
 }
 
 /// What is drawn of the body at present, kept between frames.
@@ -97,18 +81,19 @@ impl<T> Known<T> {
 struct Shape {
     nodes: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
-    at_points: Vec<f64>,
-    values: Vec<f64>,
+    at_points: Vec<Option<f64>>,
+    values: Vec<Option<f64>>,
     range: [f64; 2],
     line_color: [u8; 4],
     background: [u8; 3],
+    absent_color: [u8; 3],
 }
 
 impl Lab {
     /// A lab with this scene, iterating from rest.
     #[must_use]
     pub fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
-        let drawing = Drawing::new(&simulation.system().mesh);
+        let drawing = Drawing::new(simulation.system().mesh());
         let mut lab = Self {
             source,
             linear: None,
@@ -124,11 +109,11 @@ impl Lab {
             toast: None,
             drawing,
             shape: Shape::default(),
-            truth: Known::Unasked,
-            curve: Known::Unasked,
-            trade: Trade::default(),
+            truth: Finder::new(|scene| Reference::of(scene).ok()),
+            curve: Finder::new(LoadCurve::new),
+            budget: Budget::default(),
             iterations: 1,
-            frame_time: Profile::default(),
+            timings: Timings::default(),
         };
         lab.solve_linear();
         lab
@@ -151,17 +136,17 @@ impl Lab {
 
     /// Shows a study under the body.
     pub fn show_study(&mut self, study: Study) {
-        self.view.drawer = Some(Drawer::Trade);
-        self.trade.set(&self.scene, study);
+        self.view.drawer = Some(Drawer::Budget);
+        self.budget.set(&self.scene, study);
     }
 
     /// What has been measured of the scene, and whether more is being measured.
     #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {
-        (self.trade.study(), self.trade.runs())
+        (self.budget.study(), self.budget.runs())
     }
 
-    /// Iterations a frame.
+    /// Iterations a displayed frame.
     #[must_use]
     pub fn iterations(&self) -> u32 {
         self.iterations
@@ -203,17 +188,13 @@ impl Lab {
         self.camera.unwrap_or(self.fitted)
     }
 
-    pub(super) fn view(&self) -> &ViewOptions {
-        &self.view
-    }
-
     /// Title for the window.
     #[must_use]
     pub fn title(&self) -> String {
         format!("{} \u{2013} warpbeam", self.scene.name)
     }
 
-    /// Makes a frame's iterations if it runs; says whether there is another to make.
+    /// Makes the iterations of one displayed frame if it runs; says whether there are others to make.
     pub fn advance(&mut self) -> bool {
         if self.iterates() {
             self.iterate(self.iterations);
@@ -222,11 +203,11 @@ impl Lab {
     }
 
     fn iterate(&mut self, iterations: u32) {
-        self.frame_time = Profile::default();
+        self.timings = Timings::default();
         for _ in 0..iterations {
             if *self.simulation.status() == Status::Running {
                 self.simulation.step();
-                self.frame_time.add(self.simulation.last_frame());
+                self.timings.add(self.simulation.last_iteration());
             }
         }
     }
@@ -237,11 +218,22 @@ impl Lab {
         self.running && *self.simulation.status() == Status::Running
     }
 
-    /// Iterates to the end.
+    /// Iterates to the end, and finds out what is known of the result.
     pub fn solve(&mut self) {
         while *self.simulation.status() == Status::Running {
             self.iterate(1);
         }
+        self.simulation.certify();
+        self.truth.settle(&self.scene);
+        if self.view.drawer == Some(Drawer::Curve) {
+            self.curve.settle(&self.scene);
+        }
+    }
+
+    /// Whether something is still being found out of the scene beside the window.
+    #[must_use]
+    pub fn is_searching(&self) -> bool {
+        self.truth.is_open() || self.view.drawer == Some(Drawer::Curve) && self.curve.is_open()
     }
 
     /// What is drawn of the body, as of the last [`Self::ui`].
@@ -256,13 +248,14 @@ impl Lab {
             lines: if self.view.wireframe { &self.drawing.lines } else { &[] },
             line_color: shape.line_color,
             background: shape.background,
+            absent_color: shape.absent_color,
         }
     }
 
     fn update_shape(&mut self, visuals: &egui::Visuals) {
         let shape = &mut self.shape;
         shape.nodes.clear();
-        let rest = &self.simulation.system().mesh.nodes;
+        let rest = self.simulation.system().mesh().nodes();
         shape.nodes.extend(rest.iter().zip(self.simulation.displacement()).map(|(x, u)| x + u));
         let nodes = &shape.nodes;
         self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
@@ -270,22 +263,8 @@ impl Lab {
         self.drawing.values(&shape.at_points, &mut shape.values);
         shape.range = self.view.fixed_range.unwrap_or_else(|| panel::range_of(&shape.at_points));
         shape.background = if visuals.dark_mode { [22, 24, 28] } else { [244, 245, 247] };
+        shape.absent_color = if visuals.dark_mode { [90, 90, 96] } else { [170, 170, 176] };
         shape.line_color = if visuals.dark_mode { [0, 0, 0, 110] } else { [0, 0, 0, 90] };
-    }
-
-    /// The field's values at the two ends of the colour map.
-    pub(super) fn color_range(&self) -> [f64; 2] {
-        self.shape.range
-    }
-
-    /// Node positions x of the last [`Self::ui`], m.
-    pub(super) fn positions(&self) -> &[Vector2<f64>] {
-        &self.shape.nodes
-    }
-
-    /// What of the mesh is drawn.
-    pub(super) fn drawing(&self) -> &Drawing {
-        &self.drawing
     }
 
     /// Sizes and colours that the defaults get wrong here.
@@ -300,28 +279,28 @@ impl Lab {
     pub fn ui(&mut self, ui: &mut Ui, body: Option<TextureId>) -> Vec<Request> {
         Self::style(ui.ctx());
         let mut actions = Vec::new();
-        self.find_truth();
-        self.trade.listen(ui.ctx());
+        self.find_out(ui.ctx());
+        self.budget.listen(ui.ctx());
         if self.view.panel {
-            let shown = Shown {
-                truth: self.truth.get().copied(),
+            let input = PanelInput {
+                truth: self.truth.get(),
                 scene: &self.scene,
                 scene_name: &self.source.name,
                 simulation: &self.simulation,
                 running: self.running,
                 iterations: self.iterations,
-                frame_time: &self.frame_time,
+                timings: &self.timings,
                 adapter: &self.adapter,
             };
             let panel = Panel::left("panel").exact_size(PANEL_WIDTH).resizable(false);
-            actions = panel.show(ui, |ui| panel::show(ui, &shown, &mut self.panel, &mut self.view)).inner;
+            panel.show(ui, |ui| panel::show(ui, &input, &mut self.panel, &mut self.view, &mut actions));
         }
-        self.keys(ui.ctx(), &mut actions);
+        actions.extend(keys::actions(ui.ctx(), self.view.help));
+        self.drawer(ui, &mut actions);
         let mut requests = Vec::new();
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
-        self.drawer(ui);
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, body));
         help::show(ui.ctx(), &mut self.view.help);
         if self.iterates() {
@@ -330,43 +309,25 @@ impl Lab {
         requests
     }
 
-    /// Looks for what is known of the scene without a mesh, once the body is at rest: a dragged slider need not wait.
-    fn find_truth(&mut self) {
+    /// Looks for what is known of the scene and of its result, once the body is at rest: a dragged slider need not wait.
+    fn find_out(&mut self, ctx: &egui::Context) {
         if self.iterates() {
             return;
         }
-        let scene = &self.scene;
-        self.truth.get_or_find(|| Truth::of(scene)?.tip_displacement());
+        self.simulation.certify();
+        self.truth.ask(&self.scene, ctx);
         if self.view.drawer == Some(Drawer::Curve) {
-            self.curve.get_or_find(|| LoadCurve::new(scene));
+            self.curve.ask(&self.scene, ctx);
         }
     }
 
-    fn drawer(&mut self, ui: &mut Ui) {
+    fn drawer(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let Some(drawer) = self.view.drawer else { return };
         let panel = Panel::bottom("drawer").exact_size(DRAWER_HEIGHT).resizable(false);
-        let asked = panel.show(ui, |ui| match drawer {
-            Drawer::Curve => {
-                plot::show(ui, self.curve.get());
-                None
-            }
-            Drawer::Trade => self.trade.show(ui, &self.scene, self.iterations),
+        panel.show(ui, |ui| match drawer {
+            Drawer::Curve => plot::show(ui, self.curve.get(), !self.curve.is_open()),
+            Drawer::Budget => self.budget.show(ui, &self.scene, self.iterations, actions),
         });
-        match asked.inner {
-            Some(Asked::Measure(true)) => self.trade.measure(&self.scene),
-            Some(Asked::Measure(false)) => self.trade.cancel(),
-            Some(Asked::Demand(demand)) => {
-                let mut scene = self.scene.clone();
-                scene.solver.budget_ms = demand.budget_ms;
-                scene.solver.max_error_percent = demand.max_error_percent;
-                self.edit(ui.ctx(), scene);
-            }
-            Some(Asked::Apply(setting)) => {
-                self.edit(ui.ctx(), setting.apply(&self.scene));
-                self.iterations = setting.iterations.clamp(1, MOST_ITERATIONS);
-            }
-            None => {}
-        }
     }
 
     /// Takes a scene that should be as good as the present one; says so where it is not.
@@ -381,19 +342,35 @@ impl Lab {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         self.view_rect = rect;
         self.follow(rect);
-        self.pan_and_zoom(ui, &response);
+        match pointer::look(ui, &response, self.camera()) {
+            Look::Same => {}
+            Look::At(camera) => self.camera = Some(camera),
+            Look::Fit => self.camera = None,
+        }
         let painter = ui.painter_at(rect);
         if let Some(texture) = body {
             let uv = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             painter.image(texture, rect, uv, egui::Color32::WHITE);
         }
-        overlay::paint(&painter, rect, self, ui.visuals());
+        let (words, bad) = status_words(self.simulation.status(), true);
+        let overlay = Overlay {
+            scene: &self.scene,
+            system: self.simulation.system(),
+            drawing: &self.drawing,
+            options: &self.view,
+            camera: self.camera(),
+            positions: &self.shape.nodes,
+            ghost: self.ghost(),
+            color_range: self.shape.range,
+            warning: bad.then_some(&words),
+        };
+        overlay::paint(&painter, rect, &overlay, ui.visuals());
         self.paint_toast(ui, &painter, rect);
     }
 
     /// Fits the view to the body at rest and now, while nobody has moved it.
     fn follow(&mut self, rect: Rect) {
-        let mesh = &self.simulation.system().mesh;
+        let mesh = self.simulation.system().mesh();
         let (mut low, mut high) = mesh.bounds();
         let mut include = |positions: &mut dyn Iterator<Item = Vector2<f64>>| {
             for p in positions {
@@ -406,7 +383,7 @@ impl Lab {
             // The linear solution of a large load is absurdly long; the body must not shrink to a dot beside it.
             const LARGEST: f64 = 1.5;
             let size = (high - low).norm();
-            let ghost: Vec<_> = mesh.nodes.iter().zip(linear).map(|(x, u)| x + u).collect();
+            let ghost: Vec<_> = mesh.nodes().iter().zip(linear).map(|(x, u)| x + u).collect();
             let (ghost_low, ghost_high) = ghost.iter().fold((low, high), |(low, high), p| (low.inf(p), high.sup(p)));
             if (ghost_high - ghost_low).norm() < LARGEST * size {
                 (low, high) = (ghost_low, ghost_high);
@@ -416,74 +393,9 @@ impl Lab {
     }
 
     /// The linear solution, if it is to be shown.
-    pub(super) fn ghost(&self) -> Option<&[Vector2<f64>]> {
+    fn ghost(&self) -> Option<&[Vector2<f64>]> {
         let wanted = self.view.ghost && self.scene.solver.method != MethodKind::Linear;
         self.linear_displacement().filter(|_| wanted)
-    }
-
-    fn pan_and_zoom(&mut self, ui: &Ui, response: &egui::Response) {
-        let mut camera = self.camera();
-        let drag = response.drag_delta();
-        if drag != egui::Vec2::ZERO {
-            camera.pan([f64::from(drag.x), f64::from(drag.y)]);
-            self.camera = Some(camera);
-        }
-        if let Some(pointer) = response.hover_pos() {
-            let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
-            let factor = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
-            // A pointer that only rests over the view must not stop it from following the body.
-            if factor != 1.0 {
-                let at = pointer - response.rect.center();
-                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)]);
-                self.camera = Some(camera);
-            }
-        }
-        if response.double_clicked() {
-            self.camera = None;
-        }
-    }
-
-    fn keys(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
-        if ctx.text_edit_focused() {
-            return;
-        }
-        let pressed: Vec<Key> = ctx.input(|i| {
-            let plain = i.modifiers.is_none();
-            help::SHORTCUTS.iter().map(|s| s.key).filter(|&k| plain && i.key_pressed(k)).collect()
-        });
-        if ctx.input(|i| i.key_pressed(Key::Escape)) {
-            self.view.help = false;
-        }
-        for key in pressed {
-            match key {
-                Key::Space => actions.push(Action::Run(!self.running)),
-                Key::N => actions.push(Action::Step),
-                Key::R => actions.push(Action::Reset),
-                Key::F => actions.push(Action::Fit),
-                Key::W => self.view.wireframe ^= true,
-                Key::O => self.view.rest_outline ^= true,
-                Key::G => self.view.ghost ^= true,
-                Key::Num1 => self.color_with(Field::VonMises),
-                Key::Num2 => self.color_with(Field::EnergyDensity),
-                Key::Num3 => self.color_with(Field::LargestStrain),
-                Key::Num4 => self.color_with(Field::RotationAngle),
-                Key::L => self.view.toggle(Drawer::Curve),
-                Key::B => self.view.toggle(Drawer::Trade),
-                Key::P => self.view.panel ^= true,
-                Key::T => actions.push(Action::ToggleTheme),
-                Key::S => actions.push(Action::Screenshot),
-                Key::C => actions.push(Action::Copy),
-                Key::F1 => self.view.help ^= true,
-                _ => {}
-            }
-        }
-    }
-
-    fn color_with(&mut self, field: Field) {
-        if self.view.field != field {
-            self.view.field = field;
-            self.view.fixed_range = None;
-        }
     }
 
     fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
@@ -496,7 +408,7 @@ impl Lab {
                     self.panel.messages.remove(label);
                 }
             }
-            Action::Run(run) => self.running = run,
+            Action::ToggleRun => self.running ^= true,
             Action::Step => {
                 self.running = false;
                 self.iterate(1);
@@ -504,12 +416,20 @@ impl Lab {
             Action::Reset => self.simulation.reset(),
             Action::Iterations(iterations) => self.iterations = iterations.clamp(1, MOST_ITERATIONS),
             Action::Fit => self.camera = None,
+            Action::Toggle(what) => self.view.toggle(what),
+            Action::Color(field) => self.view.color_with(field),
             Action::ToggleTheme => {
                 let dark = ctx.theme() == egui::Theme::Dark;
                 ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
             }
             Action::Screenshot => requests.push(Request::Screenshot),
             Action::Copy => self.copy(ctx),
+            Action::Measure(true) => self.budget.measure(&self.scene),
+            Action::Measure(false) => self.budget.cancel(),
+            Action::Apply(setting) => {
+                self.edit(ctx, setting.apply(&self.scene));
+                self.iterations = setting.iterations.clamp(1, MOST_ITERATIONS);
+            }
         }
     }
 
@@ -520,31 +440,31 @@ impl Lab {
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         self.simulation.change_scene(&scene)?;
         if self.scene.beam != scene.beam || self.scene.mesh != scene.mesh {
-            self.drawing = Drawing::new(&self.simulation.system().mesh);
+            self.drawing = Drawing::new(self.simulation.system().mesh());
         }
+        if question(&self.scene) != question(&scene) {
+            self.truth.forget();
+        }
+        self.curve.forget();
         self.scene = scene;
-        self.truth = Known::Unasked;
-        self.curve = Known::Unasked;
         self.solve_linear();
         Ok(())
     }
 
     fn open(&mut self, ctx: &egui::Context, id: &str) {
         let source = Source { name: id.to_owned(), assignments: Vec::new() };
-        let opened = scene::open(&source)
-            .map_err(|e| e.to_string())
-            .and_then(|scene| self.set_scene(scene).map_err(|e| e.to_string()));
+        let opened = scene::open(&source).map_err(OpenError::from).and_then(|scene| Ok(self.set_scene(scene)?));
         match opened {
             Ok(()) => {
                 self.source = source;
                 self.simulation.reset();
                 self.panel.clear();
-                self.trade = Trade::default();
+                self.budget = Budget::default();
                 self.iterations = 1;
                 self.camera = None;
                 self.view.fixed_range = None;
             }
-            Err(message) => self.say(ctx, message),
+            Err(error) => self.say(ctx, error.to_string()),
         }
     }
 
@@ -553,9 +473,12 @@ impl Lab {
             solver: scene::SolverSettings { method: MethodKind::Linear, ..self.scene.solver.clone() },
             ..self.scene.clone()
         };
-        let reused = self.linear.as_mut().is_some_and(|linear| linear.change_scene(&scene).is_ok());
+        // On the body's own equations: nothing of them is made twice.
+        let system = self.simulation.system();
+        let shared = self.linear.as_mut().filter(|linear| std::sync::Arc::ptr_eq(linear.system(), system));
+        let reused = shared.is_some_and(|linear| linear.change_scene(&scene).is_ok());
         if !reused {
-            self.linear = Simulation::new(&scene).ok();
+            self.linear = Simulation::with_system(&scene, system.clone()).ok();
         }
         if let Some(linear) = &mut self.linear {
             linear.solve();

@@ -5,26 +5,31 @@ use thiserror::Error;
 
 use crate::render::RenderError;
 
+mod action;
 mod background;
+mod budget;
 mod drawing;
 mod field;
+mod finder;
 mod format;
 mod help;
+mod keys;
 pub mod lab;
 mod overlay;
 mod panel;
 mod plot;
+mod pointer;
 mod shot;
 mod stage;
-mod trade;
 mod window;
 
 pub use lab::{Lab, PANEL_WIDTH};
 pub use shot::{MAX_SHOT_SIDE, ShotOptions, picture, shot};
-pub use window::{Display, run};
+pub use window::{Display, NoDisplay, run};
 
 /// Why the window closed.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum AppError {
     /// Nothing to draw with, or a picture not written.
     #[error(transparent)]

@@ -3,12 +3,29 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
+use super::action::ViewOptions;
+use super::drawing::Drawing;
 use super::format;
-use super::lab::Lab;
-use super::panel::status_words;
-use crate::mesh::Segment;
+use crate::assembly::System;
 use crate::render::{Camera, colormap};
-use crate::scene::{Load, Place};
+use crate::scene::{Load, Place, Scene};
+
+/// What is painted over the body.
+pub(super) struct Overlay<'a> {
+    pub scene: &'a Scene,
+    pub system: &'a System,
+    pub drawing: &'a Drawing,
+    pub options: &'a ViewOptions,
+    pub camera: Camera,
+    /// Where the nodes are, m.
+    pub positions: &'a [Vector2<f64>],
+    /// Displacement of the linear solution, m, where its outline is wanted.
+    pub ghost: Option<&'a [Vector2<f64>]>,
+    /// The field's values at the two ends of the colour map.
+    pub color_range: [f64; 2],
+    /// What is wrong with the state, in words.
+    pub warning: Option<&'a str>,
+}
 
 /// The colours of the overlay, chosen to differ in brightness too.
 struct Palette {
@@ -92,18 +109,18 @@ fn clip(a: [f64; 2], b: [f64; 2], half: [f64; 2]) -> Option<[[f64; 2]; 2]> {
 }
 
 /// Paints everything.
-pub(super) fn paint(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals) {
+pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
     if rect.width() < 8.0 || rect.height() < 8.0 {
         return;
     }
     let palette = Palette::new(visuals);
-    let projection = Projection { camera: lab.camera(), rect };
-    let system = lab.simulation().system();
+    let Overlay { drawing, system, camera, .. } = *overlay;
+    let projection = Projection { camera, rect };
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
-        for line in &lab.drawing().outline {
+        for line in &drawing.outline {
             // Pieces of less than this fade in the antialiasing; they are joined to the next.
             const SHORTEST: f64 = 2.0;
-            let mut points = line.iter().map(|&p| lab.drawing().point(p, place));
+            let mut points = line.iter().map(|&p| drawing.point(p, place));
             let Some(mut from) = points.next() else { continue };
             let mut points = points.peekable();
             while let Some(to) = points.next() {
@@ -117,36 +134,38 @@ pub(super) fn paint(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals)
             }
         }
     };
-    let rest = |n: u32| system.mesh.nodes[n as usize];
-    if lab.view().rest_outline {
+    let rest = |n: u32| system.mesh().nodes()[n as usize];
+    if overlay.options.rest_outline {
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
-    if let Some(linear) = lab.ghost() {
+    if let Some(linear) = overlay.ghost {
         draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.ghost));
     }
-    draw(&|n| lab.positions()[n as usize], Stroke::new(1.2, palette.outline));
-    supports(painter, &projection, lab, &palette);
-    loads(painter, &projection, lab, &palette, visuals);
-    legend(painter, rect, lab, &palette, visuals);
-    key(painter, rect, lab, &palette, visuals);
+    draw(&|n| overlay.positions[n as usize], Stroke::new(1.2, palette.outline));
+    supports(painter, &projection, overlay, &palette);
+    loads(painter, &projection, overlay, &palette, visuals);
+    legend(painter, rect, overlay, &palette, visuals);
+    key(painter, rect, overlay, &palette, visuals);
     scale_bar(painter, rect, &projection.camera, &palette);
-    words(painter, rect, lab, visuals);
+    if let Some(warning) = overlay.warning {
+        let at = rect.center_top() + vec2(0.0, 46.0);
+        boxed_text(painter, at, Align2::CENTER_TOP, warning, visuals, visuals.error_fg_color, rect.width() - 48.0);
+    }
 }
 
-/// Held edges: hatched where both directions are held, rollers where one is. Held nodes beside none: a triangle.
-fn supports(painter: &Painter, projection: &Projection, lab: &Lab, palette: &Palette) {
+/// Fixed edges: hatched where both directions are fixed, rollers where one is. Fixed nodes apart from them: a triangle.
+fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     const HATCH: f32 = 7.0;
     const ROLLER: f32 = 3.5;
-    let pattern = &lab.simulation().system().pattern;
-    let held = |n: u32| [0, 1].map(|axis| pattern.is_held(2 * n as usize + axis));
+    let (positions, pattern) = (overlay.positions, overlay.system.pattern());
     let stroke = Stroke::new(1.5, palette.support);
-    let mut drawn = vec![false; lab.positions().len()];
-    for Segment { ends: [a, b], middle } in &lab.drawing().boundary {
-        let both = [0, 1].map(|axis| held(*a)[axis] && held(*b)[axis]);
+    let mut drawn = vec![false; positions.len()];
+    for side in &overlay.drawing.boundary {
+        let both = [0, 1].map(|axis| side.ends().iter().all(|&end| pattern.fixed(end)[axis]));
         if both == [false, false] {
             continue;
         }
-        let [p, q] = [a, b].map(|n| projection.point(lab.positions()[*n as usize]));
+        let [p, q] = side.ends().map(|n| projection.point(positions[n as usize]));
         // The outline runs counter-clockwise in the plane, so the outside is on its right; the window's y points down.
         let along = (q - p).normalized();
         let outward = vec2(-along.y, along.x);
@@ -154,11 +173,7 @@ fn supports(painter: &Painter, projection: &Projection, lab: &Lab, palette: &Pal
             continue;
         }
         if both == [true, true] {
-            drawn[*a as usize] = true;
-            drawn[*b as usize] = true;
-            if let Some(middle) = middle {
-                drawn[*middle as usize] = true;
-            }
+            side.nodes().iter().for_each(|&n| drawn[n as usize] = true);
             painter.line_segment([p, q], Stroke::new(2.5, palette.support));
             let strokes = ((q - p).length() / HATCH).ceil().clamp(1.0, 500.0);
             for i in 0..strokes as u32 {
@@ -173,8 +188,8 @@ fn supports(painter: &Painter, projection: &Projection, lab: &Lab, palette: &Pal
         }
     }
     for (n, drawn) in (0..).zip(drawn) {
-        if held(n) == [true, true] && !drawn {
-            let p = projection.point(lab.positions()[n as usize]);
+        if pattern.fixed(n) == [true, true] && !drawn {
+            let p = projection.point(positions[n as usize]);
             let foot = [p, p + vec2(-7.0, 11.0), p + vec2(7.0, 11.0)];
             painter.add(egui::Shape::convex_polygon(foot.to_vec(), palette.support.gamma_multiply(0.6), stroke));
         }
@@ -201,8 +216,8 @@ fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, v
     const HEAD: f32 = 11.0;
     // Window angles grow clockwise, moments counter-clockwise.
     let sense = if moment > 0.0 { -1.0 } else { 1.0 };
-    let at = |share: f32| {
-        let angle = sense * share * 1.5 * std::f32::consts::PI - 0.25 * std::f32::consts::PI;
+    let at = |fraction: f32| {
+        let angle = sense * fraction * 1.5 * std::f32::consts::PI - 0.25 * std::f32::consts::PI;
         center + RADIUS * vec2(angle.cos(), angle.sin())
     };
     let arc = (0..=PIECES).map(|i| at(f32::from(i) / f32::from(PIECES))).collect();
@@ -217,29 +232,29 @@ fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, v
 }
 
 /// Where a load pulls now: the middle of its edge, or its node, m.
-fn load_point(lab: &Lab, place: &Place) -> Option<Vector2<f64>> {
-    let mesh = &lab.simulation().system().mesh;
+fn load_point(overlay: &Overlay<'_>, place: &Place) -> Option<Vector2<f64>> {
+    let mesh = overlay.system.mesh();
     let nodes = match place {
         Place::Edge(name) => mesh.edge_nodes(name)?,
         Place::At(at) => vec![mesh.nearest_node((*at).into())],
     };
-    let sum: Vector2<f64> = nodes.iter().map(|&n| lab.positions()[n as usize]).sum();
+    let sum: Vector2<f64> = nodes.iter().map(|&n| overlay.positions[n as usize]).sum();
     (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
 }
 
-fn loads(painter: &Painter, projection: &Projection, lab: &Lab, palette: &Palette, visuals: &Visuals) {
+fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     let view = projection.rect;
-    for load in &lab.scene().loads {
+    for load in &overlay.scene.loads {
         let (vector, from, label) = match load {
             Load::Force { place, force } => {
-                let Some(point) = load_point(lab, place) else {
+                let Some(point) = load_point(overlay, place) else {
                     continue;
                 };
                 let magnitude = force[0].hypot(force[1]);
                 (force, projection.point(point), format!("{} N", format::short(magnitude)))
             }
             Load::Moment { edge, moment } => {
-                if let (Some(point), true) = (load_point(lab, &Place::edge(edge)), *moment != 0.0) {
+                if let (Some(point), true) = (load_point(overlay, &Place::from(edge.as_str())), *moment != 0.0) {
                     turning_arrow(painter, projection.point(point), *moment, palette.load, visuals);
                 }
                 continue;
@@ -285,18 +300,18 @@ pub(super) fn boxed_text(
 }
 
 /// The colour bar with its title and its values, along the bottom of the view.
-fn legend(painter: &Painter, rect: Rect, lab: &Lab, palette: &Palette, visuals: &Visuals) {
+fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     const BAR: Vec2 = vec2(240.0, 12.0);
     const STEPS: u32 = 4;
     const STRIPS: u32 = 128;
     if rect.width() < 460.0 || rect.height() < 120.0 {
         return;
     }
-    let field = lab.view().field;
-    let [low, high] = lab.color_range();
+    let field = overlay.options.field;
+    let [low, high] = overlay.color_range;
     let font = FontId::proportional(12.0);
     let unit = if field.unit().is_empty() { String::new() } else { format!(" [{}]", field.unit()) };
-    let range = if lab.view().fixed_range.is_some() { ", fixed range" } else { "" };
+    let range = if overlay.options.fixed_range.is_some() { ", fixed range" } else { "" };
     let title = painter.layout_no_wrap(format!("{}{unit}{range}", field.name()), font.clone(), palette.text);
     let corner = rect.right_bottom() - vec2(BAR.x + 44.0, 58.0);
     let frame = Rect::from_min_size(corner - vec2(28.0, 4.0), vec2(BAR.x + 60.0, 56.0));
@@ -321,12 +336,12 @@ fn legend(painter: &Painter, rect: Rect, lab: &Lab, palette: &Palette, visuals: 
 }
 
 /// Which line is what.
-fn key(painter: &Painter, rect: Rect, lab: &Lab, palette: &Palette, visuals: &Visuals) {
-    let mut lines = vec![(palette.outline, lab.scene().solver.method.id())];
-    if lab.ghost().is_some() {
+fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+    let mut lines = vec![(palette.outline, overlay.scene.solver.method.id())];
+    if overlay.ghost.is_some() {
         lines.push((palette.ghost, "linear"));
     }
-    if lab.view().rest_outline {
+    if overlay.options.rest_outline {
         lines.push((palette.rest, "at rest"));
     }
     let font = FontId::proportional(12.0);
@@ -374,15 +389,6 @@ fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) 
 fn round_length(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
     [5.0, 2.0].into_iter().map(|m| m * power).find(|&l| l <= length).unwrap_or(power)
-}
-
-/// A bad status, in words, in the view.
-fn words(painter: &Painter, rect: Rect, lab: &Lab, visuals: &Visuals) {
-    let (words, bad) = status_words(lab.simulation().status(), true);
-    if bad {
-        let at = rect.center_top() + vec2(0.0, 46.0);
-        boxed_text(painter, at, Align2::CENTER_TOP, &words, visuals, visuals.error_fg_color, rect.width() - 48.0);
-    }
 }
 
 #[cfg(test)]

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use egui_wgpu::ScreenDescriptor;
 
-use super::ThemeChoice;
 use super::lab::Lab;
 use super::stage::Stage;
-use crate::render::{FORMAT, Gpu, Picture, RenderError, read_texture};
+use super::{AppError, ThemeChoice};
+use crate::picture::Picture;
+use crate::render::{FORMAT, Gpu, RenderError, read_texture};
 use crate::scene::{Scene, Source};
 use crate::simulation::{Simulation, Status};
 use crate::study::{Extent, Study};
@@ -40,14 +41,14 @@ impl Default for ShotOptions {
 /// Solves the scene and writes its picture; returns how the solve ended.
 ///
 /// # Errors
-/// [`RenderError`].
+/// [`AppError::Render`].
 pub fn shot(
     source: Source,
     scene: Scene,
     simulation: Simulation,
     options: &ShotOptions,
     output: &Path,
-) -> Result<Status, RenderError> {
+) -> Result<Status, AppError> {
     let gpu = Gpu::headless()?;
     let mut lab = Lab::new(source, scene, simulation);
     lab.set_adapter(gpu.describe());
@@ -62,7 +63,8 @@ pub fn shot(
         }
     }
     lab.solve();
-    picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?.write_png(output)?;
+    let picture = picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?;
+    picture.write_png(output).map_err(RenderError::from)?;
     Ok(lab.simulation().status().clone())
 }
 

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use egui::ViewportId;
 use egui_wgpu::ScreenDescriptor;
+use thiserror::Error;
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::{StartCause, WindowEvent};
@@ -23,15 +24,30 @@ use crate::simulation::Simulation;
 /// A connection to a display.
 pub struct Display(EventLoop<()>);
 
+/// Why there is no display.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum NoDisplay {
+    /// No variable names one.
+    #[error("there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)")]
+    NotSet,
+    /// It does not answer.
+    #[error(transparent)]
+    Refused(#[from] winit::error::EventLoopError),
+    /// A library that is loaded by name is missing.
+    #[error("an X11 library is missing; scripts/setup installs libxkbcommon-x11-0, libxcursor1 and libxi6")]
+    LibraryMissing,
+}
+
 impl Display {
     /// Connects to the display.
     ///
     /// # Errors
-    /// Why there is none, in words.
-    pub fn open() -> Result<Self, String> {
+    /// Why there is none.
+    pub fn open() -> Result<Self, NoDisplay> {
         #[cfg(all(unix, not(target_os = "macos")))]
         if ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"].iter().all(|name| std::env::var_os(name).is_none()) {
-            return Err("there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)".to_owned());
+            return Err(NoDisplay::NotSet);
         }
         // winit panics where an X library it loads by name is missing; that is no reason to die without a word.
         let hook = std::panic::take_hook();
@@ -39,12 +55,8 @@ impl Display {
         let opened = std::panic::catch_unwind(EventLoop::new);
         std::panic::set_hook(hook);
         match opened {
-            Ok(Ok(event_loop)) => Ok(Self(event_loop)),
-            Ok(Err(error)) => Err(error.to_string()),
-            Err(_) => {
-                Err("an X11 library is missing; scripts/setup installs libxkbcommon-x11-0, libxcursor1 and libxi6"
-                    .to_owned())
-            }
+            Ok(event_loop) => Ok(Self(event_loop?)),
+            Err(_) => Err(NoDisplay::LibraryMissing),
         }
     }
 }
@@ -57,7 +69,7 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Simulatio
     let mut app = App {
         lab: Lab::new(source, scene, simulation),
         ctx: egui::Context::default(),
-        shown: None,
+        open: None,
         wake: None,
         error: None,
     };
@@ -68,14 +80,14 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Simulatio
 struct App {
     lab: Lab,
     ctx: egui::Context,
-    shown: Option<Shown>,
+    open: Option<OpenWindow>,
     /// When egui wants its next frame without an event.
     wake: Option<Instant>,
     error: Option<AppError>,
 }
 
 /// A window with what draws into it. Dropped in this order: the surface before its window.
-struct Shown {
+struct OpenWindow {
     surface: wgpu::Surface<'static>,
     configuration: wgpu::SurfaceConfiguration,
     stage: Stage,
@@ -91,7 +103,7 @@ struct Shown {
 /// Frames without a texture after which the window is given up.
 const MAX_FAILURES: u32 = 10;
 
-impl Shown {
+impl OpenWindow {
     fn new(event_loop: &ActiveEventLoop, lab: &Lab, ctx: &egui::Context) -> Result<Self, AppError> {
         let attributes =
             Window::default_attributes().with_title(lab.title()).with_inner_size(LogicalSize::new(1280.0, 800.0));
@@ -179,34 +191,34 @@ impl Shown {
 impl App {
     /// One frame: an iteration, the panel, the picture. Returns when egui wants the next without being asked.
     fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<(), AppError> {
-        let Some(shown) = &mut self.shown else {
+        let Some(open) = &mut self.open else {
             return Ok(());
         };
-        if shown.hidden {
+        if open.hidden {
             return Ok(());
         }
-        let Some(texture) = shown.acquire()? else {
+        let Some(texture) = open.acquire()? else {
             return Ok(());
         };
         self.lab.advance();
-        let input = shown.input.take_egui_input(&shown.window);
+        let input = open.input.take_egui_input(&open.window);
         let mut requests = Vec::new();
-        let body = shown.stage.body_texture();
+        let body = open.stage.body_texture();
         let mut output = self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui, Some(body))));
-        shown.input.handle_platform_output_with_event_loop(
-            &shown.window,
+        open.input.handle_platform_output_with_event_loop(
+            &open.window,
             event_loop,
             std::mem::take(&mut output.platform_output),
         );
         let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
-        shown.stage.set_textures(&shown.gpu, &mut output.textures_delta);
+        open.stage.set_textures(&open.gpu, &mut output.textures_delta);
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let screen = shown.screen(output.pixels_per_point);
-        shown.stage.paint(&shown.gpu, &view, &screen, &primitives, &self.lab);
-        shown.window.pre_present_notify();
-        shown.gpu.queue.present(texture);
-        shown.stage.free_textures(&mut output.textures_delta);
-        shown.window.set_title(&self.lab.title());
+        let screen = open.screen(output.pixels_per_point);
+        open.stage.paint(&open.gpu, &view, &screen, &primitives, &self.lab);
+        open.window.pre_present_notify();
+        open.gpu.queue.present(texture);
+        open.stage.free_textures(&mut output.textures_delta);
+        open.window.set_title(&self.lab.title());
 
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
         self.schedule(delay);
@@ -219,8 +231,8 @@ impl App {
     fn schedule(&mut self, delay: Duration) {
         self.wake = None;
         if delay.is_zero() {
-            if let Some(shown) = &self.shown {
-                shown.window.request_redraw();
+            if let Some(open) = &self.open {
+                open.window.request_redraw();
             }
         } else {
             // Very long delays overflow, and mean never.
@@ -229,73 +241,83 @@ impl App {
     }
 
     fn screenshot(&mut self, pixels_per_point: f32) {
-        let Some(shown) = &self.shown else { return };
-        let size = [shown.configuration.width, shown.configuration.height];
+        let Some(open) = &self.open else { return };
+        let size = [open.configuration.width, open.configuration.height];
         let saved = free_name().and_then(|path| {
-            let picture = picture(&shown.gpu, &mut self.lab, size, pixels_per_point, self.ctx.theme());
-            picture.and_then(|p| p.write_png(&path)).map(|()| path).map_err(|e| e.to_string())
+            let picture = picture(&open.gpu, &mut self.lab, size, pixels_per_point, self.ctx.theme())?;
+            picture.write_png(&path).map_err(RenderError::from)?;
+            Ok(path)
         });
         let message = match saved {
             Ok(path) => format!("Saved {}", path.display()),
             Err(reason) => format!("No screenshot: {reason}"),
         };
         self.lab.say(&self.ctx, message);
-        shown.window.request_redraw();
+        open.window.request_redraw();
     }
 
     fn quit(&mut self, event_loop: &ActiveEventLoop, error: Option<AppError>) {
         self.error = self.error.take().or(error);
         // The surface goes while the display connection still stands.
-        self.shown = None;
+        self.open = None;
         event_loop.exit();
     }
 }
 
+/// Why there is no screenshot.
+#[derive(Debug, Error)]
+enum ScreenshotError {
+    #[error("warpbeam-001.png to warpbeam-999.png all exist")]
+    NoName,
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
 /// The first of `warpbeam-001.png`, … that does not exist.
-fn free_name() -> Result<PathBuf, String> {
+fn free_name() -> Result<PathBuf, ScreenshotError> {
     (1..1000)
         .map(|i| PathBuf::from(format!("warpbeam-{i:03}.png")))
         .find(|path| !path.exists())
-        .ok_or_else(|| "warpbeam-001.png to warpbeam-999.png all exist".to_owned())
+        .ok_or(ScreenshotError::NoName)
 }
 
 impl ApplicationHandler for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.shown.is_some() {
+        if self.open.is_some() {
             return;
         }
-        match Shown::new(event_loop, &self.lab, &self.ctx) {
-            Ok(shown) => {
-                self.lab.set_adapter(shown.gpu.describe());
-                shown.window.request_redraw();
-                self.shown = Some(shown);
+        match OpenWindow::new(event_loop, &self.lab, &self.ctx) {
+            Ok(open) => {
+                self.lab.set_adapter(open.gpu.describe());
+                open.window.request_redraw();
+                self.open = Some(open);
             }
             Err(error) => self.quit(event_loop, Some(error)),
         }
     }
 
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
-        if let (StartCause::ResumeTimeReached { .. }, Some(shown)) = (cause, &self.shown) {
+        if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &self.open) {
             self.wake = None;
-            shown.window.request_redraw();
+            open.window.request_redraw();
         }
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        let Some(shown) = &mut self.shown else { return };
-        let wants = shown.input.on_window_event(&shown.window, &event);
+        let Some(open) = &mut self.open else { return };
+        let wants = open.input.on_window_event(&open.window, &event);
         match event {
             WindowEvent::CloseRequested | WindowEvent::Destroyed => {
                 return self.quit(event_loop, None);
             }
             WindowEvent::Resized(size) => {
-                shown.resize(size.width, size.height);
-                shown.window.request_redraw();
+                open.resize(size.width, size.height);
+                open.window.request_redraw();
             }
             WindowEvent::Occluded(occluded) => {
-                shown.hidden = occluded;
+                open.hidden = occluded;
                 if !occluded {
-                    shown.window.request_redraw();
+                    open.window.request_redraw();
                 }
             }
             WindowEvent::RedrawRequested => {
@@ -307,7 +329,7 @@ impl ApplicationHandler for App {
             _ => {}
         }
         if wants.repaint {
-            shown.window.request_redraw();
+            open.window.request_redraw();
         }
     }
 

@@ -1,38 +1,40 @@
-//! The sparsity of the stiffness matrix over the free unknowns: found once, filled every frame.
+//! The sparsity of the stiffness matrix over the free unknowns: found once, filled every iteration.
+
+use nalgebra::Vector2;
 
 use crate::mesh::Mesh;
 
-/// Marks a held unknown.
-const HELD: u32 = u32::MAX;
+/// Marks a fixed unknown.
+const FIXED: u32 = u32::MAX;
 
 /// The lower triangle of a symmetric matrix over the free unknowns, in compressed columns with sorted rows.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// An unknown is 2 · node + axis. Those that supports fix are eliminated (the article's 24 → 20).
+#[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
-    /// Start of each column in `row_indices`, and the end of the last.
-    pub column_starts: Vec<usize>,
-    /// Row of every entry.
-    pub row_indices: Vec<usize>,
-    /// The unknown (2 · node + axis) behind each free one.
-    pub free: Vec<u32>,
-    /// The free unknown of each unknown, or [`HELD`].
+    column_starts: Vec<usize>,
+    row_indices: Vec<usize>,
+    free: Vec<u32>,
+    /// The free number of each unknown, or [`FIXED`].
     free_of: Vec<u32>,
+    /// 1 for free components of nodal vectors, 0 for fixed ones.
+    mask: Vec<Vector2<f64>>,
 }
 
 impl Pattern {
-    /// The pattern of a mesh whose unknowns `held` (2 · node + axis) are eliminated. `groups` are nodes that are coupled
-    /// though no element has them all.
-    #[must_use]
-    pub fn new(mesh: &Mesh, held: &[bool], groups: &[Vec<u32>]) -> Self {
+    /// The pattern of a mesh whose unknowns `fixed` are eliminated. `groups` are nodes that are coupled though no
+    /// element has them all.
+    pub(super) fn new(mesh: &Mesh, fixed: &[bool], groups: &[Vec<u32>]) -> Self {
         let mut free = Vec::new();
-        let mut free_of = vec![HELD; held.len()];
-        for ((unknown, held), slot) in (0..).zip(held).zip(&mut free_of) {
-            if !held {
+        let mut free_of = vec![FIXED; fixed.len()];
+        for ((unknown, fixed), slot) in (0..).zip(fixed).zip(&mut free_of) {
+            if !fixed {
                 *slot = free.len() as u32;
                 free.push(unknown);
             }
         }
-        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); mesh.nodes.len()];
-        for coupled in mesh.triangles().chain(groups.iter().map(Vec::as_slice)) {
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); mesh.nodes().len()];
+        for coupled in mesh.elements().chain(groups.iter().map(Vec::as_slice)) {
             for &a in coupled {
                 neighbours[a as usize].extend(coupled);
             }
@@ -46,11 +48,12 @@ impl Pattern {
         for (column, &unknown) in free.iter().enumerate() {
             // Sorted neighbours have sorted unknowns, and these sorted free numbers.
             let rows = neighbours[unknown as usize / 2].iter().flat_map(|&n| [2 * n, 2 * n + 1]);
-            let rows = rows.map(|unknown| free_of[unknown as usize]).filter(|&row| row != HELD);
+            let rows = rows.map(|unknown| free_of[unknown as usize]).filter(|&row| row != FIXED);
             row_indices.extend(rows.map(|row| row as usize).filter(|&row| row >= column));
             column_starts.push(row_indices.len());
         }
-        Self { column_starts, row_indices, free, free_of }
+        let mask = fixed.chunks_exact(2).map(|f| Vector2::new(f[0], f[1]).map(|f| if f { 0.0 } else { 1.0 }));
+        Self { column_starts, row_indices, free, free_of, mask: mask.collect() }
     }
 
     /// Number of free unknowns.
@@ -65,31 +68,80 @@ impl Pattern {
         self.row_indices.len()
     }
 
-    /// Whether an unknown (2 · node + axis) is held.
+    /// Start of each column in [`Self::row_indices`], and the end of the last.
     #[must_use]
-    pub fn is_held(&self, unknown: usize) -> bool {
-        self.free_of[unknown] == HELD
+    pub fn column_starts(&self) -> &[usize] {
+        &self.column_starts
     }
 
-    /// y = K x for the symmetric matrix with these lower-triangle values.
-    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for (column, bounds) in self.column_starts.windows(2).enumerate() {
-            let entries = bounds[0]..bounds[1];
-            let mut sum = 0.0;
-            for (&row, &value) in self.row_indices[entries.clone()].iter().zip(&values[entries]) {
-                sum += value * x[row];
-                if row != column {
-                    y[row] += value * x[column];
-                }
-            }
-            y[column] += sum;
+    /// Row of every entry.
+    #[must_use]
+    pub fn row_indices(&self) -> &[usize] {
+        &self.row_indices
+    }
+
+    /// The unknown (2 · node + axis) behind each free one.
+    #[must_use]
+    pub fn free(&self) -> &[u32] {
+        &self.free
+    }
+
+    /// 1 for free components of nodal vectors, 0 for fixed ones.
+    #[must_use]
+    pub fn mask(&self) -> &[Vector2<f64>] {
+        &self.mask
+    }
+
+    /// Whether both components of a node, x and y, are fixed.
+    #[must_use]
+    pub fn fixed(&self, node: u32) -> [bool; 2] {
+        [0, 1].map(|axis| self.free_of.get(2 * node as usize + axis).is_none_or(|&f| f == FIXED))
+    }
+
+    /// Whether a displacement leaves all fixed unknowns where they are at rest.
+    #[must_use]
+    pub fn are_fixed_at_rest(&self, u: &[Vector2<f64>]) -> bool {
+        u.iter().zip(&self.mask).all(|(u, m)| (m.x > 0.0 || u.x == 0.0) && (m.y > 0.0 || u.y == 0.0))
+    }
+
+    /// Takes a nodal vector's free components.
+    pub fn restrict(&self, nodal: &[Vector2<f64>], free: &mut [f64]) {
+        for (value, &unknown) in free.iter_mut().zip(&self.free) {
+            *value = nodal[unknown as usize / 2][unknown as usize % 2];
         }
     }
 
+    /// Adds `factor` times a vector over the free unknowns to a nodal one. What supports fix does not move.
+    pub fn add_free(&self, free: &[f64], factor: f64, nodal: &mut [Vector2<f64>]) {
+        for (value, &unknown) in free.iter().zip(&self.free) {
+            nodal[unknown as usize / 2][unknown as usize % 2] += factor * value;
+        }
+    }
+
+    /// The product of a nodal vector and one over the free unknowns.
+    #[must_use]
+    pub fn dot(&self, nodal: &[Vector2<f64>], free: &[f64]) -> f64 {
+        free.iter().zip(&self.free).map(|(value, &u)| value * nodal[u as usize / 2][u as usize % 2]).sum()
+    }
+
+    /// The Euclidean norm of a nodal vector's free components, whatever their size; not finite where one of them is not.
+    #[must_use]
+    pub fn norm(&self, nodal: &[Vector2<f64>]) -> f64 {
+        let free = || nodal.iter().zip(&self.mask).map(|(v, m)| v.zip_map(m, |v, m| if m > 0.0 { v } else { 0.0 }));
+        let squares = |scale: f64| free().map(|v| (v * scale).norm_squared()).sum::<f64>();
+        let plain = squares(1.0);
+        // Squares of ordinary numbers stay in range; others are scaled first.
+        if (1e-200..1e200).contains(&plain) || plain.is_nan() {
+            return plain.sqrt();
+        }
+        let largest = free().map(|v| v.amax()).fold(0.0, f64::max);
+        let scale = 1.0 / largest;
+        if scale.is_normal() { largest * squares(scale).sqrt() } else { largest }
+    }
+
     /// Where the entries of one element's matrix go: node blocks (a, b), b ≤ a, row by row; the four entries of a block,
-    /// of a diagonal block the three of its lower triangle. Entries of held unknowns go to the slot after the last.
-    pub(super) fn element_slots(&self, nodes: &[u32]) -> Vec<u32> {
+    /// of a diagonal block the three of its lower triangle.
+    pub(super) fn block_slots(&self, nodes: &[u32]) -> Vec<u32> {
         let mut slots = Vec::with_capacity(nodes.len() * (2 * nodes.len() + 1));
         for (i, &a) in nodes.iter().enumerate() {
             for &b in &nodes[..i] {
@@ -104,10 +156,10 @@ impl Pattern {
         slots
     }
 
-    /// Where the entry of two unknowns (2 · node + axis) is; the slot after the last where one is held.
-    pub(super) fn slot(&self, i: u32, j: u32) -> u32 {
+    /// Where the entry of two unknowns is; the slot after the last where one is fixed.
+    fn slot(&self, i: u32, j: u32) -> u32 {
         let (i, j) = (self.free_of[i as usize], self.free_of[j as usize]);
-        if i == HELD || j == HELD {
+        if i == FIXED || j == FIXED {
             return self.entries() as u32;
         }
         let (row, column) = (i.max(j) as usize, i.min(j) as usize);

@@ -1,180 +1,214 @@
-//! Elements: shape functions, a quadrature rule, and the linear stiffness Ke = ∫ Bᵀ C B t dA they make. Pure.
+//! Elements: what each says of itself ([`ElementType`]), and the loops over many of one kind ([`Elements`]).
 //!
-//! Assembly, methods and drawing see an element only as a list of [`QuadraturePoint`]s: a weight and the gradients of
-//! its N shape functions.
+//! An element is one file that says everything of it, and a line in [`ELEMENTS`].
 
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{Matrix2, Vector2};
 
 use crate::material::Lame;
 use crate::rotation::Rotation;
 use crate::scene::ElementKind;
 
+pub mod cell;
+mod isoparametric;
 mod side;
-pub mod t3;
-pub mod t6;
+mod t3;
+mod t6;
 
-pub use side::{side_shape, side_weights};
+pub use cell::{Cell, Lattice};
+pub use isoparametric::{Isoparametric, QuadraturePoint};
+pub use side::side_weights;
 
-/// What a mesh, its loads and its picture ask of an element, whichever it is.
-impl ElementKind {
+/// What a mesh, its loads, its files and its picture ask of an element, whichever it is.
+#[derive(Debug)]
+pub struct ElementType {
+    /// What scene files name.
+    pub kind: ElementKind,
+    /// The name scene files use.
+    pub id: &'static str,
     /// One sentence for tooltips.
-    #[must_use]
-    pub fn about(self) -> &'static str {
-        match self {
-            Self::T3 => t3::ABOUT,
-            Self::T6 => t6::ABOUT,
-        }
-    }
-
-    /// Nodes a triangle: corners, then the midpoints of sides 12, 23, 31 where there are any.
-    #[must_use]
-    pub fn nodes(self) -> usize {
-        match self {
-            Self::T3 => t3::NODES,
-            Self::T6 => t6::NODES,
-        }
-    }
-
-    /// Degree of the shape functions: a side has one node more than this.
-    #[must_use]
-    pub fn degree(self) -> u32 {
-        match self {
-            Self::T3 => 1,
-            Self::T6 => 2,
-        }
-    }
-
-    /// Nₐ at the area coordinates `l`.
-    #[must_use]
-    pub fn shape(self, l: [f64; 3]) -> Vec<f64> {
-        match self {
-            Self::T3 => t3::shape(l).to_vec(),
-            Self::T6 => t6::shape(l).to_vec(),
-        }
-    }
-
-    /// (∂Nₐ/∂l₂, ∂Nₐ/∂l₃) at the area coordinates `l`, with l₁ = 1 − l₂ − l₃.
-    #[must_use]
-    pub fn local_gradients(self, l: [f64; 3]) -> Vec<Vector2<f64>> {
-        match self {
-            Self::T3 => t3::local_gradients().to_vec(),
-            Self::T6 => t6::local_gradients(l).to_vec(),
-        }
-    }
-
-    /// Area coordinates of the quadrature points.
-    #[must_use]
-    pub fn quadrature_points(self) -> &'static [[f64; 3]] {
-        match self {
-            Self::T3 => &t3::POINTS,
-            Self::T6 => &t6::POINTS,
-        }
-    }
-
+    pub about: &'static str,
+    /// Its shape.
+    pub cell: &'static Cell,
+    /// Reference coordinates of the nodes: corners first, counter-clockwise.
+    pub nodes: &'static [[f64; 2]],
+    /// Nodes along each side, counter-clockwise, ends included.
+    pub sides: &'static [&'static [usize]],
+    /// Shape functions Nₐ at a point in reference coordinates.
+    pub shape: fn(at: [f64; 2]) -> Vec<f64>,
+    /// (∂Nₐ/∂ξ, ∂Nₐ/∂η) at a point.
+    pub local_gradients: fn(at: [f64; 2]) -> Vec<Vector2<f64>>,
+    /// The rule of the stiffness; strains are known at its points.
+    pub points: &'static [RulePoint],
+    /// The weights of the quadrature points' values in the value at a point: exact for fields as the strain of a
+    /// straight-sided element can be.
+    pub point_weights: fn(at: [f64; 2]) -> Vec<f64>,
+    /// The rule of mass and weight: exact for NₐN_b on straight-sided elements.
+    pub mass_points: &'static [RulePoint],
+    /// Pieces in which a side is drawn: more than one where sides may be curved.
+    pub drawn_pieces: u32,
     /// VTK's number for the element.
-    #[must_use]
-    pub fn vtk_cell_type(self) -> u8 {
-        match self {
-            Self::T3 => 5,
-            Self::T6 => 22,
-        }
-    }
+    pub vtk_type: u8,
+    /// Gmsh's number for the element.
+    pub gmsh_type: u32,
+    /// The loops over many of these elements.
+    pub loops: MakeElements,
 }
 
-/// One quadrature point of an element with `N` nodes.
+/// Makes the loops over elements with these rest nodes (m) and node numbers, element by element.
+pub type MakeElements = fn(nodes: &[Vector2<f64>], connectivity: &[u32]) -> Box<dyn Elements>;
+
+/// A point of a quadrature rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QuadraturePoint<const N: usize> {
-    /// Nₐ.
-    pub shape: [f64; N],
-    /// ∇Nₐ with respect to the rest position, 1/m.
-    pub gradients: [Vector2<f64>; N],
-    /// Quadrature weight times Jacobian times thickness, m³.
-    pub volume: f64,
+pub struct RulePoint {
+    /// Reference coordinates.
+    pub at: [f64; 2],
+    /// Weight; the weights of a rule sum to the cell's area.
+    pub weight: f64,
 }
 
-impl<const N: usize> QuadraturePoint<N> {
-    /// The displacement gradient H = F − I = Σ uₐ ⊗ ∇Nₐ.
-    ///
-    /// From displacements, not positions: small strains keep their digits however large the coordinates.
-    #[must_use]
-    #[inline]
-    pub fn displacement_gradient(&self, u: &[Vector2<f64>; N]) -> Matrix2<f64> {
-        let mut h = Matrix2::zeros();
-        for (u, g) in u.iter().zip(&self.gradients) {
-            h += u * g.transpose();
-        }
-        h
-    }
+macro_rules! registry {
+    ($($kind:ident => $entry:path),* $(,)?) => {
+        /// Every element there is.
+        pub static ELEMENTS: &[&ElementType] = &[$(&$entry),*];
 
-    /// The blocks K_ab of R Ke Rᵀ, N/m, for this point's share of Ke, article eq. (2).
-    ///
-    /// With g = R ∇Nₐ and h = R ∇N_b, K_ab = v (λ g hᵀ + μ (g·h) I + μ h gᵀ): turning the gradients is cheaper than
-    /// turning the matrix, and gives the same. `block(a, b, K_ab)` is called for b ≤ a.
-    #[inline]
-    pub fn warped_stiffness(&self, lame: Lame, r: Rotation, mut block: impl FnMut(usize, usize, Matrix2<f64>)) {
-        let g = self.gradients.map(|g| r.apply(g));
-        let (lambda, mu) = (self.volume * lame.lambda, self.volume * lame.mu);
-        for a in 0..N {
-            for b in 0..=a {
-                let shear = mu * g[a].dot(&g[b]);
-                let k = g[a] * (lambda * g[b]).transpose() + g[b] * (mu * g[a]).transpose();
-                block(a, b, Matrix2::new(k.m11 + shear, k.m12, k.m21, k.m22 + shear));
+        impl ElementKind {
+            /// What the element says of itself.
+            #[must_use]
+            pub fn entry(self) -> &'static ElementType {
+                match self {
+                    $(Self::$kind => &$entry),*
+                }
             }
         }
-    }
+    };
+}
 
-    /// The blocks of G, the geometric part of the exact tangent A + G, N/m.
-    ///
-    /// The warped force is the exact gradient of the corotated energy; its derivative through R adds, in F-space,
-    /// (tr T / tr S) τ τᵀ with τ = vec(R J)/√2, J a quarter turn, T the Biot stress. Tension makes it positive,
-    /// compression negative. `share` of tr T / tr S picks the part wanted: all of it, or only what is positive.
-    #[inline]
-    pub fn geometric_stiffness(
-        &self,
-        lame: Lame,
-        r: Rotation,
-        h: &Matrix2<f64>,
-        share: GeometricShare,
-        mut block: impl FnMut(usize, usize, Matrix2<f64>),
-    ) {
-        let strain = warped_strain(r, h);
-        let trace = 2.0 + strain.trace();
-        // Where the body is crushed to nothing tr S vanishes and the term has no bound; the floor keeps the step finite.
-        let ratio = (2.0 * (lame.mu + lame.lambda)) * strain.trace() / trace.max(SMALLEST_STRETCH_TRACE);
-        let ratio = match share {
-            GeometricShare::All => ratio,
-            GeometricShare::Tensile => ratio.max(0.0),
-        };
-        let quarter = Rotation { c: -r.s, s: r.c };
-        let scaled = 0.5 * self.volume * ratio;
-        let turned = self.gradients.map(|g| quarter.apply(g));
-        for a in 0..N {
-            for b in 0..=a {
-                block(a, b, turned[a] * (scaled * turned[b]).transpose());
-            }
-        }
-    }
+registry! {
+    T3 => t3::T3,
+    T6 => t6::T6,
+}
 
-    /// The warped element force R Ke (Rᵀ x − X), N, given the displacement gradient.
+impl ElementKind {
+    /// The name scene files use.
     #[must_use]
-    #[inline]
-    pub fn warped_force(&self, lame: Lame, r: Rotation, h: &Matrix2<f64>) -> [Vector2<f64>; N] {
-        let stress = r.matrix() * biot_stress(lame, &warped_strain(r, h)) * self.volume;
-        self.gradients.map(|g| stress * g)
+    pub fn id(self) -> &'static str {
+        self.entry().id
+    }
+
+    /// Every element there is.
+    pub fn all() -> impl Iterator<Item = Self> + Clone {
+        ELEMENTS.iter().map(|e| e.kind)
     }
 }
 
-/// Which part of G is wanted.
+impl ElementType {
+    /// The Jacobian ∂X/∂(ξ, η) at a point of an element with these rest nodes.
+    #[must_use]
+    pub fn jacobian(&self, nodes: &[Vector2<f64>], at: [f64; 2]) -> Matrix2<f64> {
+        let mut jacobian = Matrix2::zeros();
+        for (x, g) in nodes.iter().zip((self.local_gradients)(at)) {
+            jacobian += x * g.transpose();
+        }
+        jacobian
+    }
+
+    /// The element's nodes in the order that turns it over: counter-clockwise becomes clockwise.
+    #[must_use]
+    pub fn turned_over(&self) -> Vec<usize> {
+        // Mirroring the cell at its diagonal exchanges ξ and η.
+        let mirrored = |&[x, y]: &[f64; 2]| self.nodes.iter().position(|n| *n == [y, x]).unwrap_or_default();
+        self.nodes.iter().map(mirrored).collect()
+    }
+
+    /// The node at this place in reference coordinates, if there is one.
+    #[must_use]
+    pub fn node_at(&self, at: [f64; 2]) -> Option<usize> {
+        const SAME: f64 = 1e-9;
+        self.nodes.iter().position(|n| (n[0] - at[0]).abs() < SAME && (n[1] - at[1]).abs() < SAME)
+    }
+
+    /// ∫ Nₐ dA over an element with these rest nodes, m², for every node.
+    #[must_use]
+    pub fn nodal_areas(&self, nodes: &[Vector2<f64>]) -> Vec<f64> {
+        let mut areas = vec![0.0; nodes.len()];
+        for point in self.mass_points {
+            let area = point.weight * self.jacobian(nodes, point.at).determinant();
+            areas.iter_mut().zip((self.shape)(point.at)).for_each(|(sum, n)| *sum += area * n);
+        }
+        areas
+    }
+}
+
+/// Which matrix a sweep adds up beside the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GeometricShare {
-    /// All of it: A + G is the exact Hessian.
-    All,
-    /// Where it is positive: A + max(G, 0) is positive definite, and its steps descend.
-    Tensile,
+pub enum Tangent {
+    /// A = Σ R Ke Rᵀ, the article's matrix: the derivative of the force at fixed rotations.
+    Warped,
+    /// A + G: the exact Hessian of the corotated energy.
+    Exact,
+    /// A + max(G, 0): positive definite, and its steps descend.
+    Definite,
+    /// G alone.
+    Geometric,
 }
 
-/// Floor of tr S in G: one percent of its value at rest.
-const SMALLEST_STRETCH_TRACE: f64 = 0.02;
+/// Where a sweep adds a matrix.
+#[derive(Debug)]
+pub struct MatrixSum<'a> {
+    /// Which matrix.
+    pub tangent: Tangent,
+    /// Where each entry of every element's lower triangle goes: node blocks (a, b), b ≤ a, row by row; the four entries
+    /// of a block, of a diagonal block the three of its lower triangle.
+    pub slots: &'a [u32],
+    /// The values.
+    pub values: &'a mut [f64],
+}
+
+/// Receives a quadrature point's number, its displacement gradient H and its strain sym(RᵀF) − I.
+pub type StrainVisitor<'a> = dyn FnMut(usize, &Matrix2<f64>, &Matrix2<f64>) + 'a;
+
+/// The elements of a mesh, all of one kind. Slices over quadrature points or rotations hold them element by element;
+/// slices over nodes hold them in the mesh's order. Moduli are times the thickness, N/m.
+pub trait Elements: std::fmt::Debug + Send + Sync {
+    /// Rotations of the whole mesh.
+    fn rotation_count(&self) -> usize;
+
+    /// Quadrature points of the whole mesh.
+    fn point_count(&self) -> usize;
+
+    /// Quadrature points of one element.
+    fn points_per_element(&self) -> usize;
+
+    /// The number of the rotation that a quadrature point is seen with.
+    fn rotation_of(&self, point: usize) -> usize;
+
+    /// The area that a quadrature point stands for, m².
+    fn point_area(&self, point: usize) -> f64;
+
+    /// Sets every R to the polar factor of F(x); where that is undefined R stays.
+    fn rotations(&self, u: &[Vector2<f64>], r: &mut [Rotation]);
+
+    /// One sweep: adds the warped force Σ R Ke (Rᵀ x − X) to `force`, its elements' absolute values by component to
+    /// `magnitude`, N, and a tangent to `matrix` where one is wanted, N/m.
+    fn linearize(
+        &self,
+        moduli: Lame,
+        u: &[Vector2<f64>],
+        r: &[Rotation],
+        force: &mut [Vector2<f64>],
+        magnitude: &mut [Vector2<f64>],
+        matrix: Option<MatrixSum<'_>>,
+    );
+
+    /// Elastic energy Σ ψ dA, J.
+    fn energy(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation]) -> f64;
+
+    /// The smallest det F: area over that at rest, negative where an element is turned inside out.
+    fn smallest_area_ratio(&self, u: &[Vector2<f64>]) -> f64;
+
+    /// Calls `visit` for every quadrature point.
+    fn visit_strains(&self, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>);
+}
 
 /// The strain the element sees once turned back, sym(Rᵀ F) − I with F = I + H.
 ///
@@ -190,69 +224,4 @@ pub fn warped_strain(r: Rotation, h: &Matrix2<f64>) -> Matrix2<f64> {
     // The ±s of Rᵀ cancel in the symmetric part.
     let xy = 0.5 * (c * (h.m12 + h.m21) + s * (h.m22 - h.m11));
     Matrix2::new(xx, xy, xy, yy)
-}
-
-/// T = 2 μ ε + λ tr(ε) I, Pa.
-#[must_use]
-#[inline]
-pub fn biot_stress(lame: Lame, strain: &Matrix2<f64>) -> Matrix2<f64> {
-    strain * (2.0 * lame.mu) + Matrix2::identity() * (lame.lambda * strain.trace())
-}
-
-/// ψ = μ ‖ε‖² + λ/2 tr²(ε), J/m³ (corotated linear elasticity).
-#[must_use]
-#[inline]
-pub fn energy_density(lame: Lame, strain: &Matrix2<f64>) -> f64 {
-    lame.mu * strain.norm_squared() + 0.5 * lame.lambda * strain.trace().powi(2)
-}
-
-/// An element's stiffness written out, as the article does it: Ke, R Ke, R Ke Rᵀ and R Ke X.
-///
-/// For learning and for tests; the frame itself never forms these matrices one element at a time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ElementStiffness {
-    /// Ke, 2N×2N, N/m; unknowns x₁ y₁ x₂ y₂ ….
-    pub ke: DMatrix<f64>,
-}
-
-impl ElementStiffness {
-    /// Ke = ∫ Bᵀ C B t dA (eqs. 1, 3), summed over quadrature points.
-    #[must_use]
-    pub fn new<const N: usize>(points: &[QuadraturePoint<N>], lame: Lame) -> Self {
-        let mut ke = DMatrix::zeros(2 * N, 2 * N);
-        for point in points {
-            point.warped_stiffness(lame, Rotation::IDENTITY, |a, b, k| {
-                let sum = ke.fixed_view::<2, 2>(2 * a, 2 * b) + k;
-                ke.fixed_view_mut::<2, 2>(2 * a, 2 * b).copy_from(&sum);
-                ke.fixed_view_mut::<2, 2>(2 * b, 2 * a).copy_from(&sum.transpose());
-            });
-        }
-        Self { ke }
-    }
-
-    fn turn(&self, r: Rotation) -> DMatrix<f64> {
-        let mut turn = DMatrix::zeros(self.ke.nrows(), self.ke.nrows());
-        for a in 0..self.ke.nrows() / 2 {
-            turn.fixed_view_mut::<2, 2>(2 * a, 2 * a).copy_from(&r.matrix());
-        }
-        turn
-    }
-
-    /// R Ke, the article's m_cMatRK.
-    #[must_use]
-    pub fn rk(&self, r: Rotation) -> DMatrix<f64> {
-        self.turn(r) * &self.ke
-    }
-
-    /// R Ke Rᵀ, the article's m_cMatRKRT.
-    #[must_use]
-    pub fn rkrt(&self, r: Rotation) -> DMatrix<f64> {
-        self.rk(r) * self.turn(r).transpose()
-    }
-
-    /// The force offset R Ke X, N, for rest positions X of the element's nodes.
-    #[must_use]
-    pub fn force_offset(&self, r: Rotation, rest: &DVector<f64>) -> DVector<f64> {
-        self.rk(r) * rest
-    }
 }

@@ -1,4 +1,4 @@
-//! Sides of triangles: two nodes, or two ends and a node between them.
+//! Sides of elements: nodes along a line, straight or curved.
 
 use nalgebra::Vector2;
 
@@ -6,29 +6,34 @@ use nalgebra::Vector2;
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
-/// Shape functions of a side at ξ in [−1, 1]: of its two ends, and of the node between them, 0 where there is none.
+/// Lagrange's polynomials on `n` equally spaced nodes over [−1, 1], and their derivatives, at `xi`.
+fn lagrange(n: usize, xi: f64) -> Vec<(f64, f64)> {
+    let node = |i: usize| 2.0 * i as f64 / (n - 1) as f64 - 1.0;
+    let others = |a: usize| (0..n).filter(move |&b| b != a);
+    (0..n)
+        .map(|a| {
+            let factor = |b: usize| (xi - node(b)) / (node(a) - node(b));
+            let value = others(a).map(factor).product();
+            let slope = others(a).map(|b| {
+                let rest: f64 = others(a).filter(|&c| c != b).map(factor).product();
+                rest / (node(a) - node(b))
+            });
+            (value, slope.sum())
+        })
+        .collect()
+}
+
+/// ∫ Nₐ ds for nodes in their order along a side, m: the nodes' weights in a uniform traction.
 #[must_use]
-pub fn side_shape(xi: f64, quadratic: bool) -> [f64; 3] {
-    if quadratic {
-        [0.5 * xi * (xi - 1.0), 0.5 * xi * (xi + 1.0), 1.0 - xi * xi]
-    } else {
-        [0.5 * (1.0 - xi), 0.5 * (1.0 + xi), 0.0]
+pub fn side_weights(nodes: &[Vector2<f64>]) -> Vec<f64> {
+    let mut weights = vec![0.0; nodes.len()];
+    if nodes.len() < 2 {
+        return weights;
     }
-}
-
-fn shape_derivative(xi: f64, quadratic: bool) -> [f64; 3] {
-    if quadratic { [xi - 0.5, xi + 0.5, -2.0 * xi] } else { [-0.5, 0.5, 0.0] }
-}
-
-/// ∫ Nₐ ds for the two ends and the middle node (0 where there is none), m: the nodes' shares of a unit traction.
-#[must_use]
-pub fn side_weights(ends: [Vector2<f64>; 2], middle: Option<Vector2<f64>>) -> [f64; 3] {
-    let nodes = [ends[0], ends[1], middle.unwrap_or_default()];
-    let mut weights = [0.0; 3];
     for (xi, weight) in GAUSS {
-        let derivative = shape_derivative(xi, middle.is_some());
-        let tangent: Vector2<f64> = nodes.iter().zip(derivative).map(|(x, d)| x * d).sum();
-        for (sum, n) in weights.iter_mut().zip(side_shape(xi, middle.is_some())) {
+        let shape = lagrange(nodes.len(), xi);
+        let tangent: Vector2<f64> = nodes.iter().zip(&shape).map(|(x, (_, slope))| x * *slope).sum();
+        for (sum, (n, _)) in weights.iter_mut().zip(&shape) {
             *sum += weight * tangent.norm() * n;
         }
     }

@@ -2,41 +2,30 @@
 
 use nalgebra::Vector2;
 
-use super::QuadraturePoint;
+use super::cell::TRIANGLE;
+use super::{ElementType, Isoparametric, RulePoint};
+use crate::scene::ElementKind;
 
-/// One sentence about it.
-pub(super) const ABOUT: &str = "Three nodes, constant strain: cheap, and too stiff in bending.";
-
-/// Nodes of the element.
-pub const NODES: usize = 3;
-
-/// Quadrature points: the centroid.
-pub const POINTS: [[f64; 3]; 1] = [[1.0 / 3.0; 3]];
-
-/// Nₐ at the area coordinates `l`: the coordinates themselves.
-#[must_use]
-pub fn shape(l: [f64; 3]) -> [f64; NODES] {
-    l
-}
-
-/// (∂Nₐ/∂l₂, ∂Nₐ/∂l₃) with l₁ = 1 − l₂ − l₃.
-#[must_use]
-pub fn local_gradients() -> [Vector2<f64>; NODES] {
-    [Vector2::new(-1.0, -1.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)]
-}
-
-/// The one quadrature point of a triangle with these rest corners (counter-clockwise, m) and thickness, m.
-///
-/// ∇Nₐ is the opposite side turned by a quarter, over twice the area. That there is an area, [`crate::mesh::Mesh`] has
-/// checked.
-#[must_use]
-pub fn quadrature(corners: [Vector2<f64>; NODES], thickness: f64) -> [QuadraturePoint<NODES>; 1] {
-    let [a, b, c] = corners;
-    let doubled = (b - a).perp(&(c - a));
-    let gradient = |side: Vector2<f64>| Vector2::new(-side.y, side.x) / doubled;
-    [QuadraturePoint {
-        shape: shape(POINTS[0]),
-        gradients: [gradient(c - b), gradient(a - c), gradient(b - a)],
-        volume: 0.5 * doubled * thickness,
-    }]
-}
+/// The element.
+pub(super) static T3: ElementType = ElementType {
+    kind: ElementKind::T3,
+    id: "t3",
+    about: "Three nodes, constant strain: cheap, and too stiff in bending.",
+    cell: &TRIANGLE,
+    nodes: TRIANGLE.corners,
+    sides: &[&[0, 1], &[1, 2], &[2, 0]],
+    shape: |[x, y]| vec![1.0 - x - y, x, y],
+    local_gradients: |_| vec![Vector2::new(-1.0, -1.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)],
+    points: &[RulePoint { at: [1.0 / 3.0; 2], weight: 0.5 }],
+    point_weights: |_| vec![1.0],
+    // Degree 2: products of two linear functions.
+    mass_points: &[
+        RulePoint { at: [1.0 / 6.0, 1.0 / 6.0], weight: 1.0 / 6.0 },
+        RulePoint { at: [2.0 / 3.0, 1.0 / 6.0], weight: 1.0 / 6.0 },
+        RulePoint { at: [1.0 / 6.0, 2.0 / 3.0], weight: 1.0 / 6.0 },
+    ],
+    drawn_pieces: 1,
+    vtk_type: 5,
+    gmsh_type: 2,
+    loops: |nodes, connectivity| Box::new(Isoparametric::<3, 1>::new(&T3, nodes, connectivity)),
+};

@@ -1,33 +1,61 @@
-//! The six-node triangle: quadratic shape functions, three quadrature points, curved edges.
+//! The six-node triangle: quadratic shape functions, three quadrature points with a rotation each, curved sides.
 //!
-//! Nodes: corners, then the midpoints of sides 12, 23, 31. One rotation a quadrature point. It does not lock in bending.
+//! It does not lock in bending.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
-use super::QuadraturePoint;
+use super::cell::TRIANGLE;
+use super::{ElementType, Isoparametric, RulePoint};
+use crate::scene::ElementKind;
 
-/// One sentence about it.
-pub(super) const ABOUT: &str = "Six nodes, linear strain: bends as it should.";
+/// Dunavant 1985, degree 4: six points in two groups of three.
+const NEAR: [f64; 2] = [0.445_948_490_915_965, 0.108_103_018_168_070];
+const FAR: [f64; 2] = [0.091_576_213_509_771, 0.816_847_572_980_459];
+const NEAR_WEIGHT: f64 = 0.5 * 0.223_381_589_678_011;
+const FAR_WEIGHT: f64 = 0.5 * 0.109_951_743_655_322;
 
-/// Nodes of the element.
-pub const NODES: usize = 6;
+/// The element: corners, then the midpoints of sides 12, 23, 31.
+pub(super) static T6: ElementType = ElementType {
+    kind: ElementKind::T6,
+    id: "t6",
+    about: "Six nodes, linear strain: bends as it should.",
+    cell: &TRIANGLE,
+    nodes: &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]],
+    sides: &[&[0, 3, 1], &[1, 4, 2], &[2, 5, 0]],
+    shape,
+    local_gradients,
+    // Degree 2, equal weights: exact for Ke of straight-sided triangles.
+    points: &[
+        RulePoint { at: [1.0 / 6.0, 1.0 / 6.0], weight: 1.0 / 6.0 },
+        RulePoint { at: [2.0 / 3.0, 1.0 / 6.0], weight: 1.0 / 6.0 },
+        RulePoint { at: [1.0 / 6.0, 2.0 / 3.0], weight: 1.0 / 6.0 },
+    ],
+    // The linear function with given values at the three points: 2 l − 1/3 in area coordinates.
+    point_weights: |[x, y]| [1.0 - x - y, x, y].map(|l| 2.0 * l - 1.0 / 3.0).to_vec(),
+    // Degree 4: products of two quadratic functions. The stiffness's three points would give a mass of rank 3.
+    mass_points: &[
+        RulePoint { at: [NEAR[0], NEAR[0]], weight: NEAR_WEIGHT },
+        RulePoint { at: [NEAR[1], NEAR[0]], weight: NEAR_WEIGHT },
+        RulePoint { at: [NEAR[0], NEAR[1]], weight: NEAR_WEIGHT },
+        RulePoint { at: [FAR[0], FAR[0]], weight: FAR_WEIGHT },
+        RulePoint { at: [FAR[1], FAR[0]], weight: FAR_WEIGHT },
+        RulePoint { at: [FAR[0], FAR[1]], weight: FAR_WEIGHT },
+    ],
+    drawn_pieces: 4,
+    vtk_type: 22,
+    gmsh_type: 9,
+    loops: |nodes, connectivity| Box::new(Isoparametric::<6, 3>::new(&T6, nodes, connectivity)),
+};
 
-/// Quadrature points: the rule of degree 2 with equal weights, exact for Ke of straight-sided triangles.
-pub const POINTS: [[f64; 3]; 3] =
-    [[2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0]];
-
-/// Nₐ at the area coordinates `l`: lₐ (2 lₐ − 1) at corners, 4 lₐ l_b between them.
-#[must_use]
-pub fn shape(l: [f64; 3]) -> [f64; NODES] {
-    let [a, b, c] = l;
-    [a * (2.0 * a - 1.0), b * (2.0 * b - 1.0), c * (2.0 * c - 1.0), 4.0 * a * b, 4.0 * b * c, 4.0 * c * a]
+/// lₐ (2 lₐ − 1) at corners, 4 lₐ l_b between them, in area coordinates l.
+fn shape([b, c]: [f64; 2]) -> Vec<f64> {
+    let a = 1.0 - b - c;
+    vec![a * (2.0 * a - 1.0), b * (2.0 * b - 1.0), c * (2.0 * c - 1.0), 4.0 * a * b, 4.0 * b * c, 4.0 * c * a]
 }
 
-/// (∂Nₐ/∂l₂, ∂Nₐ/∂l₃) with l₁ = 1 − l₂ − l₃.
-#[must_use]
-pub fn local_gradients(l: [f64; 3]) -> [Vector2<f64>; NODES] {
-    let [a, b, c] = l;
-    [
+fn local_gradients([b, c]: [f64; 2]) -> Vec<Vector2<f64>> {
+    let a = 1.0 - b - c;
+    vec![
         Vector2::new(1.0 - 4.0 * a, 1.0 - 4.0 * a),
         Vector2::new(4.0 * b - 1.0, 0.0),
         Vector2::new(0.0, 4.0 * c - 1.0),
@@ -35,27 +63,4 @@ pub fn local_gradients(l: [f64; 3]) -> [Vector2<f64>; NODES] {
         Vector2::new(4.0 * c, 4.0 * b),
         Vector2::new(-4.0 * c, 4.0 * (a - c)),
     ]
-}
-
-/// The quadrature points of a triangle with these rest nodes (m) and thickness, m; `None` where the isoparametric map
-/// folds over.
-#[must_use]
-pub fn quadrature(nodes: [Vector2<f64>; NODES], thickness: f64) -> Option<[QuadraturePoint<NODES>; 3]> {
-    let point = |l: [f64; 3]| {
-        let local = local_gradients(l);
-        // J = ∂X/∂(l₂, l₃); gradients with respect to X are local gradients times J⁻¹.
-        let mut jacobian = Matrix2::zeros();
-        for (x, g) in nodes.iter().zip(&local) {
-            jacobian += x * g.transpose();
-        }
-        let determinant = jacobian.determinant();
-        let inverse = jacobian.try_inverse().filter(|_| determinant > 0.0)?;
-        Some(QuadraturePoint {
-            shape: shape(l),
-            gradients: local.map(|g| inverse.transpose() * g),
-            volume: determinant * thickness / 6.0,
-        })
-    };
-    let [a, b, c] = POINTS.map(point);
-    Some([a?, b?, c?])
 }

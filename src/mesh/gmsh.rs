@@ -8,12 +8,14 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::{Mesh, MeshError, Middles, Segment};
+use super::{Mesh, MeshError, Segment, side_key};
+use crate::element::{ELEMENTS, ElementType};
 use crate::scene::ElementKind;
 use crate::scene::limits::{COORDINATE, TOTAL_CELLS};
 
 /// Why a mesh file cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum GmshError {
     /// A line is not what the format has there.
     #[error("line {line}: expected {expected}")]
@@ -31,12 +33,9 @@ pub enum GmshError {
     Mesh(#[from] MeshError),
 }
 
-/// Gmsh's numbers for the elements we read, and how many nodes each has.
-const LINE_2: (u32, usize) = (1, 2);
-const TRIANGLE_3: (u32, usize) = (2, 3);
-const LINE_3: (u32, usize) = (8, 3);
-const TRIANGLE_6: (u32, usize) = (9, 6);
-const POINT: (u32, usize) = (15, 1);
+/// Gmsh's numbers for what it has beside elements of ours, and how many nodes each has.
+const LINES: [(i64, usize); 2] = [(1, 2), (8, 3)];
+const POINT: i64 = 15;
 
 struct Lines<'a> {
     lines: std::iter::Enumerate<std::str::Lines<'a>>,
@@ -83,13 +82,15 @@ struct File {
     curve_names: HashMap<i64, String>,
     curve_groups: HashMap<i64, Vec<i64>>,
     nodes: HashMap<u64, Vector2<f64>>,
-    triangles: Vec<(usize, Vec<u64>)>,
-    lines: Vec<(i64, Vec<u64>)>,
+    /// Line of the file, kind and node tags.
+    elements: Vec<(usize, &'static ElementType, Vec<u64>)>,
+    /// Line of the file, curve, and the tags of both ends.
+    lines: Vec<(usize, i64, [u64; 2])>,
 }
 
 impl Mesh {
-    /// Reads a mesh. Its triangles become `element`: six-node triangles of straight sides get their middle nodes, those of
-    /// a three-node mesh lose them.
+    /// Reads a mesh. Its triangles become `element`: nodes that the file lacks are put in the middle of straight sides,
+    /// those that `element` does not have are left out.
     ///
     /// # Errors
     /// [`GmshError`], with the line where there is one.
@@ -182,95 +183,74 @@ impl File {
         let header: Vec<u64> = lines.numbers(4, "the numbers of element blocks and elements")?;
         for _ in 0..header[0] {
             let block: Vec<i64> = lines.numbers(4, "an element block: dimension, tag, type, count")?;
-            let kinds = [LINE_2, TRIANGLE_3, LINE_3, TRIANGLE_6, POINT];
-            let (kind, nodes) = kinds
-                .into_iter()
-                .find(|k| i64::from(k.0) == block[2])
-                .ok_or_else(|| lines.error("lines and triangles of 2, 3 or 6 nodes (element types 1, 2, 8, 9)"))?;
-            for _ in 0..block[3] {
-                let element: Vec<u64> = lines.numbers(1 + nodes, "an element: tag, nodes")?;
-                let element = element[1..=nodes].to_vec();
-                if kind == TRIANGLE_3.0 || kind == TRIANGLE_6.0 {
-                    self.triangles.push((lines.number, element));
-                } else if kind != POINT.0 {
-                    self.lines.push((block[1], element));
+            let [_, entity, kind, count] = [block[0], block[1], block[2], block[3]];
+            let element = ELEMENTS.iter().copied().find(|e| i64::from(e.gmsh_type) == kind);
+            let line = LINES.iter().find(|l| l.0 == kind).map(|l| l.1);
+            if element.is_none() && line.is_none() && kind != POINT {
+                return Err(lines.error("lines and triangles of 2, 3 or 6 nodes (element types 1, 2, 8, 9)"));
+            }
+            for _ in 0..count {
+                let least = 1 + element.map_or(line.unwrap_or(1), |e| e.nodes.len());
+                let tags = lines.numbers::<u64>(least, "an element: tag, nodes")?;
+                match (element, line) {
+                    (Some(element), _) => self.elements.push((lines.number, element, tags[1..least].to_vec())),
+                    (None, Some(_)) => self.lines.push((lines.number, entity, [tags[1], tags[2]])),
+                    (None, None) => {}
                 }
             }
         }
         Ok(())
     }
 
-    fn into_mesh(self, element: ElementKind) -> Result<Mesh, GmshError> {
-        if self.triangles.is_empty() {
+    fn into_mesh(self, kind: ElementKind) -> Result<Mesh, GmshError> {
+        let entry = kind.entry();
+        if self.elements.is_empty() {
             return Err(GmshError::Content("expected triangles, got none".to_owned()));
         }
         TOTAL_CELLS
-            .check(0.5 * self.triangles.len() as f64)
+            .check(0.5 * self.elements.len() as f64)
             .map_err(|_| GmshError::Content(format!("expected at most {} triangles", 2.0 * TOTAL_CELLS.max)))?;
-        // Only the nodes of triangles: what else the file holds would be free to float away.
+        // Only the nodes of elements: what else the file holds would be free to float away.
         let mut builder =
-            Builder { tags: &self.nodes, numbers: HashMap::new(), nodes: Vec::new(), middles: Middles::default() };
-        let mut connectivity = Vec::new();
-        for (line, triangle) in &self.triangles {
+            Builder { tags: &self.nodes, numbers: HashMap::new(), between: HashMap::new(), nodes: Vec::new() };
+        let mut connectivity = Vec::with_capacity(entry.nodes.len() * self.elements.len());
+        for (line, own, tags) in &self.elements {
             let missing =
                 |tag: u64| GmshError::Syntax { line: *line, expected: format!("nodes that exist, got {tag}") };
-            let mut numbers = Vec::with_capacity(6);
-            for &tag in triangle {
-                numbers.push(builder.number(tag).ok_or_else(|| missing(tag))?);
-            }
-            connectivity.extend(&numbers[..3]);
-            if element.degree() == 2 {
-                for side in 0..3 {
-                    let ends = [numbers[side], numbers[(side + 1) % 3]];
-                    let own = numbers.get(3 + side).copied();
-                    connectivity.push(own.unwrap_or_else(|| builder.middle(ends)));
-                }
+            for &at in entry.nodes {
+                // A node that the file has there, or one between the ends of a straight side.
+                let node = match own.node_at(at) {
+                    Some(i) => builder.number(tags[i]).ok_or_else(|| missing(tags[i]))?,
+                    None => builder.between(own, tags, at).map_err(missing)?,
+                };
+                connectivity.push(node);
             }
         }
-        if element.degree() == 1 {
-            // The middle nodes belong to no element now.
-            let triangles = &mut connectivity;
-            let mut kept = vec![u32::MAX; builder.nodes.len()];
-            let mut nodes = Vec::new();
-            for node in triangles.iter_mut() {
-                let slot = &mut kept[*node as usize];
-                if *slot == u32::MAX {
-                    *slot = nodes.len() as u32;
-                    nodes.push(builder.nodes[*node as usize]);
-                }
-                *node = *slot;
-            }
-            builder.nodes = nodes;
-            builder.numbers = builder
-                .numbers
-                .iter()
-                .map(|(&tag, &number)| (tag, kept[number as usize]))
-                .filter(|&(_, number)| number != u32::MAX)
-                .collect();
-        }
+        let Builder { numbers, nodes, .. } = builder;
+        let bare = Mesh::new(nodes, kind, connectivity, BTreeMap::new())?;
+        let sides: HashMap<[u32; 2], Segment> =
+            bare.elements().flat_map(|nodes| bare.sides(nodes)).map(|side| (side.key(), side)).collect();
         let mut edges: BTreeMap<String, Vec<Segment>> = BTreeMap::new();
-        for (entity, line) in &self.lines {
-            let ends = [line[0], line[1]].map(|tag| builder.numbers.get(&tag).copied());
-            let [Some(a), Some(b)] = ends else { continue };
-            let middle = (element.degree() == 2).then(|| match line.get(2) {
-                Some(&tag) => builder.number(tag).unwrap_or_else(|| builder.middle([a, b])),
-                None => builder.middle([a, b]),
-            });
-            for tag in self.curve_groups.get(entity).into_iter().flatten() {
+        for (line, curve, ends) in &self.lines {
+            let [Some(&a), Some(&b)] = ends.map(|tag| numbers.get(&tag)) else { continue };
+            for tag in self.curve_groups.get(curve).into_iter().flatten() {
+                let expected = || "a line along a side of an element".to_owned();
+                let side = sides.get(&side_key([a, b]));
+                let side = side.ok_or_else(|| GmshError::Syntax { line: *line, expected: expected() })?;
                 let name = self.curve_names.get(&tag.abs()).cloned().unwrap_or_else(|| tag.abs().to_string());
-                edges.entry(name).or_default().push(Segment { ends: [a, b], middle });
+                edges.entry(name).or_default().push(*side);
             }
         }
-        Ok(Mesh::new(builder.nodes, element, connectivity, edges)?)
+        Ok(bare.with_edges(edges)?)
     }
 }
 
-/// Numbers nodes in the order they are met, and makes the middle nodes that the file lacks.
+/// Numbers nodes in the order they are met, and makes those between others that the file lacks.
 struct Builder<'a> {
     tags: &'a HashMap<u64, Vector2<f64>>,
     numbers: HashMap<u64, u32>,
+    between: HashMap<[u32; 2], u32>,
     nodes: Vec<Vector2<f64>>,
-    middles: Middles,
 }
 
 impl Builder<'_> {
@@ -285,10 +265,23 @@ impl Builder<'_> {
         Some(number)
     }
 
-    fn middle(&mut self, ends: [u32; 2]) -> u32 {
-        self.middles.between(&mut self.nodes, ends, |nodes| {
-            let [a, b] = ends.map(|n| nodes[n as usize]);
-            (a + b) * 0.5
+    /// The node at `at` in an element of the file that has none there; the tag that is missing where one is.
+    fn between(&mut self, element: &ElementType, tags: &[u64], at: [f64; 2]) -> Result<u32, u64> {
+        let weights = (element.cell.corner_weights)(at);
+        let mut ends = Vec::new();
+        let mut place = Vector2::zeros();
+        for (&tag, &weight) in tags.iter().zip(&weights).filter(|(_, weight)| weight.abs() > 1e-9) {
+            let number = self.number(tag).ok_or(tag)?;
+            place += self.nodes[number as usize] * weight;
+            ends.push(number);
+        }
+        let mut add = || {
+            self.nodes.push(place);
+            (self.nodes.len() - 1) as u32
+        };
+        Ok(match ends[..] {
+            [a, b] => *self.between.entry(side_key([a, b])).or_insert_with(add),
+            _ => add(),
         })
     }
 }

@@ -1,165 +1,291 @@
-//! Triangle meshes: nodes, connectivity, named edges. Areas are checked once, here.
+//! Meshes of one kind of element: nodes, connectivity, named edges. Everything about them is checked once, here.
 
 use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use crate::rotation::affine::DEGENERATE;
+use crate::element::ElementType;
 use crate::scene::ElementKind;
 
 mod beam;
 mod gmsh;
+mod locate;
 mod refine;
 
 pub use gmsh::GmshError;
+pub use locate::MaterialPoint;
 
-/// A mesh that cannot be used.
+/// A mesh that cannot be used. Elements are numbered from 0.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum MeshError {
-    /// A triangle without area.
-    #[error("triangle {triangle} has no area: expected corners that are not on one line, got {corners:?}")]
-    Degenerate {
-        /// Zero-based number of the triangle.
-        triangle: usize,
-        /// Its rest corners, m.
-        corners: [[f64; 2]; 3],
+    /// No element at all, or a connectivity of the wrong length.
+    #[error("expected elements of {expected} nodes each, got {got} node numbers")]
+    Connectivity {
+        /// Nodes an element.
+        expected: usize,
+        /// Node numbers given.
+        got: usize,
     },
-    /// A triangle with a node that does not exist.
-    #[error("triangle {triangle} names node {node}: expected a node below {count}")]
+    /// A node position that is NaN or infinite.
+    #[error("node {node} is at {position:?}: expected finite coordinates")]
+    NotFinite {
+        /// The node.
+        node: usize,
+        /// Its position, m.
+        position: [f64; 2],
+    },
+    /// An element with a node that does not exist.
+    #[error("element {element} names node {node}: expected a node below {count}")]
     NoSuchNode {
-        /// Zero-based number of the triangle.
-        triangle: usize,
+        /// The element.
+        element: usize,
         /// The node it names.
         node: u32,
         /// How many nodes there are.
         count: usize,
     },
-    /// No triangle at all, or a connectivity of the wrong length.
-    #[error("expected triangles of {expected} nodes each, got {got} node numbers")]
-    Connectivity {
-        /// Nodes a triangle.
-        expected: usize,
-        /// Node numbers given.
-        got: usize,
+    /// An element without area.
+    #[error("element {element} has no area: expected corners that are not on one line, got {corners:?}")]
+    Degenerate {
+        /// The element.
+        element: usize,
+        /// Its rest corners, m.
+        corners: Vec<[f64; 2]>,
+    },
+    /// An element whose curved sides make it fold over.
+    #[error("element {element} folds over: expected its sides less curved")]
+    Folded {
+        /// The element.
+        element: usize,
+    },
+    /// A segment of a named edge that is not a side of an element.
+    #[error("edge \"{edge}\" has the nodes {nodes:?}: expected the nodes of an element's side")]
+    NoSuchSide {
+        /// The edge.
+        edge: String,
+        /// The segment's nodes.
+        nodes: Vec<u32>,
     },
 }
 
-/// The nodes made between two others, each once.
-#[derive(Debug, Default)]
-struct Middles(HashMap<[u32; 2], u32>);
+/// The most nodes that a side of any element has.
+const MOST_SIDE_NODES: usize = 3;
 
-/// Two nodes, smaller number first: the same for the side of either triangle.
+/// One side of an element, by node numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    nodes: [u32; MOST_SIDE_NODES],
+    count: usize,
+}
+
+impl Segment {
+    /// The segment through these nodes, in their order along it; `None` for fewer than two or more than a side has.
+    #[must_use]
+    pub fn new(nodes: &[u32]) -> Option<Self> {
+        let count = nodes.len();
+        if !(2..=MOST_SIDE_NODES).contains(&count) {
+            return None;
+        }
+        let mut own = [0; MOST_SIDE_NODES];
+        own[..count].copy_from_slice(nodes);
+        Some(Self { nodes: own, count })
+    }
+
+    /// Its nodes, in their order along it.
+    #[must_use]
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes[..self.count]
+    }
+
+    /// The first and the last of them.
+    #[must_use]
+    pub fn ends(&self) -> [u32; 2] {
+        [self.nodes[0], self.nodes[self.count - 1]]
+    }
+
+    /// Its ends, smaller number first: the same for the side of either element.
+    #[must_use]
+    pub fn key(&self) -> [u32; 2] {
+        side_key(self.ends())
+    }
+
+    /// Whether both have the same nodes, in either direction.
+    fn is_same(&self, other: &Self) -> bool {
+        self.nodes() == other.nodes() || self.nodes().iter().rev().eq(other.nodes())
+    }
+}
+
+/// Two nodes, smaller number first.
 fn side_key([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-impl Middles {
-    /// The node between two of `nodes`, made where `place` says if there is none yet.
-    fn between(
-        &mut self,
-        nodes: &mut Vec<Vector2<f64>>,
-        ends: [u32; 2],
-        place: impl FnOnce(&[Vector2<f64>]) -> Vector2<f64>,
-    ) -> u32 {
-        *self.0.entry(side_key(ends)).or_insert_with(|| {
-            nodes.push(place(nodes));
-            (nodes.len() - 1) as u32
-        })
-    }
-
-    fn get(&self, ends: [u32; 2]) -> Option<u32> {
-        self.0.get(&side_key(ends)).copied()
-    }
-}
-
-/// One side of a triangle on a named edge, by node numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Segment {
-    /// Its two ends.
-    pub ends: [u32; 2],
-    /// The node between them, if the element has one.
-    pub middle: Option<u32>,
-}
-
-impl Segment {
-    /// Its ends, smaller number first: the same for the side of either triangle.
-    #[must_use]
-    pub fn key(&self) -> [u32; 2] {
-        side_key(self.ends)
-    }
-
-    /// All its nodes.
-    pub fn nodes(&self) -> impl Iterator<Item = u32> {
-        self.ends.into_iter().chain(self.middle)
-    }
-}
-
-/// Nodes, triangles and named edges, at rest.
+/// Nodes, elements and named edges, at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Rest positions X, m.
-    pub nodes: Vec<Vector2<f64>>,
-    /// What every triangle is.
-    pub element: ElementKind,
-    /// Node numbers, `element.nodes()` a triangle: corners counter-clockwise, then the midpoints of sides 12, 23, 31.
-    pub connectivity: Vec<u32>,
-    /// Boundary segments by edge name.
-    pub edges: BTreeMap<String, Vec<Segment>>,
+    nodes: Vec<Vector2<f64>>,
+    element: ElementKind,
+    connectivity: Vec<u32>,
+    edges: BTreeMap<String, Vec<Segment>>,
 }
 
+/// Area over squared size below which an element counts as degenerate: a few hundred roundings. It trades slivers that
+/// could still be solved against stiffness that is all rounding.
+const DEGENERATE: f64 = 1e-13;
+
 impl Mesh {
-    /// A mesh whose triangles all exist, have area, and are turned counter-clockwise.
+    /// A mesh of these rest positions (m), node numbers (element by element, in the order of
+    /// [`ElementType::nodes`]) and named edges. Clockwise elements are turned over.
+    ///
+    /// ```
+    /// use std::collections::BTreeMap;
+    /// use warpbeam::mesh::{Mesh, Segment};
+    /// use warpbeam::nalgebra::Vector2;
+    /// use warpbeam::ElementKind;
+    ///
+    /// let nodes = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from).to_vec();
+    /// let left = BTreeMap::from([("left".to_owned(), Vec::from_iter(Segment::new(&[3, 0])))]);
+    /// let mesh = Mesh::new(nodes, ElementKind::T3, vec![0, 1, 2, 0, 2, 3], left)?;
+    /// assert_eq!(mesh.element_count(), 2);
+    /// # Ok::<(), warpbeam::mesh::MeshError>(())
+    /// ```
     ///
     /// # Errors
-    /// [`MeshError`], naming the triangle.
+    /// [`MeshError`], naming the node, the element or the edge.
     pub fn new(
         nodes: Vec<Vector2<f64>>,
         element: ElementKind,
-        mut connectivity: Vec<u32>,
+        connectivity: Vec<u32>,
         edges: BTreeMap<String, Vec<Segment>>,
     ) -> Result<Self, MeshError> {
-        let n = element.nodes();
-        if connectivity.is_empty() || !connectivity.len().is_multiple_of(n) {
-            return Err(MeshError::Connectivity { expected: n, got: connectivity.len() });
+        let mut mesh = Self { nodes, element, connectivity, edges };
+        mesh.check()?;
+        Ok(mesh)
+    }
+
+    /// Checks everything, and turns clockwise elements over.
+    fn check(&mut self) -> Result<(), MeshError> {
+        let entry = self.element.entry();
+        let n = entry.nodes.len();
+        if self.connectivity.is_empty() || !self.connectivity.len().is_multiple_of(n) {
+            return Err(MeshError::Connectivity { expected: n, got: self.connectivity.len() });
         }
-        for (triangle, t) in connectivity.chunks_exact_mut(n).enumerate() {
-            if let Some(&node) = t.iter().find(|&&node| node as usize >= nodes.len()) {
-                return Err(MeshError::NoSuchNode { triangle, node, count: nodes.len() });
+        let bad = self.nodes.iter().position(|x| !(x.x.is_finite() && x.y.is_finite()));
+        if let Some(node) = bad {
+            return Err(MeshError::NotFinite { node, position: self.nodes[node].into() });
+        }
+        let turned_over = entry.turned_over();
+        for (element, own) in self.connectivity.chunks_exact_mut(n).enumerate() {
+            if let Some(&node) = own.iter().find(|&&node| node as usize >= self.nodes.len()) {
+                return Err(MeshError::NoSuchNode { element, node, count: self.nodes.len() });
             }
-            let corners = [t[0], t[1], t[2]].map(|i| nodes[i as usize]);
-            let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
-            let longest = e1.norm().max(e2.norm()).max((e2 - e1).norm());
-            let doubled_area = e1.perp(&e2);
-            let floor = DEGENERATE * longest * longest;
+            let corners: Vec<Vector2<f64>> =
+                own[..entry.cell.corners.len()].iter().map(|&n| self.nodes[n as usize]).collect();
+            let doubled_area = doubled_area(&corners);
+            let floor = DEGENERATE * largest_distance(&corners).powi(2);
             if doubled_area.is_nan() || floor.is_infinite() || doubled_area.abs() <= floor {
-                return Err(MeshError::Degenerate { triangle, corners: corners.map(Into::into) });
+                return Err(MeshError::Degenerate { element, corners: corners.iter().map(|&x| x.into()).collect() });
             }
             if doubled_area < 0.0 {
-                t.swap(1, 2);
-                if n > 3 {
-                    t.swap(3, 5);
-                }
+                let clockwise = own.to_vec();
+                own.iter_mut().zip(&turned_over).for_each(|(node, &from)| *node = clockwise[from]);
+            }
+            let rest: Vec<Vector2<f64>> = own.iter().map(|&n| self.nodes[n as usize]).collect();
+            // Written so that NaN is refused too.
+            let unfolded = |at: [f64; 2]| entry.jacobian(&rest, at).determinant() > 0.0;
+            if !entry.points.iter().chain(entry.mass_points).all(|p| unfolded(p.at)) {
+                return Err(MeshError::Folded { element });
             }
         }
-        Ok(Self { nodes, element, connectivity, edges })
+        self.check_edges()
     }
 
-    /// Number of triangles.
+    fn check_edges(&self) -> Result<(), MeshError> {
+        let mut wanted: HashMap<[u32; 2], Option<Segment>> = HashMap::new();
+        wanted.extend(self.edges.values().flatten().map(|s| (s.key(), None)));
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        for side in self.elements().flat_map(|nodes| self.sides(nodes)) {
+            if let Some(found) = wanted.get_mut(&side.key()) {
+                *found = Some(side);
+            }
+        }
+        for (name, segments) in &self.edges {
+            let is_side = |s: &Segment| wanted.get(&s.key()).is_some_and(|f| f.is_some_and(|side| side.is_same(s)));
+            if let Some(segment) = segments.iter().find(|s| !is_side(s)) {
+                return Err(MeshError::NoSuchSide { edge: name.clone(), nodes: segment.nodes().to_vec() });
+            }
+        }
+        Ok(())
+    }
+
+    /// The mesh with every node moved.
+    ///
+    /// # Errors
+    /// [`MeshError`] where that leaves an element without area.
+    pub fn moved(&self, place: impl Fn(Vector2<f64>) -> Vector2<f64>) -> Result<Self, MeshError> {
+        let nodes = self.nodes.iter().map(|&x| place(x)).collect();
+        Self::new(nodes, self.element, self.connectivity.clone(), self.edges.clone())
+    }
+
+    /// The mesh with these edges in the place of its own.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchSide`].
+    pub fn with_edges(self, edges: BTreeMap<String, Vec<Segment>>) -> Result<Self, MeshError> {
+        let mesh = Self { edges, ..self };
+        mesh.check_edges()?;
+        Ok(mesh)
+    }
+
+    /// Rest positions X, m.
     #[must_use]
-    pub fn triangle_count(&self) -> usize {
-        self.connectivity.len() / self.element.nodes()
+    pub fn nodes(&self) -> &[Vector2<f64>] {
+        &self.nodes
     }
 
-    /// The node numbers of every triangle.
-    pub fn triangles(&self) -> impl ExactSizeIterator<Item = &[u32]> {
-        self.connectivity.chunks_exact(self.element.nodes())
+    /// Rest position of a node, m.
+    #[must_use]
+    pub(crate) fn node(&self, node: u32) -> Vector2<f64> {
+        self.nodes[node as usize]
+    }
+
+    /// What every element is.
+    #[must_use]
+    pub fn element(&self) -> ElementKind {
+        self.element
+    }
+
+    /// Node numbers, element by element, in the order of [`ElementType::nodes`]; corners counter-clockwise.
+    #[must_use]
+    pub fn connectivity(&self) -> &[u32] {
+        &self.connectivity
+    }
+
+    /// Segments by edge name.
+    #[must_use]
+    pub fn edges(&self) -> &BTreeMap<String, Vec<Segment>> {
+        &self.edges
+    }
+
+    /// Number of elements.
+    #[must_use]
+    pub fn element_count(&self) -> usize {
+        self.connectivity.len() / self.element.entry().nodes.len()
+    }
+
+    /// The node numbers of every element.
+    pub fn elements(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+        self.connectivity.chunks_exact(self.element.entry().nodes.len())
     }
 
     /// The nodes of a named edge, each once; `None` if there is no such edge.
     #[must_use]
     pub fn edge_nodes(&self, name: &str) -> Option<Vec<u32>> {
-        let mut nodes: Vec<u32> = self.edges.get(name)?.iter().flat_map(Segment::nodes).collect();
+        let mut nodes: Vec<u32> = self.edges.get(name)?.iter().flat_map(|s| s.nodes().to_vec()).collect();
         nodes.sort_unstable();
         nodes.dedup();
         Some(nodes)
@@ -185,17 +311,37 @@ impl Mesh {
         self.nodes.iter().fold((start, -start), |(low, high), p| (low.inf(p), high.sup(p)))
     }
 
-    /// The three sides of a triangle.
-    #[must_use]
-    pub fn sides(triangle: &[u32]) -> [Segment; 3] {
-        [0, 1, 2].map(|i| Segment { ends: [triangle[i], triangle[(i + 1) % 3]], middle: triangle.get(3 + i).copied() })
+    /// The sides of an element of this mesh with these node numbers, counter-clockwise.
+    pub fn sides<'a>(&self, nodes: &'a [u32]) -> impl Iterator<Item = Segment> + 'a {
+        let sides = self.element.entry().sides;
+        sides.iter().filter_map(|side| {
+            let mut own = [0; MOST_SIDE_NODES];
+            own.iter_mut().zip(*side).for_each(|(node, &i)| *node = nodes[i]);
+            Segment::new(&own[..side.len()])
+        })
     }
 
-    /// The sides that belong to one triangle only: the outline, each running counter-clockwise around the body.
+    /// The sides that belong to one element only: the outline, each running counter-clockwise around the body.
     #[must_use]
     pub fn outline(&self) -> Vec<Segment> {
-        let mut sides: Vec<Segment> = self.triangles().flat_map(Self::sides).collect();
+        let mut sides: Vec<Segment> = self.elements().flat_map(|nodes| self.sides(nodes)).collect();
         sides.sort_unstable_by_key(Segment::key);
         sides.chunk_by(|a, b| a.key() == b.key()).filter(|same| same.len() == 1).map(|same| same[0]).collect()
     }
+
+    /// What the mesh's element says of itself.
+    pub(crate) fn entry(&self) -> &'static ElementType {
+        self.element.entry()
+    }
+}
+
+/// Twice the area of a polygon, positive where it runs counter-clockwise.
+fn doubled_area(corners: &[Vector2<f64>]) -> f64 {
+    let Some(&first) = corners.first() else { return 0.0 };
+    corners.windows(2).map(|w| (w[0] - first).perp(&(w[1] - first))).sum()
+}
+
+fn largest_distance(corners: &[Vector2<f64>]) -> f64 {
+    let pairs = corners.iter().enumerate().flat_map(|(i, a)| corners[..i].iter().map(move |b| (a - b).norm()));
+    pairs.fold(0.0, f64::max)
 }

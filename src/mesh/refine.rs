@@ -1,58 +1,130 @@
-//! Uniform refinement: every triangle into four, curved sides along their own curve.
+//! Uniform refinement: every element into four, curved sides along their own curve.
+
+use std::collections::HashMap;
 
 use nalgebra::Vector2;
 
-use super::{Mesh, Middles, Segment};
+use super::{Mesh, Segment, side_key};
+use crate::element::ElementType;
 
-/// The corners of the four triangles, by corner (0, 1, 2) and middle of a side (3: between 0 and 1, then on).
-const PARTS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
-/// The area coordinates of those six.
-const PLACES: [[f64; 3]; 6] =
-    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
+/// Where a node of a child is in its parent.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// On a node of the parent.
+    Node(usize),
+    /// On a side of the parent, so far from its first corner.
+    Side(usize, f64),
+    /// Inside.
+    Interior,
+}
+
+impl Place {
+    fn of(entry: &ElementType, at: [f64; 2]) -> Self {
+        const ON: f64 = 1e-9;
+        if let Some(node) = entry.node_at(at) {
+            return Self::Node(node);
+        }
+        let on_side = entry.sides.iter().position(|side| {
+            let [a, b] = ends(entry, side);
+            let (d, p) = (b - a, Vector2::from(at) - a);
+            d.perp(&p).abs() < ON
+        });
+        on_side.map_or(Self::Interior, |side| {
+            let [a, b] = ends(entry, entry.sides[side]);
+            Self::Side(side, (b - a).dot(&(Vector2::from(at) - a)) / (b - a).norm_squared())
+        })
+    }
+}
+
+/// Reference coordinates of a side's ends.
+fn ends(entry: &ElementType, side: &[usize]) -> [Vector2<f64>; 2] {
+    [side[0], side[side.len() - 1]].map(|n| Vector2::from(entry.nodes[n]))
+}
+
+/// New nodes on sides, by the side's ends and the distance from the smaller of them: the same for either element.
+#[derive(Default)]
+struct OnSides(HashMap<([u32; 2], u32), u32>);
+
+impl OnSides {
+    fn key(ends: [u32; 2], t: f64) -> ([u32; 2], u32) {
+        // Distances are multiples of a small power of ½.
+        const UNITS: f64 = 1024.0;
+        let key = side_key(ends);
+        let t = if key == ends { t } else { 1.0 - t };
+        (key, (t * UNITS).round() as u32)
+    }
+
+    fn get(&self, ends: [u32; 2], t: f64) -> Option<u32> {
+        self.0.get(&Self::key(ends, t)).copied()
+    }
+}
 
 impl Mesh {
-    /// The mesh with every triangle cut into four of the same element and every named edge into halves. Its nodes come
+    /// The mesh with every element cut into four of the same kind and every named edge into halves. Its nodes come
     /// first, with the same numbers; the body is the same.
     #[must_use]
     pub fn refined(&self) -> Self {
-        let quadratic = self.element.degree() > 1;
-        let mut nodes = self.nodes.clone();
-        let mut middles = Middles::default();
-        let mut connectivity = Vec::with_capacity(4 * self.connectivity.len());
-        for triangle in self.triangles() {
-            let place = |l: [f64; 3]| -> Vector2<f64> {
-                let shape = self.element.shape(l);
-                triangle.iter().zip(&shape).map(|(&node, n)| self.nodes[node as usize] * *n).sum()
-            };
-            let mut six = [0; 6];
-            six[..triangle.len()].copy_from_slice(triangle);
-            if !quadratic {
-                for side in 0..3 {
-                    let at = PLACES[3 + side];
-                    six[3 + side] = middles.between(&mut nodes, [six[side], six[(side + 1) % 3]], |_| place(at));
-                }
-            }
-            for part in PARTS {
-                connectivity.extend(part.map(|i| six[i]));
-                if quadratic {
-                    for side in 0..3 {
-                        let (a, b) = (part[side], part[(side + 1) % 3]);
-                        let at = [0, 1, 2].map(|i| 0.5 * (PLACES[a][i] + PLACES[b][i]));
-                        connectivity.push(middles.between(&mut nodes, [six[a], six[b]], |_| place(at)));
-                    }
-                }
-            }
+        let entry = self.entry();
+        // The distinct places of all children's nodes, and which of them each child has.
+        let mut places: Vec<[f64; 2]> = Vec::new();
+        let mut children: Vec<Vec<usize>> = Vec::new();
+        for corners in entry.cell.children {
+            let own = entry.nodes.iter().map(|&at| {
+                let weights = (entry.cell.corner_weights)(at);
+                let at = [0, 1].map(|axis| corners.iter().zip(&weights).map(|(c, w)| c[axis] * w).sum::<f64>());
+                places.iter().position(|p| *p == at).unwrap_or_else(|| {
+                    places.push(at);
+                    places.len() - 1
+                })
+            });
+            children.push(own.collect());
         }
-        let halves = |segment: &Segment| {
-            let [a, b] = segment.ends;
-            let middle = segment.middle.or_else(|| middles.get([a, b]));
-            let half = |ends: [u32; 2]| Segment { ends, middle: if quadratic { middles.get(ends) } else { None } };
-            // A segment that no triangle has stays whole; a mesh's edges are sides of its triangles.
-            middle.map_or_else(|| vec![*segment], |m| vec![half([a, m]), half([m, b])])
-        };
-        let edges =
-            self.edges.iter().map(|(name, segments)| (name.clone(), segments.iter().flat_map(halves).collect()));
-        let edges = edges.collect();
-        Self { nodes, element: self.element, connectivity, edges }
+        let places: Vec<(Place, Vec<f64>)> =
+            places.into_iter().map(|at| (Place::of(entry, at), (entry.shape)(at))).collect();
+
+        let mut nodes = self.nodes.clone();
+        let mut on_sides = OnSides::default();
+        let mut connectivity = Vec::with_capacity(children.len() * self.connectivity.len());
+        for own in self.elements() {
+            let mut add = |shape: &[f64]| {
+                nodes.push(own.iter().zip(shape).map(|(&n, weight)| self.node(n) * *weight).sum());
+                (nodes.len() - 1) as u32
+            };
+            let numbers: Vec<u32> = places
+                .iter()
+                .map(|(place, shape)| match *place {
+                    Place::Node(i) => own[i],
+                    Place::Side(side, t) => {
+                        let side = entry.sides[side];
+                        let ends = [own[side[0]], own[side[side.len() - 1]]];
+                        *on_sides.0.entry(OnSides::key(ends, t)).or_insert_with(|| add(shape))
+                    }
+                    Place::Interior => add(shape),
+                })
+                .collect();
+            connectivity.extend(children.iter().flatten().map(|&place| numbers[place]));
+        }
+        let edges = self.edges.iter().map(|(name, segments)| {
+            (name.clone(), segments.iter().flat_map(|segment| halves(segment, &on_sides)).collect())
+        });
+        Self { edges: edges.collect(), nodes, element: self.element, connectivity }
     }
+}
+
+/// The two halves of a segment, with the nodes that refinement has put on it.
+fn halves(segment: &Segment, on_sides: &OnSides) -> [Segment; 2] {
+    let own = segment.nodes();
+    let pieces = own.len() - 1;
+    let node = |half: usize, i: usize| {
+        let (twice, odd) = ((half * pieces + i) / 2, (half * pieces + i) % 2 == 1);
+        let t = (half * pieces + i) as f64 / (2 * pieces) as f64;
+        let old = (!odd).then(|| own[twice]);
+        // Every named edge is made of elements' sides, which all have been cut.
+        old.or_else(|| on_sides.get(segment.ends(), t)).unwrap_or(own[twice])
+    };
+    [0, 1].map(|half| {
+        let mut nodes = segment.nodes;
+        (0..=pieces).for_each(|i| nodes[i] = node(half, i));
+        Segment { nodes, count: segment.count }
+    })
 }

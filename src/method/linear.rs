@@ -3,35 +3,55 @@
 
 use nalgebra::Vector2;
 
-use super::status::{Watch, farthest};
-use super::{Frame, FrameError, Method, Occasion, Verdict};
-use crate::assembly::System;
-use crate::rotation::Rotation;
+use super::status::{StallDetector, farthest};
+use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
+use crate::assembly::Kinematics;
+use crate::element::Tangent;
+use crate::scene::MethodKind;
 
-pub(super) const ABOUT: &str = "Linear FEM: one solve, right only while rotations stay small; beams swell beyond.";
+pub(super) const ENTRY: MethodEntry = MethodEntry {
+    kind: MethodKind::Linear,
+    id: "linear",
+    about: "Linear FEM: one solve, right only while rotations stay small; beams swell beyond.",
+    colors: [[200, 90, 0], [240, 150, 60]],
+    start: || Box::<Linear>::default(),
+};
 
-/// The warped frame with every rotation the identity.
+/// The warped iteration with every rotation the identity: the first solve is the answer, further ones refine it.
 #[derive(Clone, Debug, Default)]
-pub struct Linear(Watch);
+pub struct Linear {
+    stall: StallDetector,
+    /// Whether the workspace holds the factor of K.
+    factorized: bool,
+    solved: bool,
+}
 
 impl Method for Linear {
-    fn begin(&mut self, _: Occasion) {
-        *self = Self::default();
+    fn restart(&mut self, why: Restart) {
+        let keeps_factor = matches!(why, Restart::AtRest | Restart::NewLoads);
+        *self = Self { factorized: self.factorized && keeps_factor, ..Self::default() };
     }
 
-    fn rotate(&self, _: &System, _: &[Vector2<f64>], r: &mut [Rotation]) {
-        r.fill(Rotation::IDENTITY);
+    fn kinematics(&self) -> Kinematics {
+        Kinematics::Linear
     }
 
-    fn corotates(&self) -> bool {
-        false
+    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+        if !self.factorized {
+            it.assemble(Tangent::Warped, 1.0);
+            it.factorize()?;
+            self.factorized = true;
+        }
+        if !self.solved {
+            // The answer does not depend on where the body was; a large displacement would only round it.
+            it.state.displacement.fill(Vector2::zeros());
+            it.forces.residual.copy_from_slice(&it.forces.external);
+            self.solved = true;
+        }
+        it.step().map(|step| self.stall.steps.stepped(step))
     }
 
-    fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
-        frame.step_with_warped_stiffness().map(|step| self.0.steps.stepped(step))
-    }
-
-    fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict {
-        self.0.judge(frame.residual, frame.goal.tolerance, farthest(frame.system, frame.u))
+    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+        self.stall.judge(it.residual, it.tolerances.residual, farthest(it.system(), it.state))
     }
 }

@@ -1,28 +1,28 @@
-//! Methods: how a frame turns the current state into the next one.
+//! Methods: how an iteration turns the current state into one nearer to equilibrium.
 //!
-//! A method decides with which rotations the body is seen, which matrix a frame factorizes, and when it is done. The
-//! frame itself is the article's, the same for all:
+//! A method decides which matrix an iteration factorizes, and when the solve is done. The iteration itself is the
+//! article's, the same for all:
 //!
 //! rotations(F(x)) → assemble A, f → factorize → solve → update x
 
-use nalgebra::Vector2;
-
-use crate::assembly::System;
-use crate::rotation::Rotation;
+use crate::assembly::Kinematics;
+use crate::element::Tangent;
 use crate::scene::MethodKind;
+use crate::state::State;
 
 mod auto;
 mod certificate;
-mod frame;
+mod iteration;
 mod linear;
 mod newton;
 mod status;
 mod warped;
 
-pub use auto::{Decision, Thrift};
-pub use certificate::{fixed_point_rho, is_stable, rho_words};
-pub(crate) use frame::timed;
-pub use frame::{Frame, FrameError, Goal, Profile, Workspace};
+pub use auto::{AutoReport, Decision};
+pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_words};
+pub use iteration::{Iteration, IterationError, Timings, Tolerances, Workspace};
+pub(crate) use iteration::{measure, timed};
+pub(crate) use status::is_useful_start;
 pub use status::{Reason, Status};
 
 /// An entry of the registry.
@@ -30,44 +30,62 @@ pub use status::{Reason, Status};
 pub struct MethodEntry {
     /// What scene files name.
     pub kind: MethodKind,
+    /// The name scene files use.
+    pub id: &'static str,
     /// One sentence for lists and tooltips.
     pub about: &'static str,
+    /// Its colour in pictures, red, green and blue: on a light ground, and on a dark one. All differ in brightness too.
+    pub colors: [[u8; 3]; 2],
     /// The method at rest.
     pub start: fn() -> Box<dyn Method>,
 }
 
-const LINEAR: MethodEntry =
-    MethodEntry { kind: MethodKind::Linear, about: linear::ABOUT, start: || Box::<linear::Linear>::default() };
-const WARPED: MethodEntry =
-    MethodEntry { kind: MethodKind::Warped, about: warped::ABOUT, start: || Box::<warped::Warped>::default() };
-const NEWTON: MethodEntry =
-    MethodEntry { kind: MethodKind::Newton, about: newton::ABOUT, start: || Box::<newton::Newton>::default() };
-
-const AUTO: MethodEntry =
-    MethodEntry { kind: MethodKind::Auto, about: auto::ABOUT, start: || Box::<auto::Auto>::default() };
-
-/// Every method there is: a file beside this one and a line here.
-pub const METHODS: &[MethodEntry] = &[LINEAR, WARPED, NEWTON, AUTO];
-
-impl MethodKind {
-    /// Its entry in the registry.
+impl MethodEntry {
+    /// Its colour on a dark or a light ground.
     #[must_use]
-    pub fn entry(self) -> MethodEntry {
-        match self {
-            Self::Linear => LINEAR,
-            Self::Warped => WARPED,
-            Self::Newton => NEWTON,
-            Self::Auto => AUTO,
-        }
+    pub fn color(&self, dark: bool) -> [u8; 3] {
+        self.colors[usize::from(dark)]
     }
 }
 
-/// What a method makes of a state that a frame has reached.
+macro_rules! registry {
+    ($($kind:ident => $entry:path),* $(,)?) => {
+        /// Every method there is: a file beside this one and a line here.
+        pub const METHODS: &[MethodEntry] = &[$($entry),*];
+
+        impl MethodKind {
+            /// Its entry in the registry.
+            #[must_use]
+            pub fn entry(self) -> MethodEntry {
+                match self {
+                    $(Self::$kind => $entry),*
+                }
+            }
+        }
+    };
+}
+
+registry! {
+    Linear => linear::ENTRY,
+    Warped => warped::ENTRY,
+    Newton => newton::ENTRY,
+    Auto => auto::ENTRY,
+}
+
+impl MethodKind {
+    /// The name scene files use.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        self.entry().id
+    }
+}
+
+/// What a method makes of a state that an iteration has reached.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// Another frame.
+    /// Another iteration.
     Continue,
-    /// Another frame; the load factor or the state has changed since it was measured.
+    /// Another iteration; the load factor or the state has changed since it was measured.
     Changed,
     /// Done.
     Converged,
@@ -77,27 +95,34 @@ pub enum Verdict {
 
 /// Why a method begins anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Occasion {
-    /// The state is another one, and the equations may be.
-    Reset,
-    /// The state is kept; loads, supports' reactions or goals have changed, the stiffness has not.
+pub enum Restart {
+    /// The body is at rest, or where the caller put it; the equations are what they were.
+    AtRest,
+    /// The state is kept; loads or tolerances have changed, the stiffness has not.
     NewLoads,
     /// The state is kept, the stiffness is another one.
     NewStiffness,
+    /// The unknowns are others: nothing that was found of them is of use.
+    NewUnknowns,
 }
 
 /// What makes a method. It may remember: a new one starts at rest.
-pub trait Method: std::fmt::Debug + Send {
-    /// Forgets the iteration that was, and what the occasion makes useless.
-    fn begin(&mut self, occasion: Occasion);
+pub trait Method: std::fmt::Debug + Send + Sync {
+    /// Forgets the iteration that was, and what the restart makes useless.
+    fn restart(&mut self, why: Restart);
 
-    /// The rotations with which the state `u` is seen.
-    fn rotate(&self, system: &System, u: &[Vector2<f64>], r: &mut [Rotation]);
+    /// How the present state is seen.
+    fn kinematics(&self) -> Kinematics {
+        Kinematics::Corotated
+    }
 
-    /// Whether strains are measured after turning elements back. If not, they are those of linear theory.
-    fn corotates(&self) -> bool;
+    /// The tangent that the next iteration is going to need of the present state: it is assembled in the sweep that
+    /// measures the state. `None` where none is needed, or that is not known yet.
+    fn tangent(&self) -> Option<Tangent> {
+        None
+    }
 
-    /// The share of the load that is on the body at present.
+    /// The fraction of the load that is on the body at present.
     fn load_factor(&self) -> f64 {
         1.0
     }
@@ -112,25 +137,25 @@ pub trait Method: std::fmt::Debug + Send {
         None
     }
 
-    /// What was left out because the scene does not need it; `None` for methods that do not decide.
-    fn thrift(&self) -> Option<Thrift> {
+    /// What was skipped because the scene does not need it; `None` for methods that do not decide.
+    fn report(&self) -> Option<AutoReport> {
         None
     }
 
-    /// One frame: a new displacement from the current one.
+    /// One iteration: a new displacement from the current one.
     ///
     /// # Errors
-    /// [`FrameError`]; the displacement is unchanged then.
-    fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError>;
+    /// [`IterationError`]; the caller puts the state back then.
+    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError>;
 
-    /// Judges the state in `frame`.
-    fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict;
+    /// Judges the state of the iteration.
+    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict;
 
-    /// Out of iterations: leaves the best state there is in `u`.
-    fn stop(&mut self, _: &mut [Vector2<f64>]) {}
+    /// Out of iterations: leaves the best state there is.
+    fn stop(&mut self, _: &mut State) {}
 
-    /// What to do where a frame gave no state; the displacement is the one before.
-    fn recover(&mut self, _: &mut Frame<'_>, error: FrameError) -> Verdict {
-        Verdict::Stop(Reason::Frame(error))
+    /// What to do where an iteration gave no state; the state is the one before.
+    fn recover(&mut self, _: &mut Iteration<'_>, error: IterationError) -> Verdict {
+        Verdict::Stop(Reason::Iteration(error))
     }
 }

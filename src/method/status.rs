@@ -1,12 +1,13 @@
 //! When an iteration is over: converged, out of iterations, or going nowhere.
 
-use nalgebra::Vector2;
-
-use super::{FrameError, Verdict};
+use super::{IterationError, Verdict};
 use crate::assembly::System;
+use crate::state::{State, largest};
+use crate::words::count;
 
 /// Where a simulation stands.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Status {
     /// Not there yet.
     #[default]
@@ -24,28 +25,39 @@ impl Status {
     #[must_use]
     pub fn id(&self) -> &'static str {
         match self {
-            Self::Running | Self::NotConverged(_) => "not_converged",
+            Self::Running => "running",
             Self::Converged => "converged",
+            Self::NotConverged(_) => "not_converged",
             Self::Diverged(_) => "diverged",
+        }
+    }
+
+    /// Whether it has ended without converging, and why.
+    #[must_use]
+    pub fn failure(&self) -> Option<&Reason> {
+        match self {
+            Self::NotConverged(reason) | Self::Diverged(reason) => Some(reason),
+            Self::Running | Self::Converged => None,
         }
     }
 }
 
 /// Why an iteration stopped before it converged.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Reason {
     /// All iterations that were allowed.
     IterationLimit(u32),
     /// The residual has not fallen for this many iterations, and is as small as rounding lets it be.
-    Stagnated(u32),
-    /// The residual has not fallen for this many iterations.
-    Wanders(u32),
+    RoundingFloor(u32),
+    /// The residual has not fallen for this many iterations, and is not small.
+    Stalled(u32),
     /// A node is farther from its rest position than this many sizes of the body.
     RanAway(f64),
-    /// A frame gave no state.
-    Frame(FrameError),
+    /// An iteration gave no state.
+    Iteration(IterationError),
     /// No load step, however small, and no descent led on.
-    Stuck,
+    NoDescent,
 }
 
 impl Reason {
@@ -53,8 +65,8 @@ impl Reason {
     #[must_use]
     pub fn status(self) -> Status {
         match self {
-            Self::IterationLimit(_) | Self::Stagnated(_) | Self::Stuck => Status::NotConverged(self),
-            Self::Wanders(_) | Self::RanAway(_) | Self::Frame(_) => Status::Diverged(self),
+            Self::IterationLimit(_) | Self::RoundingFloor(_) | Self::NoDescent => Status::NotConverged(self),
+            Self::Stalled(_) | Self::RanAway(_) | Self::Iteration(_) => Status::Diverged(self),
         }
     }
 }
@@ -63,51 +75,51 @@ impl std::fmt::Display for Reason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::IterationLimit(n) => {
-                write!(f, "the limit of {n} iterations is reached; more may do")
+                write!(f, "the limit of {} is reached; more may do", count(*n, "iteration"))
             }
-            Self::Stagnated(n) => {
+            Self::RoundingFloor(n) => {
                 write!(f, "the residual has not fallen for {n} iterations: rounding allows no smaller one")
             }
-            Self::Wanders(n) => write!(
+            Self::Stalled(n) => write!(
                 f,
                 "the residual has not fallen for {n} iterations: this load is too large for the iteration; lower it"
             ),
             Self::RanAway(sizes) => {
                 write!(f, "the body has gone more than {sizes} times its size away; lower the load")
             }
-            Self::Stuck => write!(f, "no load step, however small, and no descent leads on from here"),
-            Self::Frame(error) => write!(f, "{error}; lower the load"),
+            Self::NoDescent => write!(f, "no load step, however small, and no descent leads on from here"),
+            Self::Iteration(error) => write!(f, "{error}; lower the load"),
         }
     }
 }
 
-/// Iterations without progress after which a fixed-point iteration is called off. Longer sees slower convergence through, and
-/// keeps users of a hopeless load waiting longer.
+/// Iterations without progress after which a fixed-point iteration is called off. A larger number lets slower
+/// iterations converge; a smaller one tells the user earlier that a load is hopeless.
 const PATIENCE: u32 = 30;
 /// A new best residual counts as progress if it is this much below the old one.
 const PROGRESS: f64 = 0.98;
-/// A residual that stagnates below this has met rounding, not divergence.
+/// A residual that stays below this without falling has met rounding, not divergence.
 pub(super) const ROUNDING: f64 = 1e-6;
 /// Displacement over the size of the body beyond which nothing useful is to be expected. The linear solution of a
 /// slender beam under a large load is absurdly long, and still what was asked for: so not too small.
 const FARTHEST: f64 = 1e6;
 
-/// Watches the residuals and steps of a fixed-point iteration go by.
+/// Sees from its residuals whether a fixed-point iteration still gets anywhere.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Watch {
+pub(super) struct StallDetector {
     best: Option<f64>,
     waiting: u32,
-    pub(super) steps: Steps,
+    pub(super) steps: StepLengths,
 }
 
-/// The lengths of steps as they go by.
+/// The lengths of the last two steps.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Steps {
+pub(super) struct StepLengths {
     last: f64,
     ratio: Option<f64>,
 }
 
-impl Steps {
+impl StepLengths {
     /// Takes the length of a step.
     pub(super) fn stepped(&mut self, step: f64) {
         self.ratio = (self.last > 0.0).then(|| step / self.last).filter(|r| r.is_finite());
@@ -120,7 +132,7 @@ impl Steps {
     }
 }
 
-impl Watch {
+impl StallDetector {
     /// Judges a state by its residual and by its largest displacement over the size of the body.
     pub(super) fn judge(&mut self, residual: f64, tolerance: f64, farthest: f64) -> Verdict {
         if residual <= tolerance {
@@ -138,19 +150,28 @@ impl Watch {
         } else if self.waiting < PATIENCE {
             Verdict::Continue
         } else if best < ROUNDING {
-            Verdict::Stop(Reason::Stagnated(self.waiting))
+            Verdict::Stop(Reason::RoundingFloor(self.waiting))
         } else {
-            Verdict::Stop(Reason::Wanders(self.waiting))
+            Verdict::Stop(Reason::Stalled(self.waiting))
         }
     }
 }
 
 /// The largest displacement over the size of the body at rest.
-pub(super) fn farthest(system: &System, u: &[Vector2<f64>]) -> f64 {
-    largest(u) / system.size
+pub(super) fn farthest(system: &System, state: &State) -> f64 {
+    largest(&state.displacement) / system.size()
 }
 
-/// The largest length in a nodal field.
-pub(super) fn largest(field: &[Vector2<f64>]) -> f64 {
-    field.iter().map(|v| v.norm()).fold(0.0, f64::max)
+/// A displacement this many sizes of the body long is not worth going on from. The linear solution of a slender beam
+/// under a moderate load, with which Newton's method begins, is shorter.
+pub(super) const LONGEST_STEP: f64 = 20.0;
+
+/// Whether a solve that starts from this state has a chance: it is finite, not absurdly far from rest, and no element is
+/// crushed or turned inside out.
+pub(crate) fn is_useful_start(system: &System, state: &State) -> bool {
+    /// Area of an element over that at rest, below which it counts as crushed.
+    const CRUSHED: f64 = 0.01;
+    state.is_finite()
+        && farthest(system, state) <= LONGEST_STEP
+        && system.elements().smallest_area_ratio(&state.displacement) > CRUSHED
 }

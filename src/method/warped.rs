@@ -3,41 +3,43 @@
 //! A fixed-point iteration x ← A(R)⁻¹ (f + R K X), R the polar factor of x. Where it converges the result is an exact
 //! equilibrium of the corotated energy; it converges while the load is small: for a cantilever up to about P L²/(E I) = 3.
 
-use nalgebra::Vector2;
+use super::status::{StallDetector, farthest};
+use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
+use crate::element::Tangent;
+use crate::scene::MethodKind;
 
-use super::status::{Watch, farthest};
-use super::{Frame, FrameError, Method, Occasion, Verdict};
-use crate::assembly::System;
-use crate::rotation::Rotation;
-
-pub(super) const ABOUT: &str = "Warped stiffness: the article's iteration, every element seen turned back. Large rotations, but it diverges under large loads.";
+pub(super) const ENTRY: MethodEntry = MethodEntry {
+    kind: MethodKind::Warped,
+    id: "warped",
+    about: "Warped stiffness: the article's iteration, every element seen turned back. Large rotations, but it diverges under large loads.",
+    colors: [[190, 20, 30], [255, 105, 97]],
+    start: || Box::<Warped>::default(),
+};
 
 /// The article's iteration.
 #[derive(Clone, Debug, Default)]
-pub struct Warped(Watch);
+pub struct Warped(StallDetector);
 
 impl Method for Warped {
-    fn begin(&mut self, _: Occasion) {
+    fn restart(&mut self, _: Restart) {
         *self = Self::default();
     }
 
-    fn rotate(&self, system: &System, u: &[Vector2<f64>], r: &mut [Rotation]) {
-        system.elements.rotations(u, r);
-    }
-
-    fn corotates(&self) -> bool {
-        true
+    fn tangent(&self) -> Option<Tangent> {
+        Some(Tangent::Warped)
     }
 
     fn step_ratio(&self) -> Option<f64> {
         self.0.steps.ratio()
     }
 
-    fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
-        frame.step_with_warped_stiffness().map(|step| self.0.steps.stepped(step))
+    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+        it.assemble(Tangent::Warped, 1.0);
+        it.factorize()?;
+        it.step().map(|step| self.0.steps.stepped(step))
     }
 
-    fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict {
-        self.0.judge(frame.residual, frame.goal.tolerance, farthest(frame.system, frame.u))
+    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+        self.0.judge(it.residual, it.tolerances.residual, farthest(it.system(), it.state))
     }
 }

@@ -12,8 +12,10 @@ pub struct Frame<'a> {
     pub positions: &'a [Vector2<f64>],
     /// Corners of the triangles.
     pub triangles: &'a [[u32; 3]],
-    /// A value a triangle.
-    pub values: &'a [f64],
+    /// A value a triangle, if it has one.
+    pub values: &'a [Option<f64>],
+    /// The colour of triangles without, gamma space.
+    pub absent_color: [u8; 3],
     /// The values at the two ends of the colour map.
     pub range: [f64; 2],
     /// Lines between nodes, over the triangles; empty for none.
@@ -222,7 +224,8 @@ impl BodyRenderer {
         };
         self.scratch.clear();
         for (triangle, &value) in frame.triangles.iter().zip(frame.values) {
-            let [r, g, b] = colormap::color(colormap::position(value, frame.range));
+            let color = |value| colormap::color(colormap::position(value, frame.range));
+            let [r, g, b] = value.map_or(frame.absent_color, color);
             self.scratch.extend(triangle.map(|node| Vertex { position: position(node), color: [r, g, b, 255] }));
         }
         let triangle_vertices = self.scratch.len() as u32;

@@ -30,7 +30,7 @@ impl Camera {
     /// smaller than its margins gets smaller margins.
     #[must_use]
     pub fn fit(low: Vector2<f64>, high: Vector2<f64>, view: [f64; 2], margins: Margins) -> Self {
-        /// The share of a small view that margins may take.
+        /// The fraction of a small view that margins may take.
         const LARGEST: f64 = 0.7;
         let extent = (high - low).map(|v| v.max(1e-12));
         let shrink = |total: f64, view: f64| (LARGEST * view / total.max(1e-9)).min(1.0);

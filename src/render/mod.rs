@@ -3,9 +3,9 @@
 //! The renderer borrows a [`Frame`] (positions, triangles, a value a triangle), never the simulation. The window and the
 //! offscreen picture go through the same calls.
 
-use std::path::PathBuf;
-
 use thiserror::Error;
+
+use crate::picture::PictureError;
 
 mod body;
 mod camera;
@@ -14,10 +14,11 @@ mod offscreen;
 
 pub use body::{BodyRenderer, Frame};
 pub use camera::{Camera, Margins};
-pub use offscreen::{Picture, draw_svg, read_texture};
+pub use offscreen::read_texture;
 
 /// Why nothing was drawn.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// No adapter would do.
     #[error(
@@ -47,17 +48,9 @@ pub enum RenderError {
     /// The picture did not come back from the device.
     #[error("the picture did not come back from the graphics device: {0}")]
     ReadBack(String),
-    /// An SVG picture was not drawn.
-    #[error("the SVG picture was not drawn: {0}")]
-    Svg(String),
     /// The picture was not written.
-    #[error("{path}: {reason}", path = path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        reason: String,
-    },
+    #[error(transparent)]
+    Picture(#[from] PictureError),
 }
 
 impl RenderError {

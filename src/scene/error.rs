@@ -23,6 +23,7 @@ impl Invalid {
 
 /// Why a scene could not be opened.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum SceneError {
     /// Neither a built-in scene nor a readable file.
     #[error("{path}: {reason}; expected a scene file, or one of the built-in scenes: {built_in}", path = path.display())]
@@ -35,20 +36,20 @@ pub enum SceneError {
         built_in: String,
     },
     /// Not TOML, an unknown or missing key, or a value of the wrong type.
-    #[error("{}{message}", at(file, *line))]
+    #[error("{}{message}", at(file.as_deref(), *line))]
     Syntax {
-        /// The file, or the built-in name.
-        file: PathBuf,
+        /// The file, or the built-in name; `None` for a text without a name.
+        file: Option<PathBuf>,
         /// One-based line, where the parser gave one.
         line: Option<usize>,
         /// The parser's sentence.
         message: String,
     },
     /// A value that cannot be used.
-    #[error("{}{invalid}", at(file, *line))]
+    #[error("{}{invalid}", at(file.as_deref(), *line))]
     Invalid {
-        /// The file, or the built-in name.
-        file: PathBuf,
+        /// The file, or the built-in name; `None` for a text without a name.
+        file: Option<PathBuf>,
         /// One-based line of the key; `None` where the key is not written in the file.
         line: Option<usize>,
         /// Key and sentence.
@@ -64,9 +65,11 @@ pub enum SceneError {
     },
 }
 
-fn at(file: &std::path::Path, line: Option<usize>) -> String {
-    match line {
-        Some(line) => format!("{}:{line}: ", file.display()),
-        None => format!("{}: ", file.display()),
+fn at(file: Option<&std::path::Path>, line: Option<usize>) -> String {
+    match (file, line) {
+        (Some(file), Some(line)) => format!("{}:{line}: ", file.display()),
+        (Some(file), None) => format!("{}: ", file.display()),
+        (None, Some(line)) => format!("line {line}: "),
+        (None, None) => String::new(),
     }
 }

@@ -1,5 +1,9 @@
 //! The range of every number a scene may hold: one table for scene files, `--set` and the sliders.
 
+use thiserror::Error;
+
+use crate::words::number;
+
 /// A closed range and its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
@@ -11,42 +15,34 @@ pub struct Limit {
     pub max: f64,
 }
 
+/// A value that is not in its range.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("expected {} to {}{}{}, got {got}", number(limit.min), number(limit.max), if limit.unit.is_empty() { "" } else { " " }, limit.unit)]
+pub struct OutOfRange {
+    /// The range.
+    pub limit: Limit,
+    /// What was there, as it was written.
+    pub got: String,
+}
+
 impl Limit {
     const fn new(unit: &'static str, min: f64, max: f64) -> Self {
         Self { unit, min, max }
     }
 
-    /// Accepts `value`, or says what was expected.
+    /// Accepts `value`.
     ///
     /// # Errors
-    /// The sentence to show, for values out of range, NaN and infinities.
-    pub fn check(&self, value: f64) -> Result<(), String> {
+    /// [`OutOfRange`] for values out of range, NaN and infinities.
+    pub fn check(&self, value: f64) -> Result<(), OutOfRange> {
         if value >= self.min && value <= self.max { Ok(()) } else { Err(self.expected(&number(value))) }
     }
 
-    /// What was expected instead of `got`.
+    /// The complaint about `got`, which is no number in the range.
     #[must_use]
-    pub fn expected(&self, got: &str) -> String {
-        let space = if self.unit.is_empty() { "" } else { " " };
-        format!("expected {} to {}{space}{}, got {got}", number(self.min), number(self.max), self.unit)
+    pub fn expected(&self, got: &str) -> OutOfRange {
+        OutOfRange { limit: *self, got: got.to_owned() }
     }
-}
-
-/// A number as short as it reads back: plain where that is short, else with an exponent.
-#[must_use]
-pub fn number(value: f64) -> String {
-    let magnitude = value.abs();
-    if value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&magnitude) {
-        format!("{value}")
-    } else {
-        format!("{value:e}")
-    }
-}
-
-/// A number of things, as words: `1 iteration`, `2 iterations`.
-#[must_use]
-pub fn count(n: u32, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// Beam length.
@@ -83,5 +79,5 @@ pub const TOLERANCE: Limit = Limit::new("", 1e-14, 0.1);
 pub const MAX_ITERATIONS: Limit = Limit::new("", 1.0, 100_000.0);
 /// Error that may be asked for.
 pub const MAX_ERROR_PERCENT: Limit = Limit::new("%", 1e-6, 100.0);
-/// Time a frame may take.
+/// Time a solve may be given.
 pub const BUDGET_MS: Limit = Limit::new("ms", 1e-6, 1e6);

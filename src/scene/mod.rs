@@ -3,23 +3,28 @@
 //! Unknown keys are rejected with their line. [`Scene::validate`] checks every number against [`limits`], names against
 //! what exists, and says what was expected.
 
-use std::path::Path;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-pub mod error;
+mod build;
+mod error;
 pub mod limits;
-mod load;
 mod open;
+mod place;
 pub mod registry;
 
 pub use error::{Invalid, SceneError};
-pub use load::{Load, Place};
+pub use limits::OutOfRange;
 pub use open::{Source, open};
+pub use place::{Axis, Load, Place, Probe, Support, TableError};
+
+use crate::words::number;
 
 /// Everything a solve needs to know.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Scene {
     /// Title.
     pub name: String,
@@ -37,7 +42,7 @@ pub struct Scene {
     pub mesh: Option<MeshFile>,
     /// The elastic material.
     pub material: Material,
-    /// Where nodes are held.
+    /// Where nodes are fixed.
     #[serde(rename = "support", default)]
     pub supports: Vec<Support>,
     /// What pulls.
@@ -54,6 +59,7 @@ pub struct Scene {
 /// What is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Analysis {
     /// An equilibrium.
     #[default]
@@ -63,6 +69,7 @@ pub enum Analysis {
 /// A structured mesh of the rectangle [0, length] × [−height/2, height/2].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Beam {
     /// Length, m.
     pub length: f64,
@@ -81,6 +88,7 @@ pub struct Beam {
 /// A mesh from a Gmsh file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MeshFile {
     /// The file, relative to the scene file. Its physical curves name the edges.
     pub file: String,
@@ -89,12 +97,13 @@ pub struct MeshFile {
     pub element: ElementKind,
     /// What is in the file; read when the scene is opened.
     #[serde(skip)]
-    pub text: String,
+    pub text: Option<Arc<str>>,
 }
 
 /// The elements there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum ElementKind {
     /// Three nodes, constant strain.
     #[default]
@@ -103,23 +112,10 @@ pub enum ElementKind {
     T6,
 }
 
-impl ElementKind {
-    /// Every element there is.
-    pub const ALL: [Self; 2] = [Self::T3, Self::T6];
-
-    /// The name scene files use.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::T3 => "t3",
-            Self::T6 => "t6",
-        }
-    }
-}
-
 /// Which way the cells of a beam are cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Diagonals {
     /// Cell (i, j) from lower left to upper right where i + j is even, else the other way.
     #[default]
@@ -166,67 +162,10 @@ pub enum Plane {
     Strain,
 }
 
-/// Nodes held at their rest position.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Support {
-    /// The edge whose nodes are held …
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub edge: Option<String>,
-    /// … or the point whose nearest node is, rest coordinates, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub at: Option<[f64; 2]>,
-    /// The directions held.
-    pub fix: Vec<Axis>,
-}
-
-/// A direction of the plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Axis {
-    /// Along the rest beam.
-    X,
-    /// Across it.
-    Y,
-}
-
-/// A displacement to report: the mean over an edge, or of a material point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Probe {
-    /// What it is called in results.
-    pub name: String,
-    /// The edge it averages over …
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub edge: Option<String>,
-    /// … or the material point it follows, rest coordinates, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub at: Option<[f64; 2]>,
-}
-
-impl Support {
-    /// Where it holds.
-    ///
-    /// # Errors
-    /// Where not exactly one of `edge` and `at` is given.
-    pub fn place(&self) -> Result<Place, String> {
-        Place::new(self.edge.clone(), self.at)
-    }
-}
-
-impl Probe {
-    /// Where it looks.
-    ///
-    /// # Errors
-    /// Where not exactly one of `edge` and `at` is given.
-    pub fn place(&self) -> Result<Place, String> {
-        Place::new(self.edge.clone(), self.at)
-    }
-}
-
 /// How the equilibrium is found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct SolverSettings {
     /// The method, by its name in the registry.
     pub method: MethodKind,
@@ -236,26 +175,18 @@ pub struct SolverSettings {
     pub max_iterations: u32,
     /// `auto` only: the error that is asked for, percent of the true displacement.
     pub max_error_percent: f64,
-    /// `auto` only: the time a frame may take, ms.
-    pub budget_ms: f64,
 }
 
 impl Default for SolverSettings {
     fn default() -> Self {
-        Self {
-            method: MethodKind::default(),
-            tolerance: 1e-8,
-            max_iterations: 100,
-            max_error_percent: 1.0,
-            // A frame at 60 Hz, roughly.
-            budget_ms: 16.0,
-        }
+        Self { method: MethodKind::default(), tolerance: 1e-8, max_iterations: 100, max_error_percent: 1.0 }
     }
 }
 
 /// The methods there are; `method::METHODS` says what each does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum MethodKind {
     /// Small-rotation FEM, one solve.
     Linear,
@@ -268,45 +199,7 @@ pub enum MethodKind {
     Auto,
 }
 
-impl MethodKind {
-    /// The name scene files use.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Warped => "warped",
-            Self::Newton => "newton",
-            Self::Auto => "auto",
-        }
-    }
-}
-
 impl Scene {
-    /// The element of its mesh.
-    #[must_use]
-    pub fn element(&self) -> ElementKind {
-        let beam = self.beam.as_ref().map(|b| b.element);
-        beam.or(self.mesh.as_ref().map(|m| m.element)).unwrap_or_default()
-    }
-
-    /// Makes every triangle of its mesh this element.
-    pub fn set_element(&mut self, element: ElementKind) {
-        if let Some(beam) = &mut self.beam {
-            beam.element = element;
-        }
-        if let Some(mesh) = &mut self.mesh {
-            mesh.element = element;
-        }
-    }
-
-    /// Reads a scene from TOML text; `file` names it in errors.
-    ///
-    /// # Errors
-    /// [`SceneError::Syntax`] or [`SceneError::Invalid`], with the line.
-    pub fn from_toml(text: &str, file: &Path) -> Result<Self, SceneError> {
-        open::parse(text, file, &[])
-    }
-
     /// The scene as a TOML file.
     ///
     /// # Errors
@@ -320,14 +213,19 @@ impl Scene {
     /// # Errors
     /// The first key that is wrong and what was expected there.
     pub fn validate(&self) -> Result<(), Invalid> {
-        if self.name.trim().is_empty() {
-            return Err(Invalid::new("name", "expected a title, got an empty string"));
-        }
         match (&self.beam, &self.mesh) {
             (Some(beam), None) => beam.validate()?,
             (None, Some(_)) => {}
             (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither")),
             (Some(_), Some(_)) => return Err(Invalid::new("mesh", "expected [beam] or [mesh], got both")),
+        }
+        self.validate_all_but_geometry()
+    }
+
+    /// [`Self::validate`] for a scene that is put on a mesh of the caller's.
+    pub(crate) fn validate_all_but_geometry(&self) -> Result<(), Invalid> {
+        if self.name.trim().is_empty() {
+            return Err(Invalid::new("name", "expected a title, got an empty string"));
         }
         check("material.young", limits::YOUNG, self.material.young)?;
         check("material.poisson", self.material.plane.poisson_limit(), self.material.poisson)?;
@@ -338,7 +236,7 @@ impl Scene {
         }
         for (i, support) in self.supports.iter().enumerate() {
             let key = format!("support.{i}");
-            validate_place(&key, support.place())?;
+            support.place.validate(&key)?;
             if support.fix.is_empty() {
                 return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
             }
@@ -347,21 +245,16 @@ impl Scene {
             load.validate(&format!("load.{i}"))?;
         }
         for (i, probe) in self.probes.iter().enumerate() {
-            validate_place(&format!("probe.{i}"), probe.place())?;
+            probe.place.validate(&format!("probe.{i}"))?;
         }
         check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
         check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;
-        check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)?;
-        check("solver.budget_ms", limits::BUDGET_MS, self.solver.budget_ms)
+        check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)
     }
 }
 
 fn check(key: &str, limit: limits::Limit, value: f64) -> Result<(), Invalid> {
-    limit.check(value).map_err(|message| Invalid::new(key, message))
-}
-
-fn validate_place(key: &str, place: Result<Place, String>) -> Result<(), Invalid> {
-    place.map_err(|message| Invalid::new(key, message))?.validate(key)
+    limit.check(value).map_err(|e| Invalid::new(key, e.to_string()))
 }
 
 /// Length over height of a cell, or the inverse, beyond which an element's stiffness is all rounding.
@@ -375,18 +268,14 @@ impl Beam {
             check("beam.cells", limits::CELLS, f64::from(cells))?;
         }
         let total = f64::from(self.cells[0]) * f64::from(self.cells[1]);
-        limits::TOTAL_CELLS
-            .check(total)
-            .map_err(|message| Invalid::new("beam.cells", format!("{message} cells in all")))?;
+        limits::TOTAL_CELLS.check(total).map_err(|e| Invalid::new("beam.cells", format!("{e} cells in all")))?;
         let aspect = self.cell_aspect();
         if (1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect) {
             return Ok(());
         }
-        let most = limits::number(MAX_CELL_ASPECT);
-        let message = format!(
-            "expected cells at most {most} times as long as high or as high as long, got {}",
-            limits::number(aspect)
-        );
+        let most = number(MAX_CELL_ASPECT);
+        let message =
+            format!("expected cells at most {most} times as long as high or as high as long, got {}", number(aspect));
         Err(Invalid::new("beam.cells", message))
     }
 

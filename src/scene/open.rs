@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
@@ -29,9 +30,30 @@ pub struct Source {
 /// [`SceneError`], each with one message that says what was expected.
 pub fn open(source: &Source) -> Result<Scene, SceneError> {
     let file = PathBuf::from(&source.name);
-    match registry::find(&source.name) {
-        Some(built_in) => parse(built_in.toml, &file, &source.assignments),
-        None => parse(&read(&file)?, &file, &source.assignments),
+    let folder = file.parent().unwrap_or(Path::new("")).to_owned();
+    let text = match registry::find(&source.name) {
+        Some(built_in) => built_in.toml.to_owned(),
+        None => read(&file)?,
+    };
+    parse(&text, Some(&file), Some(&folder), &source.assignments)
+}
+
+impl Scene {
+    /// Reads a scene from TOML text. No other file is read: a scene whose mesh is in one can be simulated after
+    /// [`Self::from_toml_in`] only.
+    ///
+    /// # Errors
+    /// [`SceneError::Syntax`] or [`SceneError::Invalid`], with the line.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        parse(text, None, None, &[])
+    }
+
+    /// Reads a scene from TOML text, and its mesh from a file of this folder if it names one.
+    ///
+    /// # Errors
+    /// [`SceneError::Syntax`] or [`SceneError::Invalid`], with the line.
+    pub fn from_toml_in(text: &str, folder: &Path) -> Result<Self, SceneError> {
+        parse(text, None, Some(folder), &[])
     }
 }
 
@@ -54,9 +76,10 @@ fn read(path: &Path) -> Result<String, SceneError> {
     std::fs::read_to_string(path).map_err(|e| failed(e.to_string()))
 }
 
-pub(super) fn parse(text: &str, file: &Path, assignments: &[String]) -> Result<Scene, SceneError> {
+/// Reads a scene from the text of `file`, with assignments, and its mesh from `folder`.
+fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[String]) -> Result<Scene, SceneError> {
     let syntax = |e: toml::de::Error| SceneError::Syntax {
-        file: file.to_owned(),
+        file: file.map(Path::to_owned),
         line: e.span().map(|span| line_of(text, span.start)),
         message: e.message().trim().replace('\n', ", "),
     };
@@ -66,12 +89,12 @@ pub(super) fn parse(text: &str, file: &Path, assignments: &[String]) -> Result<S
         let mut table: Table = toml::from_str(text).map_err(syntax)?;
         for assignment in assignments {
             let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
-            let (key, value) = assign(&mut table, assignment).map_err(failed)?;
+            let (key, value) = assign(&mut table, assignment).map_err(|e| failed(e.to_string()))?;
             scene = Scene::deserialize_table(&table)
                 .map_err(|e| failed(format!("{} (got {key} = {value})", e.message().trim().replace('\n', ", "))))?;
         }
     }
-    let valid = scene.validate().and_then(|()| read_mesh(&mut scene, file));
+    let valid = scene.validate().and_then(|()| folder.map_or(Ok(()), |folder| read_mesh(&mut scene, folder)));
     valid.map_err(|invalid| {
         let blamed = assignments.iter().rev().find(|a| a.split('=').next().is_some_and(|k| same_key(k, &invalid.key)));
         match blamed {
@@ -82,12 +105,12 @@ pub(super) fn parse(text: &str, file: &Path, assignments: &[String]) -> Result<S
     Ok(scene)
 }
 
-/// Reads the mesh file of a scene, relative to the scene's own file; the meshes of built-in scenes are built in.
-fn read_mesh(scene: &mut Scene, file: &Path) -> Result<(), Invalid> {
+/// Reads the mesh file of a scene, relative to the scene's own folder; the meshes of built-in scenes are built in.
+fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
     const KEY: &str = "mesh.file";
     let Some(mesh) = &mut scene.mesh else { return Ok(()) };
-    let path = file.parent().unwrap_or(Path::new("")).join(&mesh.file);
-    mesh.text = match (registry::mesh(&mesh.file), path.is_file()) {
+    let path = folder.join(&mesh.file);
+    let text = match (registry::mesh(&mesh.file), path.is_file()) {
         (Some(text), false) => text.to_owned(),
         _ => {
             let failed = |reason: String| Invalid::new(KEY, format!("{}: {reason}", path.display()));
@@ -98,13 +121,14 @@ fn read_mesh(scene: &mut Scene, file: &Path) -> Result<(), Invalid> {
             std::fs::read_to_string(&path).map_err(|e| failed(format!("{e}; expected Gmsh format 4.1, ASCII")))?
         }
     };
+    mesh.text = Some(text.into());
     Ok(())
 }
 
 /// `Invalid` with the line its key is written on, if it is.
-pub(crate) fn located(text: &str, file: &Path, invalid: Invalid) -> SceneError {
+fn located(text: &str, file: Option<&Path>, invalid: Invalid) -> SceneError {
     let line = DeTable::parse(text).ok().and_then(|table| find_line(text, table.get_ref(), &invalid.key));
-    SceneError::Invalid { file: file.to_owned(), line, invalid }
+    SceneError::Invalid { file: file.map(Path::to_owned), line, invalid }
 }
 
 fn same_key(typed: &str, key: &str) -> bool {
@@ -120,21 +144,34 @@ impl Scene {
     }
 }
 
+/// Why an assignment has no place to go.
+#[derive(Debug, Error)]
+enum AssignError {
+    #[error("expected PATH=VALUE")]
+    NoAssignment,
+    #[error("expected PATH=VALUE, got an empty path")]
+    EmptyPath,
+    #[error("`{part}` is a {kind}: expected a table or a list there")]
+    NoPlace { part: String, kind: &'static str },
+    #[error("expected an index below {length}, got {part}")]
+    Index { part: String, length: usize },
+}
+
 /// Sets `a.0.b=value` in the table. A value that is no TOML is taken as a string, so that quotes can be left out.
-fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), String> {
-    let (key, text) = assignment.split_once('=').ok_or("expected PATH=VALUE")?;
+fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), AssignError> {
+    let (key, text) = assignment.split_once('=').ok_or(AssignError::NoAssignment)?;
     let (key, text) = (key.trim(), text.trim());
     let value = toml::from_str::<Table>(&format!("value = {text}"))
         .ok()
         .and_then(|mut t| if t.len() == 1 { t.remove("value") } else { None })
         .unwrap_or_else(|| Value::String(text.to_owned()));
     let mut parts: Vec<&str> = key.split('.').collect();
-    let last = parts.pop().filter(|k| !k.is_empty()).ok_or("expected PATH=VALUE, got an empty path")?;
+    let last = parts.pop().filter(|k| !k.is_empty()).ok_or(AssignError::EmptyPath)?;
     let mut place = PlaceMut::Table(table);
     for part in parts {
         place = place.enter(part)?;
     }
-    place.set(last, value.clone())?;
+    *place.slot(last)? = value.clone();
     Ok((key.to_owned(), value))
 }
 
@@ -144,42 +181,26 @@ enum PlaceMut<'a> {
 }
 
 impl<'a> PlaceMut<'a> {
-    fn enter(self, part: &str) -> Result<Self, String> {
-        let value = match self {
-            // A table that the file leaves out, such as [solver], comes into being.
-            Self::Table(table) => table.entry(part).or_insert_with(|| Value::Table(Table::new())),
-            Self::Array(array) => {
-                let length = array.len();
-                array.get_mut(index(part, length)?).ok_or_else(|| out_of_range(part, length))?
-            }
-        };
-        match value {
+    fn enter(self, part: &str) -> Result<Self, AssignError> {
+        match self.slot(part)? {
             Value::Table(table) => Ok(Self::Table(table)),
             Value::Array(array) => Ok(Self::Array(array)),
-            other => Err(format!("`{part}` is a {}: expected a table or a list there", other.type_str())),
+            other => Err(AssignError::NoPlace { part: part.to_owned(), kind: other.type_str() }),
         }
     }
 
-    fn set(self, part: &str, value: Value) -> Result<(), String> {
+    /// The value there. A table that the file leaves out, such as `[solver]`, comes into being.
+    fn slot(self, part: &str) -> Result<&'a mut Value, AssignError> {
         match self {
-            Self::Table(table) => {
-                table.insert(part.to_owned(), value);
-            }
+            Self::Table(table) => Ok(table.entry(part).or_insert_with(|| Value::Table(Table::new()))),
             Self::Array(array) => {
                 let length = array.len();
-                *array.get_mut(index(part, length)?).ok_or_else(|| out_of_range(part, length))? = value;
+                let no_index = || AssignError::Index { part: part.to_owned(), length };
+                let index: usize = part.parse().map_err(|_| no_index())?;
+                array.get_mut(index).ok_or_else(no_index)
             }
         }
-        Ok(())
     }
-}
-
-fn index(part: &str, length: usize) -> Result<usize, String> {
-    part.parse().map_err(|_| format!("expected an index below {length}, got `{part}`"))
-}
-
-fn out_of_range(part: &str, length: usize) -> String {
-    format!("expected an index below {length}, got {part}")
 }
 
 /// The line of the longest part of `key` that is written in the file.

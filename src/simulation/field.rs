@@ -2,12 +2,13 @@
 
 use nalgebra::Matrix2;
 
-use super::Simulation;
-use crate::element::{biot_stress, energy_density};
-use crate::rotation::polar;
+use crate::assembly::Problem;
+use crate::rotation::polar_or;
+use crate::state::State;
 
 /// A quantity with one value a quadrature point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Field {
     /// Von Mises stress, Pa.
     #[default]
@@ -45,6 +46,31 @@ impl Field {
             Self::RotationAngle => "°",
         }
     }
+
+    /// The field's value at every quadrature point of a state: element by element in the mesh's order, the points of an
+    /// element in the order of [`crate::element::ElementType::points`]. `None` where its arithmetic leaves the range of
+    /// f64.
+    pub fn values(self, problem: &Problem, state: &State, values: &mut Vec<Option<f64>>) {
+        values.clear();
+        let elements = problem.system().elements();
+        let (lame, material) = (problem.material().lame(), problem.material());
+        elements.visit_strains(&state.displacement, &state.rotations, &mut |q, h, strain| {
+            let value = match self {
+                Self::VonMises => {
+                    let stress = lame.stress(strain);
+                    von_mises(&stress, material.out_of_plane_stress(stress.trace()))
+                }
+                Self::EnergyDensity => lame.energy_density(strain),
+                Self::LargestStrain => largest_principal(strain),
+                Self::RotationAngle => {
+                    // Where the polar factor is undefined the state has the one before.
+                    let own = state.rotations[elements.rotation_of(q)];
+                    polar_or(&(Matrix2::identity() + h), own).angle().to_degrees()
+                }
+            };
+            values.push(value.is_finite().then_some(value));
+        });
+    }
 }
 
 /// The eigenvalue of a symmetric 2×2 matrix that is largest in magnitude, without sign.
@@ -53,32 +79,14 @@ pub(super) fn largest_principal(m: &Matrix2<f64>) -> f64 {
     mean.abs() + (0.5 * (m.m11 - m.m22)).hypot(m.m12)
 }
 
-impl Simulation {
-    /// The field's value at every quadrature point, element by element. A value whose arithmetic leaves the range of
-    /// f64 is reported as the largest number.
-    pub fn field(&self, field: Field, values: &mut Vec<f64>) {
-        values.clear();
-        values.resize(self.system().elements.point_count(), 0.0);
-        let (lame, material) = (self.system().lame, &self.system().material);
-        self.system().elements.visit_strains(self.displacement(), self.rotations(), &mut |q, h, strain| {
-            let value = match field {
-                Field::VonMises => {
-                    let t = biot_stress(lame, strain);
-                    let z = material.out_of_plane_stress(t.trace());
-                    let (a, b, c) = (t.m11 - t.m22, t.m22 - z, z - t.m11);
-                    let scale = a.abs().max(b.abs()).max(c.abs()).max(t.m12.abs());
-                    if scale == 0.0 {
-                        0.0
-                    } else {
-                        let [a, b, c, d] = [a, b, c, t.m12].map(|v| v / scale);
-                        scale * (0.5 * (a * a + b * b + c * c) + 3.0 * d * d).sqrt()
-                    }
-                }
-                Field::EnergyDensity => energy_density(lame, strain),
-                Field::LargestStrain => largest_principal(strain),
-                Field::RotationAngle => polar(&(Matrix2::identity() + h)).map_or(0.0, |r| r.angle().to_degrees()),
-            };
-            values[q] = if value.is_nan() { 0.0 } else { value.clamp(-f64::MAX, f64::MAX) };
-        });
+/// The von Mises stress of in-plane stresses and the normal stress out of the plane, Pa.
+fn von_mises(stress: &Matrix2<f64>, z: f64) -> f64 {
+    let (a, b, c) = (stress.m11 - stress.m22, stress.m22 - z, z - stress.m11);
+    // Scaled, so that squares of very large or small stresses stay in range.
+    let scale = a.abs().max(b.abs()).max(c.abs()).max(stress.m12.abs());
+    if scale == 0.0 {
+        return 0.0;
     }
+    let [a, b, c, d] = [a, b, c, stress.m12].map(|v| v / scale);
+    scale * (0.5 * (a * a + b * b + c * c) + 3.0 * d * d).sqrt()
 }

@@ -9,12 +9,11 @@ use nalgebra::Vector2;
 use super::Extent;
 use crate::method::METHODS;
 use crate::rotation::Rotation;
-use crate::scene::{
-    Axis, Beam, Diagonals, ElementKind, Load, Material, MethodKind, Place, Plane, Probe, Scene, SolverSettings, Support,
-};
-use crate::simulation::{Reason, Simulation, Status};
+use crate::scene::{ElementKind, Material, MethodKind, Plane, Scene};
+use crate::simulation::{Reason, Simulation, SimulationError, Status};
+use crate::words::number;
 
-/// The state a solve starts from; what supports hold stays at rest.
+/// The state a solve starts from; what supports fix stays at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Start {
     /// As meshed.
@@ -53,8 +52,8 @@ impl Start {
             Self::Mirrored => Vector2::new(x.x, -x.y),
             Self::Random => {
                 // Low-discrepancy: the same numbers on every machine.
-                let share = |k: f64| (k * (node as f64 + 1.0)).fract() - 0.5;
-                x + Vector2::new(share(0.754_877_666), share(0.569_840_291)) * (2.0 * height)
+                let offset = |k: f64| (k * (node as f64 + 1.0)).fract() - 0.5;
+                x + Vector2::new(offset(0.754_877_666), offset(0.569_840_291)) * (2.0 * height)
             }
             Self::Turned => Rotation::from_angle(179f64.to_radians()).apply(x),
         }
@@ -91,15 +90,19 @@ pub enum Outcome {
     Converged,
     /// Converged, with elements turned inside out.
     Inverted,
-    /// Going round without an end.
-    LimitCycle,
+    /// Iterating without getting nearer.
+    Stalled,
     /// Stopped before the end.
     NotConverged,
 }
 
 impl Outcome {
+    /// How many there are.
+    pub const COUNT: usize = 5;
+
     /// All of them, best first.
-    pub const ALL: [Self; 5] = [Self::Certified, Self::Converged, Self::Inverted, Self::LimitCycle, Self::NotConverged];
+    pub const ALL: [Self; Self::COUNT] =
+        [Self::Certified, Self::Converged, Self::Inverted, Self::Stalled, Self::NotConverged];
 
     /// The word in tables.
     #[must_use]
@@ -108,7 +111,7 @@ impl Outcome {
             Self::Certified => "certified",
             Self::Converged => "converged",
             Self::Inverted => "inverted",
-            Self::LimitCycle => "limit_cycle",
+            Self::Stalled => "stalled",
             Self::NotConverged => "not_converged",
         }
     }
@@ -143,7 +146,7 @@ pub fn cases(extent: Extent) -> Vec<Case> {
     let slendernesses = pick(&[1.0, 20.0, 1e3], &[1.0, 5.0, 20.0, 100.0, 1e3]);
     let aspects = pick(&[2.0], &[1.0, 5.0, 50.0]);
     let mut cases = Vec::new();
-    for (element, method) in ElementKind::ALL.into_iter().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
+    for (element, method) in ElementKind::all().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
         let ordinary = Case {
             element,
             method,
@@ -187,51 +190,40 @@ impl Case {
         let along = (self.slenderness * height / (self.aspect * cell)).round().clamp(1.0, MOST_CELLS);
         let length = self.slenderness * height;
         let force = self.alpha * self.young * height.powi(3) / 12.0 / (length * length);
-        Scene {
-            name: "Extreme".to_owned(),
-            about: String::new(),
-            analysis: crate::scene::Analysis::Static,
-            beam: Some(Beam {
-                length,
-                height,
-                cells: [along as u32, across],
-                element: self.element,
-                diagonals: Diagonals::Alternating,
-            }),
-            mesh: None,
-            material: Material {
-                young: self.young,
-                poisson: self.poisson,
-                density: 0.0,
-                thickness: 1.0,
-                plane: Plane::Strain,
-            },
-            supports: vec![Support { edge: Some("left".to_owned()), at: None, fix: vec![Axis::X, Axis::Y] }],
-            loads: vec![Load::Force { place: Place::edge("right"), force: [0.0, -force] }],
-            probes: vec![Probe { name: "tip".to_owned(), edge: Some("right".to_owned()), at: None }],
-            solver: SolverSettings { method: self.method, max_iterations: MAX_ITERATIONS, ..SolverSettings::default() },
-        }
+        let material = Material { density: 0.0, plane: Plane::Strain, ..Material::new(self.young, self.poisson) };
+        let mut scene = Scene::beam(length, height)
+            .with_cells(along as u32, across)
+            .with_element(self.element)
+            .with_material(material)
+            .with_method(self.method)
+            .clamp("left")
+            .force("right", [0.0, -force])
+            .probe("tip", "right");
+        scene.solver.max_iterations = MAX_ITERATIONS;
+        scene
     }
 
     /// Solves the case and classifies how it ends.
     ///
     /// # Errors
     /// What is wrong with its scene, which is a mistake in the atlas.
-    pub fn solve(self) -> Result<Entry, crate::simulation::SimulationError> {
+    pub fn solve(self) -> Result<Entry, SimulationError> {
         let scene = self.scene();
         let mut simulation = Simulation::new(&scene)?;
         if self.start != Start::Rest {
-            let nodes = simulation.system().mesh.nodes.iter().enumerate();
+            let nodes = simulation.system().mesh().nodes().iter().enumerate();
             let u = nodes.map(|(n, x)| self.start.place(n, *x, 1.0) - x).collect::<Vec<_>>();
-            simulation.start_from(&u);
+            // One vector a node, all finite.
+            let _ = simulation.start_from(&u);
         }
         simulation.solve();
-        let solution = simulation.solution(None);
-        let outcome = match (&solution.status, solution.certificate.stable) {
-            (Status::Converged, _) if solution.inverted_elements > 0 => Outcome::Inverted,
+        let stable = simulation.certify().stable;
+        let solution = simulation.solution();
+        let outcome = match (&solution.status, stable) {
+            (Status::Converged, _) if solution.deformation.inverted_elements > 0 => Outcome::Inverted,
             (Status::Converged, Some(true)) => Outcome::Certified,
             (Status::Converged, _) => Outcome::Converged,
-            (Status::Diverged(Reason::Wanders(_)), _) => Outcome::LimitCycle,
+            (Status::Diverged(Reason::Stalled(_)), _) => Outcome::Stalled,
             _ => Outcome::NotConverged,
         };
         let tip = solution.probes.first().map_or(Vector2::zeros(), |p| p.u) / self.slenderness;
@@ -270,17 +262,17 @@ pub fn table(entries: &[Entry]) -> String {
 
 /// How many cases of each element and method ended how.
 #[must_use]
-pub fn counts(entries: &[Entry]) -> BTreeMap<(&'static str, &'static str), [usize; 5]> {
+pub fn counts(entries: &[Entry]) -> BTreeMap<(&'static str, &'static str), [usize; Outcome::COUNT]> {
     let mut counts = BTreeMap::new();
     for e in entries {
-        let row: &mut [usize; 5] = counts.entry((e.case.element.id(), e.case.method.id())).or_default();
+        let row: &mut [usize; Outcome::COUNT] = counts.entry((e.case.element.id(), e.case.method.id())).or_default();
         row[e.outcome as usize] += 1;
     }
     counts
 }
 
 /// The loads of the atlas, small to large.
-fn alphas(entries: &[Entry]) -> Vec<f64> {
+pub(super) fn alphas(entries: &[Entry]) -> Vec<f64> {
     let mut alphas: Vec<f64> = entries.iter().map(|e| e.case.alpha).collect();
     alphas.sort_by(f64::total_cmp);
     alphas.dedup();
@@ -315,10 +307,10 @@ pub fn summary(entries: &[Entry]) -> String {
     text.push_str("\ncertified or converged, percent of the cases from rest, by load α = P L²/EI\nelement method ");
     let alphas = alphas(entries);
     for alpha in &alphas {
-        let _ = write!(text, " {:>6}", crate::scene::limits::number(*alpha));
+        let _ = write!(text, " {:>6}", number(*alpha));
     }
     text.push('\n');
-    for (element, method) in ElementKind::ALL.into_iter().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
+    for (element, method) in ElementKind::all().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
         let _ = write!(text, "{:<7} {:<7}", element.id(), method.id());
         for &alpha in &alphas {
             let _ = write!(text, " {:>6.0}", percent_well(entries, element, method, alpha));
@@ -326,111 +318,4 @@ pub fn summary(entries: &[Entry]) -> String {
         text.push('\n');
     }
     text
-}
-
-/// The atlas as a picture (SVG): for every element and method, load against slenderness; from rest, and from the other
-/// starts. A cell's bar is divided by how its cases ended.
-#[must_use]
-pub fn heat_map(entries: &[Entry]) -> String {
-    const CELL: [f64; 2] = [52.0, 20.0];
-    const MARGIN: [f64; 2] = [96.0, 64.0];
-    const GAP: f64 = 56.0;
-    const LEGEND: f64 = 128.0;
-    let columns = alphas(entries);
-    // Rows: slenderness from rest, then the other starts.
-    let mut rows: Vec<(String, Start, f64)> = entries
-        .iter()
-        .map(|e| match e.case.start {
-            Start::Rest => (format!("L/H {}", e.case.slenderness), Start::Rest, e.case.slenderness),
-            start => (start.id().to_owned(), start, e.case.slenderness),
-        })
-        .collect();
-    rows.sort_by(|a, b| (a.1, a.2).partial_cmp(&(b.1, b.2)).unwrap_or(std::cmp::Ordering::Equal));
-    rows.dedup_by(|a, b| a.0 == b.0);
-    let panel = [MARGIN[0] + CELL[0] * columns.len() as f64, GAP + CELL[1] * rows.len() as f64];
-    let size = [(20.0 + panel[0] * 2.0).max(LEGEND * 5.0 + 40.0), MARGIN[1] + panel[1] * METHODS.len() as f64];
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" font-family=\"Ubuntu, sans-serif\" font-size=\"12\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-        size[0], size[1]
-    );
-    let mut x = 20.0;
-    for outcome in Outcome::ALL {
-        let _ = writeln!(
-            svg,
-            "<rect x=\"{x}\" y=\"14\" width=\"14\" height=\"14\" fill=\"{}\"/><text x=\"{}\" y=\"26\">{}</text>",
-            color(outcome),
-            x + 20.0,
-            outcome.id().replace('_', " ")
-        );
-        x += LEGEND;
-    }
-    for (i, element) in ElementKind::ALL.into_iter().enumerate() {
-        for (j, method) in METHODS.iter().enumerate() {
-            let corner = [MARGIN[0] + panel[0] * i as f64, MARGIN[1] + panel[1] * j as f64];
-            let _ = writeln!(
-                svg,
-                "<text x=\"{}\" y=\"{}\" font-size=\"14\">{} {}: load α = P L²/EI</text>",
-                corner[0],
-                corner[1] - 8.0,
-                element.id(),
-                method.kind.id()
-            );
-            for (row, (label, start, slenderness)) in rows.iter().enumerate() {
-                let y = corner[1] + CELL[1] * row as f64;
-                let _ = writeln!(
-                    svg,
-                    "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{label}</text>",
-                    corner[0] - 6.0,
-                    y + 14.0
-                );
-                for (column, &alpha) in columns.iter().enumerate() {
-                    let here = entries.iter().filter(|e| {
-                        let c = &e.case;
-                        (c.element, c.method, c.start) == (element, method.kind, *start)
-                            && c.alpha == alpha
-                            && c.slenderness == *slenderness
-                    });
-                    let mut count = [0usize; 5];
-                    here.for_each(|e| count[e.outcome as usize] += 1);
-                    let total: usize = count.iter().sum();
-                    let mut left = corner[0] + CELL[0] * column as f64;
-                    for (outcome, count) in Outcome::ALL.into_iter().zip(count) {
-                        let width = (CELL[0] - 2.0) * count as f64 / total.max(1) as f64;
-                        if count > 0 {
-                            let _ = writeln!(
-                                svg,
-                                "<rect x=\"{left}\" y=\"{y}\" width=\"{width}\" height=\"{}\" fill=\"{}\"/>",
-                                CELL[1] - 2.0,
-                                color(outcome)
-                            );
-                        }
-                        left += width;
-                    }
-                }
-            }
-            for (column, alpha) in columns.iter().enumerate() {
-                let _ = writeln!(
-                    svg,
-                    "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                    corner[0] + CELL[0] * (column as f64 + 0.5),
-                    corner[1] + CELL[1] * rows.len() as f64 + 14.0,
-                    crate::scene::limits::number(*alpha)
-                );
-            }
-        }
-    }
-    svg.push_str("</svg>\n");
-    svg
-}
-
-/// Colours that differ in brightness (Okabe and Ito 2008).
-fn color(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Certified => "#0072b2",
-        Outcome::Converged => "#56b4e9",
-        Outcome::Inverted => "#f0e442",
-        Outcome::LimitCycle => "#e69f00",
-        Outcome::NotConverged => "#b03a2e",
-    }
 }

@@ -1,17 +1,18 @@
 //! Measurements over many solves.
 
-mod choice;
-mod curve;
 pub mod extremes;
+mod heat_map;
+mod load_curve;
 pub mod plot;
 mod reference;
 mod report;
-#[cfg(feature = "rivals")]
-pub mod rivals;
 mod timing;
 mod trade;
+mod tune;
 
-pub use choice::{Choice, Demand};
-pub use curve::{Limit, LoadCurve, MethodPoint, Sample};
-pub use reference::Reference;
-pub use trade::{ErrorSplit, Extent, Measurement, Progress, Setting, Study, StudyError, Watch};
+pub use heat_map::heat_map;
+pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
+pub use reference::{ProbeTruth, Reference, TruthSource};
+pub use timing::times_from_rest;
+pub use trade::{ErrorSplit, Extent, Measurement, Observer, Progress, Setting, Study, StudyError};
+pub use tune::{Demand, Tuning};

@@ -43,8 +43,8 @@ impl Axis {
     }
 
     fn place(&self, value: f64) -> f64 {
-        let share = (value.max(f64::MIN_POSITIVE).log10() - self.from) / (self.to - self.from);
-        self.start + self.length * share.clamp(0.0, 1.0)
+        let fraction = (value.max(f64::MIN_POSITIVE).log10() - self.from) / (self.to - self.from);
+        self.start + self.length * fraction.clamp(0.0, 1.0)
     }
 
     fn decades(&self) -> impl Iterator<Item = f64> {
@@ -52,13 +52,9 @@ impl Axis {
     }
 }
 
-fn color(method: MethodKind) -> &'static str {
-    match method {
-        MethodKind::Linear => "#e69f00",
-        MethodKind::Warped => "#b03a2e",
-        MethodKind::Newton => "#0072b2",
-        MethodKind::Auto => "#009e73",
-    }
+fn color(method: MethodKind) -> String {
+    let [r, g, b] = method.entry().color(false);
+    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// Draws the study.
@@ -80,7 +76,7 @@ pub fn svg(study: &Study) -> String {
             svg,
             "<line x1=\"{at}\" y1=\"{TOP}\" x2=\"{at}\" y2=\"{bottom}\" stroke=\"#ddd\"/><text x=\"{at}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
             bottom + 18.0,
-            crate::scene::limits::number(t)
+            crate::words::number(t)
         );
     }
     for e in y.decades() {
@@ -90,12 +86,12 @@ pub fn svg(study: &Study) -> String {
             "<line x1=\"{LEFT}\" y1=\"{at}\" x2=\"{right}\" y2=\"{at}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
             LEFT - 8.0,
             at + 4.0,
-            crate::scene::limits::number(e)
+            crate::words::number(e)
         );
     }
     let _ = writeln!(
         svg,
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">time of a frame, ms</text>\n\
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">time of a solve, ms</text>\n\
          <text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\">error bound, % of the true displacement</text>",
         0.5 * (LEFT + right),
         SIZE[1] - 14.0,
@@ -111,8 +107,8 @@ pub fn svg(study: &Study) -> String {
     }
     let mut row = TOP + 10.0;
     for method in METHODS.iter().map(|m| m.kind) {
-        for element in ElementKind::ALL {
-            let shape = shape(right + 22.0, row, element, color(method), 5.0);
+        for element in ElementKind::all() {
+            let shape = shape(right + 22.0, row, element, &color(method), 5.0);
             let _ = writeln!(
                 svg,
                 "{shape}<text x=\"{}\" y=\"{}\">{} {}</text>",
@@ -138,20 +134,21 @@ pub fn svg(study: &Study) -> String {
 
 fn mark(svg: &mut String, x: f64, y: f64, m: &Measurement) {
     let size = if m.pareto { 5.5 } else { 3.5 };
-    let shape = shape(x, y, m.setting.element, color(m.setting.method), size);
+    let shape = shape(x, y, m.setting.element, &color(m.setting.method), size);
     let opacity = if m.converged { 1.0 } else { 0.45 };
     let _ = writeln!(svg, "<g opacity=\"{opacity}\">{shape}<title>{}</title></g>", m.setting);
 }
 
-/// Triangles for three nodes, circles for six.
+/// A mark for every element: as many corners as it has nodes.
 fn shape(x: f64, y: f64, element: ElementKind, color: &str, size: f64) -> String {
-    match element.degree() {
-        1 => {
-            let (a, b, c) = (y - size, y + size, size);
-            format!("<path d=\"M{x:.1} {a:.1}L{:.1} {b:.1}L{:.1} {b:.1}Z\" fill=\"{color}\"/>", x + c, x - c)
-        }
-        _ => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{size}\" fill=\"{color}\"/>"),
-    }
+    let corners = element.entry().nodes.len();
+    let path: Vec<String> = (0..corners)
+        .map(|i| {
+            let (s, c) = (std::f64::consts::TAU * i as f64 / corners as f64).sin_cos();
+            format!("{:.1} {:.1}", x + size * s, y - size * c)
+        })
+        .collect();
+    format!("<path d=\"M{}Z\" fill=\"{color}\"/>", path.join("L"))
 }
 
 fn escape(text: &str) -> String {

@@ -1,23 +1,62 @@
-//! What a study measures errors against: a fine six-node solution whose own error is estimated from one half as fine, or
-//! the exact beam of [`crate::truth`] where it is as good as that.
+//! What errors are measured against, one truth for one scene everywhere: the exact beam of [`crate::truth`] where plane
+//! elasticity agrees with it, else a fine six-node solution.
+
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 
 use super::StudyError;
 use crate::assembly::System;
 use crate::mesh::Mesh;
-use crate::scene::{ElementKind, MethodKind, Scene};
-use crate::simulation::{Simulation, SimulationError, Status};
-use crate::truth::{Truth, error_percent};
+use crate::scene::{ElementKind, MethodKind, Place, Scene};
+use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
+use crate::truth::{BeamTruth, error_percent};
 
-/// The true displacement of a scene's first probe.
+/// Where a truth comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TruthSource {
+    /// The geometrically exact beam.
+    ExactBeam,
+    /// A fine six-node solution of the scene's rectangle.
+    FineSolution,
+    /// The six-node solution on the scene's mesh, refined.
+    RefinedMesh,
+}
+
+impl std::fmt::Display for TruthSource {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::ExactBeam => "the exact beam",
+            Self::FineSolution => "a fine t6 solution",
+            Self::RefinedMesh => "the t6 solution of its refined mesh",
+        })
+    }
+}
+
+/// What a probe would see without any error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProbeTruth {
+    /// Its displacement, m.
+    pub displacement: Vector2<f64>,
+    /// How that is known.
+    pub source: TruthSource,
+}
+
+impl ProbeTruth {
+    /// The distance of a result from the truth, over the true displacement, percent; `None` where nothing moves.
+    #[must_use]
+    pub fn error_percent(&self, result: &ProbeResult) -> Option<f64> {
+        error_percent(result.u, self.displacement)
+    }
+}
+
+/// The truth of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// Displacement, m.
-    pub displacement: Vector2<f64>,
-    /// Where it comes from, in words.
-    pub source: &'static str,
-    /// Its own estimated error, percent: of the exact beam, how far plane elasticity is from it; 0 where that is not known.
+    /// Of every probe of the scene.
+    probes: Vec<ProbeTruth>,
+    /// Its own estimated error at the first probe, percent: of the exact beam, how far plane elasticity is from it; 0
+    /// where that is not known.
     pub error_percent: f64,
     /// How far the exact beam is from the fine solution that had to replace it, percent.
     pub beam_off_by_percent: Option<f64>,
@@ -25,7 +64,7 @@ pub struct Reference {
 
 impl std::fmt::Display for Reference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.source)?;
+        write!(f, "{}", self.first().source)?;
         if self.error_percent > 0.0 {
             write!(f, " (its own error about {:.1e} %)", self.error_percent)?;
         }
@@ -36,105 +75,146 @@ impl std::fmt::Display for Reference {
 
 /// Cells along a beam that is fine enough to be the truth.
 const FINE: u32 = 64;
-/// Triangles of a mesh from a file that is: it is refined until it has as many, and at least once.
-const FINE_TRIANGLES: usize = 2000;
+/// Elements of a mesh from a file that is: it is refined until it has as many, and at least once.
+const FINE_ELEMENTS: usize = 2000;
+/// Elements of a mesh from a file beyond which its refinement is too dear to be a by-product of a solve.
+const MOST_ELEMENTS: usize = 4000;
 
 /// The exact beam is the truth if a fine solution is no farther from it than this, percent. A stubby beam under a large
 /// load is: its strains are large, and a section does not stay straight.
 const BEAM_AGREES: f64 = 0.5;
 
+/// A solution on a fine mesh and its estimated error.
+struct Fine {
+    probes: Vec<Vector2<f64>>,
+    error_percent: f64,
+    source: TruthSource,
+}
+
 impl Reference {
     /// Finds it.
     ///
     /// # Errors
-    /// [`StudyError`]: nothing moves, or the fine solution was not found.
+    /// [`StudyError`]: there is nothing to see, the fine solution was not found, or the scene's mesh is so fine already
+    /// that refining it would take too long.
     pub fn of(scene: &Scene) -> Result<Self, StudyError> {
-        let at_right = scene.probes.first().ok_or(StudyError::NoProbe)?.edge.as_deref() == Some("right");
-        let beam = Truth::of(scene).filter(|_| at_right).and_then(|t| t.tip_displacement());
-        let exact = |displacement, error_percent| Self {
-            displacement,
-            source: "the exact beam",
-            error_percent,
-            beam_off_by_percent: None,
-        };
-        moving(match (beam, Self::fine(scene)) {
+        scene.validate().map_err(SimulationError::from)?;
+        if scene.probes.is_empty() {
+            return Err(StudyError::NoProbe);
+        }
+        let beam = BeamTruth::of(scene).and_then(|t| t.tip_displacement());
+        let at_tip: Vec<bool> = scene.probes.iter().map(|p| p.place == Place::from("right")).collect();
+        match (beam, fine(scene)) {
             (Some(beam), Ok(fine)) => {
-                let off = error_percent(fine.displacement, beam).unwrap_or(0.0);
-                let agrees = off <= BEAM_AGREES;
-                if agrees { exact(beam, off) } else { Self { beam_off_by_percent: Some(off), ..fine } }
+                let off = at_tip.iter().zip(&fine.probes).find(|(at_tip, _)| **at_tip);
+                let off = off.and_then(|(_, &u)| error_percent(u, beam));
+                let agrees = off.is_none_or(|off| off <= BEAM_AGREES);
+                let probes = at_tip.iter().zip(&fine.probes).map(|(&at_tip, &u)| match at_tip && agrees {
+                    true => ProbeTruth { displacement: beam, source: TruthSource::ExactBeam },
+                    false => ProbeTruth { displacement: u, source: fine.source },
+                });
+                let first_is_beam = agrees && at_tip[0];
+                Ok(Self {
+                    probes: probes.collect(),
+                    error_percent: if first_is_beam { off.unwrap_or(0.0) } else { fine.error_percent },
+                    beam_off_by_percent: off.filter(|_| !agrees),
+                })
             }
             // Extremely slender: nothing to compare with, and nothing better.
-            (Some(beam), Err(StudyError::NoTruth)) => exact(beam, 0.0),
-            (_, fine) => fine?,
-        })
+            (Some(beam), Err(StudyError::NoTruth)) if at_tip.iter().all(|&at_tip| at_tip) => Ok(Self {
+                probes: vec![ProbeTruth { displacement: beam, source: TruthSource::ExactBeam }; at_tip.len()],
+                error_percent: 0.0,
+                beam_off_by_percent: None,
+            }),
+            (_, Ok(Fine { probes, error_percent, source })) => Ok(Self {
+                probes: probes.into_iter().map(|displacement| ProbeTruth { displacement, source }).collect(),
+                error_percent,
+                beam_off_by_percent: None,
+            }),
+            (_, Err(error)) => Err(error),
+        }
     }
 
-    /// The distance between two displacements over the true one's length, percent.
-    pub(super) fn percent(&self, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
-        100.0 * (a - b).norm() / self.displacement.norm()
+    /// The truth of every probe, in the scene's order.
+    #[must_use]
+    pub fn probes(&self) -> &[ProbeTruth] {
+        &self.probes
     }
 
-    /// The fine six-node solution.
-    fn fine(scene: &Scene) -> Result<Self, StudyError> {
-        let mut scene = scene.clone();
-        scene.set_element(ElementKind::T6);
-        let (coarse, fine, source) = match scene.beam.clone() {
-            Some(beam) => {
-                let mut solve = |along: u32| {
-                    let across = (f64::from(along) * beam.height / beam.length).round().max(1.0) as u32;
-                    if let Some(beam) = &mut scene.beam {
-                        beam.cells = [along, across];
-                    }
-                    end(&scene, MethodKind::Newton, system_of(&scene)?)
-                };
-                (solve(FINE / 2)?, solve(FINE)?, "a fine t6 solution")
-            }
-            None => {
-                let system = system_of(&scene)?;
-                let mut mesh = system.mesh.clone();
-                let mut coarse = end(&scene, MethodKind::Newton, system)?;
-                let solve = |mesh: &Mesh| {
-                    let system = System::with_mesh(&scene, mesh.clone()).map_err(SimulationError::from)?;
-                    end(&scene, MethodKind::Newton, system)
-                };
-                mesh = mesh.refined();
-                let mut fine = solve(&mesh)?;
-                while mesh.triangle_count() < FINE_TRIANGLES {
-                    mesh = mesh.refined();
-                    coarse = std::mem::replace(&mut fine, solve(&mesh)?);
-                }
-                (coarse, fine, "the t6 solution of its refined mesh")
-            }
-        };
-        let error_percent = error_percent(coarse, fine).unwrap_or(0.0);
-        Ok(Self { displacement: fine, source, error_percent, beam_off_by_percent: None })
+    /// The truth of the first probe, by which settings are compared.
+    #[must_use]
+    pub fn first(&self) -> ProbeTruth {
+        // There is one: a reference without probes is never made.
+        let none = ProbeTruth { displacement: Vector2::zeros(), source: TruthSource::FineSolution };
+        self.probes.first().copied().unwrap_or(none)
+    }
+
+    /// The distance between two displacements over the first probe's true one, percent.
+    #[must_use]
+    pub fn percent(&self, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
+        100.0 * (a - b).norm() / self.first().displacement.norm()
     }
 }
 
-/// The reference, if it moves at all: errors are relative to it.
-fn moving(reference: Reference) -> Result<Reference, StudyError> {
-    if reference.displacement.norm() > 0.0 { Ok(reference) } else { Err(StudyError::NoProbe) }
+/// The fine six-node solution.
+fn fine(scene: &Scene) -> Result<Fine, StudyError> {
+    let mut scene = scene.clone();
+    scene.set_element(ElementKind::T6);
+    let (coarse, fine, source) = match scene.beam.clone() {
+        Some(beam) => {
+            let mut solve = |along: u32| {
+                let across = (f64::from(along) * beam.height / beam.length).round().max(1.0) as u32;
+                if let Some(beam) = &mut scene.beam {
+                    beam.cells = [along, across];
+                }
+                end(&scene, MethodKind::Newton, &system_of(&scene)?)
+            };
+            (solve(FINE / 2)?, solve(FINE)?, TruthSource::FineSolution)
+        }
+        None => {
+            let system = system_of(&scene)?;
+            if system.mesh().element_count() > MOST_ELEMENTS {
+                return Err(StudyError::TooFine { elements: system.mesh().element_count() });
+            }
+            let solve = |mesh: &Mesh| {
+                let system = System::with_mesh(&scene, mesh.clone()).map_err(SimulationError::from)?;
+                end(&scene, MethodKind::Newton, &Arc::new(system))
+            };
+            let mut coarse = end(&scene, MethodKind::Newton, &system)?;
+            let mut mesh = system.mesh().refined();
+            let mut fine = solve(&mesh)?;
+            while mesh.element_count() < FINE_ELEMENTS {
+                mesh = mesh.refined();
+                coarse = std::mem::replace(&mut fine, solve(&mesh)?);
+            }
+            (coarse, fine, TruthSource::RefinedMesh)
+        }
+    };
+    let first = |probes: &[Vector2<f64>]| probes.first().copied().unwrap_or_default();
+    let error_percent = error_percent(first(&coarse), first(&fine)).unwrap_or(0.0);
+    Ok(Fine { probes: fine, error_percent, source })
 }
 
 /// The equations of a scene.
-pub(super) fn system_of(scene: &Scene) -> Result<System, StudyError> {
-    Ok(System::new(scene).map_err(SimulationError::from)?)
+pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
+    Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
 }
 
-/// Displacement of the first probe where a method ends, given all the iterations it needs.
-pub(super) fn end(scene: &Scene, method: MethodKind, system: System) -> Result<Vector2<f64>, StudyError> {
+/// Displacements of the probes where a method ends, given all the iterations it needs.
+pub(super) fn end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
     scene.solver.max_iterations = scene.solver.max_iterations.max(200);
-    let mut simulation = Simulation::with_system(&scene, system)?;
+    let mut simulation = Simulation::with_system(&scene, system.clone())?;
     if *simulation.solve() != Status::Converged && method == MethodKind::Newton {
         return Err(StudyError::NoTruth);
     }
-    probe(&simulation)
+    let displacement = simulation.displacement();
+    Ok(simulation.problem().probes().iter().map(|p| p.mean(displacement)).collect())
 }
 
 /// Displacement of the first probe, m.
-pub(super) fn probe(simulation: &Simulation) -> Result<Vector2<f64>, StudyError> {
-    let probe = simulation.system().probes.first().ok_or(StudyError::NoProbe)?;
+pub(super) fn first_probe(simulation: &Simulation) -> Result<Vector2<f64>, StudyError> {
+    let probe = simulation.problem().probes().first().ok_or(StudyError::NoProbe)?;
     Ok(probe.mean(simulation.displacement()))
 }

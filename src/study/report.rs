@@ -68,7 +68,7 @@ impl Study {
                 .cheapest_within(percent)
                 .map_or_else(|| "not reached".to_owned(), |m| format!("{:.4} ms, {}", m.milliseconds(), m.setting));
             let _ = writeln!(text, "an error of {percent} % costs {words}");
-            for element in ElementKind::ALL {
+            for element in ElementKind::all() {
                 for method in METHODS.iter().map(|m| m.kind) {
                     let own = self.measurements.iter().filter(|m| {
                         (m.setting.element, m.setting.method) == (element, method) && m.error.bound() <= percent

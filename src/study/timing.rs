@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::method::Profile;
+use crate::method::Timings;
 use crate::simulation::{Simulation, Status};
 
 /// Repetitions that only warm up caches, branch predictors and clocks.
@@ -15,8 +15,9 @@ const FEWEST: usize = 3;
 const LONG: Duration = Duration::from_millis(400);
 
 /// The time from rest to the end of each of the first `iterations`, fewer where the solve ends before.
-pub(super) fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Profile> {
-    let mut runs: Vec<Vec<Profile>> = Vec::new();
+#[must_use]
+pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timings> {
+    let mut runs: Vec<Vec<Timings>> = Vec::new();
     let start = Instant::now();
     for repetition in 0..WARM_UP + REPETITIONS {
         if runs.len() >= FEWEST && start.elapsed() > LONG {
@@ -26,7 +27,7 @@ pub(super) fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> V
         let mut run = Vec::new();
         while simulation.iterations() < iterations && *simulation.status() == Status::Running {
             simulation.step();
-            run.push(*simulation.profile());
+            run.push(*simulation.timings());
         }
         if repetition >= WARM_UP {
             runs.push(run);
@@ -35,12 +36,12 @@ pub(super) fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> V
     let count = runs.iter().map(Vec::len).min().unwrap_or(0);
     (0..count)
         .map(|i| {
-            let median = |stage: fn(&Profile) -> Duration| {
+            let median = |stage: fn(&Timings) -> Duration| {
                 let mut times: Vec<Duration> = runs.iter().map(|run| stage(&run[i])).collect();
                 times.sort_unstable();
                 times[times.len() / 2]
             };
-            Profile {
+            Timings {
                 rotate: median(|p| p.rotate),
                 assemble: median(|p| p.assemble),
                 factorize: median(|p| p.factorize),

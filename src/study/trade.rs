@@ -1,17 +1,16 @@
-//! The trade: error against time, for every element, mesh, method and number of iterations a frame, on this machine.
+//! The trade: error against time, for every element, mesh, method and number of iterations, on this machine.
 //!
-//! A frame answers a load from rest, the hardest it can be asked; what is found once for a mesh (sparsity, ordering, the
-//! factor of the stiffness at rest that `auto` keeps) is there. Static scenes are measured. Dynamic ones add a time step
-//! and an integrator: further fields of [`Setting`].
+//! A solve answers a load from rest, the hardest it can be asked; what is found once for a mesh (sparsity, ordering, the
+//! factor of the stiffness at rest that `auto` keeps) is there.
 
 use std::ops::ControlFlow;
 
-use super::reference::{Reference, end, probe, system_of};
+use super::reference::{Reference, end, first_probe, system_of};
 use super::timing::times_from_rest;
-use crate::method::{METHODS, Profile};
-use crate::scene::limits::count;
+use crate::method::{METHODS, Timings};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
+use crate::words::count;
 
 /// What is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,12 +21,12 @@ pub struct Setting {
     pub cells: Option<[u32; 2]>,
     /// Method.
     pub method: MethodKind,
-    /// Iterations a frame.
+    /// Iterations a solve.
     pub iterations: u32,
 }
 
 impl Setting {
-    /// The scene's own, with so many iterations a frame.
+    /// The scene's own, with so many iterations.
     #[must_use]
     pub fn of(scene: &Scene, iterations: u32) -> Self {
         let cells = scene.beam.as_ref().map(|b| b.cells);
@@ -94,8 +93,8 @@ pub struct Measurement {
     pub dofs: usize,
     /// Whether the method had ended by itself by then.
     pub converged: bool,
-    /// Time of a frame: median over repetitions, stage by stage.
-    pub time: Profile,
+    /// Time of a solve: median over repetitions, stage by stage.
+    pub time: Timings,
     /// Its error.
     pub error: ErrorSplit,
     /// Whether no other measurement is both faster and, by [`ErrorSplit::bound`], closer.
@@ -103,7 +102,7 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Time of a frame, ms.
+    /// Time of a solve, ms.
     #[must_use]
     pub fn milliseconds(&self) -> f64 {
         self.time.total().as_secs_f64() * 1e3
@@ -125,6 +124,7 @@ pub struct Study {
 
 /// Why a scene cannot be studied.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
+#[non_exhaustive]
 pub enum StudyError {
     /// The scene does not set up.
     #[error(transparent)]
@@ -132,6 +132,12 @@ pub enum StudyError {
     /// Nothing to compare.
     #[error("expected a scene with a probe that moves; errors are measured there")]
     NoProbe,
+    /// A mesh from a file whose refinement would take too long.
+    #[error("no truth: the mesh of {elements} elements is too large to be refined")]
+    TooFine {
+        /// Elements of the mesh.
+        elements: usize,
+    },
     /// The fine solution that would be the truth was not found.
     #[error("no truth: the fine solution of the scene does not converge")]
     NoTruth,
@@ -143,8 +149,8 @@ pub enum StudyError {
 /// How far a study is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress<'a> {
-    /// Share that is done, 0 to 1; guessed from sizes.
-    pub share: f64,
+    /// Fraction that is done, 0 to 1; guessed from sizes.
+    pub fraction: f64,
     /// What is measured now.
     pub now: &'a str,
     /// What has been measured so far, each time a mesh is done.
@@ -152,7 +158,7 @@ pub struct Progress<'a> {
 }
 
 /// Is told how far a study is, and calls it off with [`ControlFlow::Break`].
-pub type Watch<'a> = &'a mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
+pub type Observer<'a> = &'a mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
 
 /// How many meshes a study looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,7 +169,7 @@ pub enum Extent {
     Full,
 }
 
-/// The most iterations a frame that are looked at, for methods that do not end before.
+/// The most iterations that are looked at, for methods that do not end before.
 const MOST_ITERATIONS: u32 = 20;
 /// The numbers of iterations that are kept.
 const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, MOST_ITERATIONS];
@@ -173,26 +179,30 @@ impl Study {
     ///
     /// # Errors
     /// [`StudyError`].
-    pub fn new(scene: &Scene, extent: Extent, watch: Watch<'_>) -> Result<Self, StudyError> {
+    pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
         let meshes = meshes(scene, extent);
         let all: f64 = meshes.iter().map(|m| m.weight).sum();
-        let mut study = Self::begin(scene, watch)?;
+        let mut study = Self::begin(scene, observe)?;
         let mut done = 0.0;
         for mesh in &meshes {
-            let share = done / all;
-            study.measure(scene, mesh, &mut |now| check(watch(Progress { share, now, so_far: None })))?;
+            let fraction = done / all;
+            study.measure(scene, mesh, &mut |now| check(observe(Progress { fraction, now, so_far: None })))?;
             done += mesh.weight;
-            check(watch(Progress { share: done / all, now: "", so_far: Some(&study) }))?;
+            check(observe(Progress { fraction: done / all, now: "", so_far: Some(&study) }))?;
         }
         Ok(study)
     }
 
     /// A study with its truth and nothing measured yet.
-    pub(super) fn begin(scene: &Scene, watch: Watch<'_>) -> Result<Self, StudyError> {
-        check(watch(Progress { share: 0.0, now: "the truth", so_far: None }))?;
+    pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
+        check(observe(Progress { fraction: 0.0, now: "the truth", so_far: None }))?;
+        let reference = Reference::of(scene)?;
+        if reference.first().displacement.norm() == 0.0 {
+            return Err(StudyError::NoProbe);
+        }
         Ok(Self {
             scene: scene.name.clone(),
-            reference: Reference::of(scene)?,
+            reference,
             asked_percent: scene.solver.max_error_percent,
             measurements: Vec::new(),
         })
@@ -207,16 +217,20 @@ impl Study {
     ) -> Result<(), StudyError> {
         let MeshChoice { element, cells, .. } = *mesh;
         let words = mesh_words(element, cells);
-        let truth = self.reference.displacement;
+        let truth = self.reference.first().displacement;
         let percent = |a, b| self.reference.percent(a, b);
         let with = |method| Setting { element, cells, method, iterations: 1 }.apply(scene);
         let meshed = with(MethodKind::Newton);
         say(&words)?;
-        let exact = end(&meshed, MethodKind::Newton, system_of(&meshed)?)?;
-        let linear = end(&meshed, MethodKind::Linear, system_of(&meshed)?)?;
+        let system = system_of(&meshed)?;
+        let first_end = |method| -> Result<_, StudyError> {
+            Ok(end(&meshed, method, &system)?.first().copied().unwrap_or_default())
+        };
+        let exact = first_end(MethodKind::Newton)?;
+        let linear = first_end(MethodKind::Linear)?;
         for method in METHODS.iter().map(|m| m.kind) {
             say(&format!("{words}, {}", method.id()))?;
-            let mut simulation = Simulation::new(&with(method))?;
+            let mut simulation = Simulation::with_system(&with(method), system.clone())?;
             // `auto` has no number of iterations to choose: it ends by itself.
             let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };
             let times = times_from_rest(&mut simulation, most);
@@ -227,9 +241,9 @@ impl Study {
                 if !ended && (method == MethodKind::Auto || !ITERATIONS.contains(&iterations)) {
                     continue;
                 }
-                let tip = probe(&simulation)?;
+                let tip = first_probe(&simulation)?;
                 // Where a corotated method ends it is at the exact equilibrium; where not, there is no end.
-                let own_end = if simulation.corotates() { exact } else { linear };
+                let own_end = if simulation.is_linear() { linear } else { exact };
                 self.measurements.push(Measurement {
                     setting: Setting { element, cells, method, iterations },
                     dofs: simulation.system().dofs(),
@@ -292,21 +306,20 @@ pub(super) struct MeshChoice {
 /// The meshes of a scene, coarse to fine for each element.
 pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
     let mut meshes = Vec::new();
-    for element in ElementKind::ALL {
+    for element in ElementKind::all() {
         let Some(beam) = &scene.beam else {
             meshes.push(MeshChoice { element, cells: None, weight: 1.0 });
             continue;
         };
-        // As many unknowns for either element; cells as high as long where the beam allows.
-        let along: &[u32] = match element.degree() {
-            1 => &[5, 10, 20, 40, 80, 160],
-            _ => &[3, 5, 10, 20, 40, 80],
-        };
-        let along = if extent == Extent::Quick { &along[..4] } else { along };
-        for &along in along {
-            let degree = f64::from(element.degree());
-            let across = (f64::from(along) * beam.height / beam.length / degree).round().max(1.0) as u32;
-            let nodes = f64::from(along) * f64::from(across) * degree * degree;
+        // About as many nodes along for every element; cells as high as long where the beam allows.
+        let pieces = element.entry().sides[0].len() as u32 - 1;
+        let nodes_along: &[u32] = &[5, 10, 20, 40, 80, 160];
+        let nodes_along = if extent == Extent::Quick { &nodes_along[..4] } else { nodes_along };
+        for &nodes_along in nodes_along {
+            let along = nodes_along.div_ceil(pieces);
+            let pieces = f64::from(pieces);
+            let across = (f64::from(along) * beam.height / beam.length / pieces).round().max(1.0) as u32;
+            let nodes = f64::from(along) * f64::from(across) * pieces * pieces;
             // The setting up of a mesh takes some time too.
             meshes.push(MeshChoice { element, cells: Some([along, across]), weight: 30.0 + nodes });
         }

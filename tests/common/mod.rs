@@ -2,6 +2,9 @@
 #![allow(dead_code, reason = "each test uses its part")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+#[cfg(feature = "app")]
+pub mod pictures;
+
 use std::path::Path;
 use std::process::{Command, Output};
 

@@ -2,9 +2,9 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{Action, PanelState, Shown};
+use super::{Action, PanelInput, PanelState};
+use crate::app::action::MOST_ITERATIONS;
 use crate::app::field::{NumberField, show_message};
-use crate::app::lab::MOST_ITERATIONS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, Plane, Scene, limits};
 
@@ -81,8 +81,8 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
     show_message(ui, &state.messages, "Plane");
 }
 
-pub(super) fn mesh_and_method(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let scene = shown.scene;
+pub(super) fn mesh_and_method(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let scene = input.scene;
     for (axis, label, tooltip, most) in [
         (0, "Cells along", "Cells along the beam; each is two triangles.", 400.0),
         (1, "Cells across", "Cells across the beam; each is two triangles.", 40.0),
@@ -126,9 +126,9 @@ pub(super) fn mesh_and_method(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelS
     show_message(ui, &state.messages, "Method");
     ui.horizontal(|ui| {
         ui.label("Element");
-        for element in ElementKind::ALL {
+        for element in ElementKind::all() {
             let selected = scene.element() == element;
-            if ui.radio(selected, element.id()).on_hover_text(element.about()).clicked() && !selected {
+            if ui.radio(selected, element.id()).on_hover_text(element.entry().about).clicked() && !selected {
                 let mut scene = Box::new(scene.clone());
                 scene.set_element(element);
                 actions.push(Action::Edit("Element", scene));
@@ -138,13 +138,13 @@ pub(super) fn mesh_and_method(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelS
     show_message(ui, &state.messages, "Element");
     let field = NumberField {
         label: "Per frame",
-        tooltip: "Iterations a frame: more converge in fewer frames, which take longer.",
+        tooltip: "Iterations a displayed frame: more converge in fewer frames, which take longer.",
         limit: limits::Limit { unit: "", min: 1.0, max: f64::from(MOST_ITERATIONS) },
         slider: 1.0..=20.0,
         logarithmic: None,
         whole: true,
     };
-    if let Some(new) = field.show(ui, &mut state.messages, f64::from(shown.iterations)) {
+    if let Some(new) = field.show(ui, &mut state.messages, f64::from(input.iterations)) {
         actions.push(Action::Iterations(new as u32));
     }
 }

@@ -2,9 +2,9 @@
 
 use egui::Ui;
 
-use super::{Action, PanelState, Shown};
+use super::{Action, PanelInput, PanelState};
 use crate::app::field::NumberField;
-use crate::scene::{Load, Place, Scene, limits};
+use crate::scene::{Load, Scene, limits};
 
 const DOWN: f64 = -90.0;
 
@@ -26,8 +26,13 @@ fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
     [magnitude * c, magnitude * s]
 }
 
-pub(super) fn force_and_gravity(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let scene = shown.scene;
+pub(super) fn force_and_gravity(
+    ui: &mut Ui,
+    input: &PanelInput<'_>,
+    state: &mut PanelState,
+    actions: &mut Vec<Action>,
+) {
+    let scene = input.scene;
     let force = scene.loads.iter().find_map(|l| match l {
         Load::Force { force, .. } => Some(*force),
         _ => None,
@@ -40,7 +45,7 @@ pub(super) fn force_and_gravity(ui: &mut Ui, shown: &Shown<'_>, state: &mut Pane
     let direction = direction.or(state.force_direction).unwrap_or(DOWN);
     let material = &scene.material;
     // A force that strains the whole section by 1, rounded up: as far as anything can be seen.
-    let (low, high) = shown.simulation.system().mesh.bounds();
+    let (low, high) = input.simulation.system().mesh().bounds();
     let height = (high - low).min();
     let largest = (material.young * material.thickness * height).clamp(1e-6, 1e14);
     let largest = 10f64.powf(largest.log10().ceil());
@@ -85,15 +90,15 @@ pub(super) fn force_and_gravity(ui: &mut Ui, shown: &Shown<'_>, state: &mut Pane
 }
 
 /// The moment on the right edge, or on whichever edge has one.
-pub(super) fn moment(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let current = shown.scene.loads.iter().find_map(|l| match l {
+pub(super) fn moment(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let current = input.scene.loads.iter().find_map(|l| match l {
         Load::Moment { moment, .. } => Some(*moment),
         _ => None,
     });
     // What rolls the rest shape up once, rounded up: 2πEI/L.
-    let (low, high) = shown.simulation.system().mesh.bounds();
+    let (low, high) = input.simulation.system().mesh().bounds();
     let (length, height) = ((high - low).max(), (high - low).min());
-    let material = &shown.scene.material;
+    let material = &input.scene.material;
     let circle = std::f64::consts::TAU * material.young * material.thickness * height.powi(3) / (12.0 * length);
     let largest = 10f64.powf(circle.clamp(1e-6, 1e14).log10().ceil());
     let field = NumberField {
@@ -105,7 +110,7 @@ pub(super) fn moment(ui: &mut Ui, shown: &Shown<'_>, state: &mut PanelState, act
         whole: false,
     };
     if let Some(new) = field.show(ui, &mut state.messages, current.unwrap_or(0.0)) {
-        let mut scene = Box::new(shown.scene.clone());
+        let mut scene = Box::new(input.scene.clone());
         let first = scene.loads.iter_mut().find_map(|l| match l {
             Load::Moment { moment, .. } => Some(moment),
             _ => None,
@@ -132,7 +137,7 @@ fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
     });
     match first {
         Some(force) => *force = new,
-        None => scene.loads.push(Load::Force { place: Place::edge("right"), force: new }),
+        None => scene.loads.push(Load::Force { place: "right".into(), force: new }),
     }
     scene
 }

@@ -2,16 +2,15 @@
 
 use egui::{Grid, RichText, Ui};
 
-use super::Shown;
+use super::PanelInput;
 use crate::app::format;
 use crate::method::rho_words;
-use crate::scene::limits::count;
-use crate::simulation::Status;
-use crate::truth::error_percent;
+use crate::simulation::{Status, probe_results};
+use crate::words::count;
 
 /// The status as a sentence, and whether it is a bad one.
-pub(in crate::app) fn status_words(shown_status: &Status, running: bool) -> (String, bool) {
-    match shown_status {
+pub(in crate::app) fn status_words(status: &Status, running: bool) -> (String, bool) {
+    match status {
         Status::Running if running => ("Iterating".to_owned(), false),
         Status::Running => ("Paused".to_owned(), false),
         Status::Converged => ("Converged".to_owned(), false),
@@ -25,13 +24,14 @@ const STATUS_HEIGHT: f32 = 50.0;
 /// In place of a number that is not known.
 const UNKNOWN: &str = "\u{2013}";
 
-/// The error of the probe on the right edge against the truth.
-fn tip_error(shown: &Shown<'_>) -> Option<String> {
-    let truth = shown.truth?;
-    let simulation = shown.simulation;
-    let probe = simulation.system().probes.iter().find(|p| p.is_at_tip())?;
-    let percent = error_percent(probe.mean(simulation.displacement()), truth)?;
-    Some(format!("{} % of {} m", format::short(percent), format::short(truth.norm())))
+/// The error of the first probe, and what it is measured against.
+fn error_words(input: &PanelInput<'_>) -> Option<(String, String)> {
+    let (reference, simulation) = (input.truth?, input.simulation);
+    let truth = reference.first();
+    let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
+    let percent = truth.error_percent(&probe)?;
+    let length = truth.displacement.norm();
+    Some((format!("{} % of {} m", format::short(percent), format::short(length)), reference.to_string()))
 }
 
 /// With a capital and a full stop.
@@ -40,16 +40,16 @@ fn sentence(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
-    let simulation = shown.simulation;
-    let (words, bad) = status_words(simulation.status(), shown.running);
+pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>) {
+    let simulation = input.simulation;
+    let (words, bad) = status_words(simulation.status(), input.running);
     let color = if bad { ui.visuals().error_fg_color } else { ui.visuals().strong_text_color() };
     // Nothing here may change its height: a slider further down would move away under the pointer that drags it.
     ui.allocate_ui(egui::vec2(ui.available_width(), STATUS_HEIGHT), |ui| {
         ui.set_min_height(STATUS_HEIGHT);
         ui.add(egui::Label::new(RichText::new(words).color(color)).wrap());
     });
-    let time = shown.frame_time;
+    let time = input.timings;
     let us = |d: std::time::Duration| format!("{:.0} µs", d.as_secs_f64() * 1e6);
     Grid::new("result").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         let mut row = |name: &str, value: String, tip: &str| {
@@ -62,7 +62,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             format!("{}, residual {:.2e}", simulation.iterations(), simulation.residual()),
             "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
         );
-        for probe in simulation.system().probes.iter().take(1) {
+        for probe in simulation.problem().probes().iter().take(1) {
             let u = probe.mean(simulation.displacement());
             // Beside a component of ordinary size, rounding is no number to show.
             let [x, y] = [u.x, u.y].map(|v| if v.abs() < 1e-12 * u.norm() { 0.0 } else { v });
@@ -72,32 +72,35 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
                 "Displacement of the probe",
             );
         }
-        row(
-            "Error",
-            tip_error(shown).unwrap_or_else(|| UNKNOWN.to_owned()),
-            "Distance from the exact beam's tip (it stretches and shears too), over its displacement; known for cantilevers",
-        );
+        let (error, truth) = error_words(input).unwrap_or_else(|| (UNKNOWN.to_owned(), "a truth".to_owned()));
+        row("Error", error, &format!("Distance of the first probe from {truth}, over its displacement"));
         let (factor, steps) = simulation.load_stepping();
         let percent = format::short(100.0 * factor);
         row("Load steps", format!("{steps}, at {percent} % of the load"), "Parts in which the load is put on");
-        let certified = simulation.certificate().stable.filter(|_| *simulation.status() == Status::Converged);
+        let certificate = simulation.certificate().unwrap_or_default();
+        let certified = certificate.stable.filter(|_| *simulation.status() == Status::Converged);
         let word = certified.map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
         row("Equilibrium", word.to_owned(), "Certified: whether the exact tangent A + G is positive definite");
-        let thrift = simulation.thrift();
-        let words = thrift.map_or_else(|| UNKNOWN.to_owned(), |t| sentence(&t.decision.to_string()));
-        let tip = thrift.filter(|t| t.estimated_error.is_finite()).map_or_else(
-            || "What method auto leaves out".to_owned(),
+        let auto = simulation.auto_report();
+        let words = auto.map_or_else(|| UNKNOWN.to_owned(), |t| sentence(&t.decision.to_string()));
+        let tip = auto.filter(|t| t.estimated_error.is_finite()).map_or_else(
+            || "What method auto skips".to_owned(),
             |t| {
                 let error = format::short(100.0 * t.estimated_error);
-                let [solves, factors] = [count(t.solves, "back substitution"), count(t.factorizations, "factorization")];
+                let [solves, factors] =
+                    [count(t.solves, "back substitution"), count(t.factorizations, "factorization")];
                 format!("Estimated error {error} %, {solves}, {factors}")
             },
         );
         row("Auto", words, &tip);
         let unknowns = simulation.system().dofs();
-        row("Frame", format!("{}, {unknowns} unknowns", us(time.total())), "Time of the last frame's iterations");
+        row(
+            "Frame",
+            format!("{}, {unknowns} unknowns", us(time.total())),
+            "Time of the iterations of one displayed frame",
+        );
     });
-    let rho = simulation.certificate().fixed_point_rho;
+    let rho = simulation.certificate().and_then(|c| c.fixed_point_rho);
     let words = rho.map_or_else(|| format!("ρ {UNKNOWN}"), |rho| sentence(&rho_words(rho)));
     ui.add(egui::Label::new(RichText::new(words).small()).truncate()).on_hover_text(
         "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended",

@@ -2,14 +2,15 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{Action, Drawer, PanelState, Shown, ViewOptions};
+use super::{Action, PanelInput, PanelState, ViewOptions};
+use crate::app::action::{Drawer, Toggle};
 use crate::app::field::NumberField;
 use crate::scene::limits;
 use crate::simulation::{Field, Simulation};
 
 pub(super) fn options(
     ui: &mut Ui,
-    shown: &Shown<'_>,
+    input: &PanelInput<'_>,
     state: &mut PanelState,
     view: &mut ViewOptions,
     actions: &mut Vec<Action>,
@@ -20,9 +21,8 @@ pub(super) fn options(
             .selected_text(view.field.name())
             .show_ui(ui, |ui| {
                 for field in Field::ALL {
-                    if ui.selectable_label(field == view.field, field.name()).clicked() && field != view.field {
-                        view.field = field;
-                        view.fixed_range = None;
+                    if ui.selectable_label(field == view.field, field.name()).clicked() {
+                        actions.push(Action::Color(field));
                     }
                 }
             })
@@ -36,7 +36,7 @@ pub(super) fn options(
         .on_hover_text("Keep the ends of the colour map; else they follow the values")
         .changed()
     {
-        view.fixed_range = fixed.then(|| value_range(shown.simulation, view.field));
+        view.fixed_range = fixed.then(|| value_range(input.simulation, view.field));
     }
     if let Some(range) = view.fixed_range {
         let span = limits::Limit { unit: view.field.unit(), min: -1e30, max: 1e30 };
@@ -81,15 +81,15 @@ pub(super) fn options(
     ui.horizontal(|ui| {
         for (drawer, word, tip) in [
             (Drawer::Curve, "Load curve", "Load against deflection (L)"),
-            (Drawer::Trade, "Budget", "Error against time, and the fastest setting within limits (B)"),
+            (Drawer::Budget, "Budget", "Error against time, and the fastest setting within limits (B)"),
         ] {
             let open = view.drawer == Some(drawer);
             if ui.selectable_label(open, word).on_hover_text(tip).clicked() {
-                view.toggle(drawer);
+                actions.push(Action::Toggle(Toggle::Drawer(drawer)));
             }
         }
         if ui.button("Help").on_hover_text("Keys and mouse (F1)").clicked() {
-            view.help = true;
+            actions.push(Action::Toggle(Toggle::Help));
         }
     });
 }
@@ -103,11 +103,11 @@ fn value_range(simulation: &Simulation, field: Field) -> [f64; 2] {
 
 /// The smallest and the largest of some values; never empty. Values that differ by rounding only are given a range in
 /// which they look the same.
-pub(in crate::app) fn range_of(values: &[f64]) -> [f64; 2] {
+pub(in crate::app) fn range_of(values: &[Option<f64>]) -> [f64; 2] {
     const SAME: f64 = 1e-6;
     const WIDENED: f64 = 1e-2;
     let [low, high] =
-        values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
+        values.iter().flatten().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
     let size = low.abs().max(high.abs());
     if !size.is_finite() || size == 0.0 {
         [0.0, 1.0]
@@ -125,7 +125,8 @@ mod tests {
     #[test]
     fn ranges_are_never_empty() {
         for values in [&[][..], &[0.0], &[5.0, 5.0], &[-2.0], &[1.0, 3.0], &[f64::MAX; 2], &[5.0, 5.0 + 1e-12]] {
-            let [low, high] = range_of(values);
+            let values: Vec<Option<f64>> = values.iter().copied().map(Some).chain([None]).collect();
+            let [low, high] = range_of(&values);
             assert!(low < high, "{values:?}");
         }
     }

@@ -11,45 +11,52 @@
 
 use nalgebra::Vector2;
 
-use self::expansion::{Expansion, share, solve_nodal};
-use super::certificate::tangent;
-use super::frame::timed;
+use self::expansion::{Expansion, relative_size, solve_nodal};
+use super::iteration::timed;
 use super::newton::Newton;
-use super::status::{Steps, farthest, largest};
-use super::{Frame, FrameError, Method, Occasion, Verdict};
-use crate::assembly::System;
+use super::status::{LONGEST_STEP, StepLengths, farthest};
+use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
+use crate::assembly::Kinematics;
+use crate::element::Tangent;
 use crate::rotation::Rotation;
+use crate::scene::MethodKind;
 use crate::solver::Factor;
+use crate::state::{State, largest};
 
 mod expansion;
-mod thrift;
+mod report;
 
-pub use thrift::{Decision, Thrift};
+pub use report::{AutoReport, Decision};
 
-pub(super) const ABOUT: &str = "As little of the others as the asked accuracy needs: no solve where nothing changed, \
-linear theory while it serves, the old factor while it serves, load steps where nothing else does.";
+pub(super) const ENTRY: MethodEntry = MethodEntry {
+    kind: MethodKind::Auto,
+    id: "auto",
+    about: "As little of the others as the asked accuracy needs: no solve where nothing changed, linear theory while it \
+            serves, the old factor while it serves, load steps where nothing else does.",
+    colors: [[0, 120, 80], [110, 220, 140]],
+    start: || Box::<Auto>::default(),
+};
 
-/// The share of the asked error that the estimates may use up: the rest is for what estimates leave out, and the mesh.
-const SHARE: f64 = 0.5;
+/// The fraction of the asked error that the estimates may use up: the rest is for what estimates leave out.
+const USABLE: f64 = 0.5;
 /// A largest rotation, rad, beyond which linear theory need not be asked: a cantilever's is off by 10 % by then.
 const LARGEST_LINEAR_ROTATION: f64 = 0.25;
 /// A factor that shrinks steps by less than this is given up: a fresh one wins a few digits for the price of a few such.
 const SERVES: f64 = 0.3;
-/// Relative residual of a state whose tangent can be trusted. The tangent of the linear solution, say, is stiffened by a
-/// tension that is not there: its steps are short however far the way.
+/// Relative residual of a state whose tangent can be trusted. The tangent of the linear solution is not: a tension that
+/// is not there stiffens it, so that its steps are short though the solution is far away.
 const TRUSTED: f64 = 0.01;
-/// A step longer than this share of the displacement is not left to an old factor.
+/// A step longer than this fraction of the displacement is not left to an old factor.
 const LONG: f64 = 0.2;
-/// A factor is used again only if its own step was no longer than this share: it is a tangent near the solution then.
+/// A factor is used again only if its own step was no longer than this fraction of the displacement: the state it was
+/// made at is near the solution then.
 const NEAR: f64 = 0.05;
 /// Steps after which load stepping takes over: in the basin of a solution three or four do.
 const MAX_STEPS: u32 = 15;
-/// A displacement this many sizes of the body long is not worth going on from.
-const FARTHEST: f64 = 20.0;
 
 /// A factorized tangent and what its steps have shown of it.
 #[derive(Debug)]
-struct Tangent {
+struct OldTangent {
     factor: Factor,
     definite: bool,
     /// Whether it is the tangent of a state near enough to equilibrium.
@@ -62,7 +69,7 @@ struct Tangent {
 #[derive(Debug, Default)]
 pub struct Auto {
     expansion: Expansion,
-    tangent: Option<Tangent>,
+    tangent: Option<OldTangent>,
     /// Largest rotation of the state in which linear theory last refused.
     refused: Option<f64>,
     /// The last result: under the same forces nothing has changed.
@@ -70,9 +77,9 @@ pub struct Auto {
     /// Whether the present state is linear theory's.
     linear: bool,
     steps: u32,
-    lengths: Steps,
+    lengths: StepLengths,
     newton: Option<Newton>,
-    thrift: Thrift,
+    report: AutoReport,
     /// The last step, over nodes.
     step: Vec<Vector2<f64>>,
 }
@@ -80,7 +87,7 @@ pub struct Auto {
 /// What a result was accepted on.
 #[derive(Debug)]
 struct Accepted {
-    imbalance: Vec<Vector2<f64>>,
+    residual_force: Vec<Vector2<f64>>,
     max_error: f64,
     estimated_error: f64,
 }
@@ -88,27 +95,28 @@ struct Accepted {
 impl Auto {
     /// Tries linear theory. Where the state is at rest, or linear theory's, its solution is also the first of Newton's
     /// steps, and taken; returns whether a step was made.
-    fn try_linear(&mut self, frame: &mut Frame<'_>) -> Result<bool, FrameError> {
-        let turned = largest_rotation(frame.r);
+    fn try_linear(&mut self, it: &mut Iteration<'_>) -> Result<bool, IterationError> {
+        let turned = largest_rotation(&it.state.rotations);
         let tries = self.linear || turned <= LARGEST_LINEAR_ROTATION.min(self.refused.unwrap_or(f64::INFINITY));
         if !tries {
             return Ok(false);
         }
-        let error = self.expansion.solve(frame, &mut self.thrift)?;
-        let from_rest = self.linear || largest(frame.u) == 0.0;
-        self.linear = error <= SHARE * frame.goal.max_error && self.expansion.is_stable(frame, &mut self.thrift);
+        let error = self.expansion.solve(it, &mut self.report)?;
+        let from_rest = self.linear || largest(&it.state.displacement) == 0.0;
+        self.linear = error <= USABLE * it.tolerances.error && self.expansion.is_stable(it, &mut self.report);
         if self.linear {
-            self.thrift.decision = Decision::Linear;
-            self.thrift.estimated_error = error;
+            self.report.decision = Decision::Linear;
+            self.report.estimated_error = error;
             self.refused = None;
         } else {
-            self.thrift.estimated_error = f64::INFINITY;
+            self.report.estimated_error = f64::INFINITY;
             // At rest nothing is known of how far the load turns the body: there it is always tried.
             self.refused = (turned > 0.0).then_some(turned);
         }
         if self.linear || from_rest {
             let linear = self.expansion.linear();
-            frame.u.copy_from_slice(linear);
+            it.state.displacement.copy_from_slice(linear);
+            it.workspace.tangent = None;
             self.lengths.stepped(linear.iter().map(|u| u.norm_squared()).sum::<f64>().sqrt());
             return Ok(true);
         }
@@ -116,50 +124,52 @@ impl Auto {
     }
 
     /// One corotated step, with the old factor if that serves.
-    fn step(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
-        self.step.resize(frame.u.len(), Vector2::zeros());
+    fn step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+        self.step.resize(it.state.displacement.len(), Vector2::zeros());
         if self.tangent.as_ref().is_some_and(|t| t.serves) {
-            self.solve_for_step(frame)?;
-            let step = share(frame.system, &self.step, frame.u);
+            self.solve_for_step(it)?;
+            let step = relative_size(it.problem, &self.step, &it.state.displacement);
             if step <= LONG {
-                self.advance(frame, step, false);
+                self.advance(it, step, false);
                 return Ok(());
             }
         }
-        let (system, values) = (frame.system, &mut frame.workspace.values);
-        timed(&mut frame.profile.assemble, || tangent(system, frame.u, frame.r, 1.0, values));
+        it.assemble(Tangent::Exact, 1.0);
         let mut factor = match self.tangent.take() {
             Some(tangent) => tangent.factor,
-            None => Factor::new(&system.pattern)?,
+            None => Factor::new(it.system().symbolic())?,
         };
-        let definite = timed(&mut frame.profile.factorize, || factor.factorize_symmetric(values));
-        self.thrift.factorizations += 1;
-        self.thrift.decision = Decision::NewFactor;
-        self.tangent = Some(Tangent { factor, definite, trusted: frame.residual <= TRUSTED, serves: false });
-        self.solve_for_step(frame)?;
-        let step = share(frame.system, &self.step, frame.u);
-        self.advance(frame, step, true);
+        let values = it.workspace.matrix.values();
+        let definite = timed(&mut it.timings.factorize, || factor.factorize_symmetric(values));
+        self.report.factorizations += 1;
+        self.report.decision = Decision::NewFactor;
+        self.tangent = Some(OldTangent { factor, definite, trusted: it.residual <= TRUSTED, serves: false });
+        self.solve_for_step(it)?;
+        let step = relative_size(it.problem, &self.step, &it.state.displacement);
+        self.advance(it, step, true);
         Ok(())
     }
 
     /// The step M⁻¹ (f_ext − f_int), into `step` and the workspace.
-    fn solve_for_step(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
+    fn solve_for_step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         let Some(tangent) = &mut self.tangent else { return Ok(()) };
-        let imbalance = frame.imbalance;
-        self.thrift.solves += 1;
-        solve_nodal(frame, &mut tangent.factor, imbalance, &mut self.step)
+        self.report.solves += 1;
+        let residual = std::mem::take(&mut it.forces.residual);
+        let solved = solve_nodal(it, &mut tangent.factor, &residual, &mut self.step);
+        it.forces.residual = residual;
+        solved
     }
 
-    /// Takes the step in the workspace, which is this share of the displacement.
-    fn advance(&mut self, frame: &mut Frame<'_>, step: f64, fresh: bool) {
-        frame.advance(1.0);
-        self.lengths.stepped(frame.step_length());
+    /// Takes the step in the workspace, which has this size relative to the displacement.
+    fn advance(&mut self, it: &mut Iteration<'_>, step: f64, fresh: bool) {
+        it.advance(1.0);
+        self.lengths.stepped(it.step_length());
         if let Some(tangent) = &mut self.tangent {
             let near = tangent.definite && tangent.trusted && (!fresh || step <= NEAR);
             tangent.serves = near && self.lengths.ratio().is_none_or(|r| r <= SERVES);
         }
         // What is left is no more than the step just made, where steps at least halve; else their geometric series.
-        self.thrift.estimated_error = match self.lengths.ratio() {
+        self.report.estimated_error = match self.lengths.ratio() {
             Some(ratio) if ratio >= 1.0 => f64::INFINITY,
             Some(ratio) => step * (ratio / (1.0 - ratio)).max(1.0),
             // One step says nothing of what it leaves: an old factor may be far too stiff for the way left.
@@ -168,19 +178,19 @@ impl Auto {
     }
 
     /// Load stepping from rest.
-    fn hand_over(&mut self, frame: &mut Frame<'_>) -> Verdict {
-        frame.u.fill(Vector2::zeros());
+    fn hand_over(&mut self, state: &mut State) -> Verdict {
+        state.reset();
         self.newton = Some(Newton::default());
         self.tangent = None;
-        self.thrift.decision = Decision::LoadSteps;
+        self.report.decision = Decision::LoadSteps;
         Verdict::Changed
     }
 
-    fn accept(&mut self, frame: &Frame<'_>) -> Verdict {
+    fn accept(&mut self, it: &Iteration<'_>) -> Verdict {
         self.accepted = Some(Accepted {
-            imbalance: frame.imbalance.to_vec(),
-            max_error: frame.goal.max_error,
-            estimated_error: self.thrift.estimated_error,
+            residual_force: it.forces.residual.clone(),
+            max_error: it.tolerances.error,
+            estimated_error: self.report.estimated_error,
         });
         Verdict::Converged
     }
@@ -192,12 +202,15 @@ fn largest_rotation(r: &[Rotation]) -> f64 {
 }
 
 impl Method for Auto {
-    fn begin(&mut self, occasion: Occasion) {
+    fn restart(&mut self, why: Restart) {
         let old = std::mem::take(self);
-        *self = match occasion {
-            Occasion::NewStiffness => Self { linear: old.linear, ..Self::default() },
-            Occasion::Reset => Self { expansion: old.expansion, ..Self::default() },
-            Occasion::NewLoads => Self {
+        *self = match why {
+            Restart::NewUnknowns => Self { linear: old.linear, ..Self::default() },
+            Restart::NewStiffness => {
+                Self { linear: old.linear, expansion: old.expansion.without_factor(), ..Self::default() }
+            }
+            Restart::AtRest => Self { expansion: old.expansion, ..Self::default() },
+            Restart::NewLoads => Self {
                 expansion: old.expansion,
                 tangent: old.tangent,
                 refused: old.refused,
@@ -211,16 +224,12 @@ impl Method for Auto {
         }
     }
 
-    fn rotate(&self, system: &System, u: &[Vector2<f64>], r: &mut [Rotation]) {
-        if self.linear {
-            r.fill(Rotation::IDENTITY);
-        } else {
-            system.elements.rotations(u, r);
-        }
+    fn kinematics(&self) -> Kinematics {
+        if self.linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
-    fn corotates(&self) -> bool {
-        !self.linear
+    fn tangent(&self) -> Option<Tangent> {
+        self.newton.as_ref().and_then(Method::tangent)
     }
 
     fn load_factor(&self) -> f64 {
@@ -235,32 +244,32 @@ impl Method for Auto {
         self.lengths.ratio()
     }
 
-    fn thrift(&self) -> Option<Thrift> {
-        Some(self.thrift)
+    fn report(&self) -> Option<AutoReport> {
+        Some(self.report)
     }
 
-    fn solve(&mut self, frame: &mut Frame<'_>) -> Result<(), FrameError> {
+    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         self.steps += 1;
         if let Some(newton) = &mut self.newton {
-            self.thrift.solves += 1;
-            self.thrift.factorizations += 1;
-            return newton.solve(frame);
+            self.report.solves += 1;
+            self.report.factorizations += 1;
+            return newton.iterate(it);
         }
-        if self.steps == 1 && self.try_linear(frame)? {
+        if self.steps == 1 && self.try_linear(it)? {
             return Ok(());
         }
-        if self.thrift.decision == Decision::Undecided {
-            self.thrift.decision = Decision::OldFactor;
+        if self.report.decision == Decision::Undecided {
+            self.report.decision = Decision::OldFactor;
         }
-        self.step(frame)
+        self.step(it)
     }
 
-    fn judge(&mut self, frame: &mut Frame<'_>) -> Verdict {
+    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
         if let Some(newton) = &mut self.newton {
-            let verdict = newton.judge(frame);
+            let verdict = newton.judge(it);
             return if verdict == Verdict::Converged {
-                self.thrift.estimated_error = frame.residual;
-                self.accept(frame)
+                self.report.estimated_error = it.residual;
+                self.accept(it)
             } else {
                 verdict
             };
@@ -269,42 +278,42 @@ impl Method for Auto {
             let same = self
                 .accepted
                 .as_ref()
-                .filter(|last| last.imbalance == frame.imbalance && last.max_error <= frame.goal.max_error);
+                .filter(|last| last.residual_force == it.forces.residual && last.max_error <= it.tolerances.error);
             if let Some(last) = same {
-                self.thrift.decision = Decision::Unchanged;
-                self.thrift.estimated_error = last.estimated_error;
+                self.report.decision = Decision::Unchanged;
+                self.report.estimated_error = last.estimated_error;
                 return Verdict::Converged;
             }
-            if !self.linear && frame.residual == 0.0 {
-                self.thrift.decision = Decision::Unchanged;
-                return self.accept(frame);
+            if !self.linear && it.residual == 0.0 {
+                self.report.decision = Decision::Unchanged;
+                return self.accept(it);
             }
             return Verdict::Continue;
         }
         if self.linear {
-            return self.accept(frame);
+            return self.accept(it);
         }
         let trusted = self.tangent.as_ref().is_some_and(|t| t.trusted);
-        let within = trusted && self.thrift.estimated_error <= SHARE * frame.goal.max_error;
-        let done = within || frame.residual <= frame.goal.tolerance;
+        let within = trusted && self.report.estimated_error <= USABLE * it.tolerances.error;
+        let done = within || it.residual <= it.tolerances.residual;
         match &self.tangent {
-            Some(tangent) if done && tangent.definite => self.accept(frame),
-            Some(_) if done => self.hand_over(frame),
-            _ if self.steps >= MAX_STEPS || farthest(frame.system, frame.u) > FARTHEST => self.hand_over(frame),
+            Some(tangent) if done && tangent.definite => self.accept(it),
+            Some(_) if done => self.hand_over(it.state),
+            _ if self.steps >= MAX_STEPS || farthest(it.system(), it.state) > LONGEST_STEP => self.hand_over(it.state),
             _ => Verdict::Continue,
         }
     }
 
-    fn stop(&mut self, u: &mut [Vector2<f64>]) {
+    fn stop(&mut self, state: &mut State) {
         if let Some(newton) = &mut self.newton {
-            newton.stop(u);
+            newton.stop(state);
         }
     }
 
-    fn recover(&mut self, frame: &mut Frame<'_>, error: FrameError) -> Verdict {
+    fn recover(&mut self, it: &mut Iteration<'_>, error: IterationError) -> Verdict {
         match &mut self.newton {
-            Some(newton) => newton.recover(frame, error),
-            None => self.hand_over(frame),
+            Some(newton) => newton.recover(it, error),
+            None => self.hand_over(it.state),
         }
     }
 }

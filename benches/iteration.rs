@@ -1,0 +1,125 @@
+//! Rotation, assembly, factorization, solve, edits and the whole iteration, at four sizes of the same cantilever.
+//!
+//! `cargo bench` reports medians of this machine; compare them with each other, not with another machine's.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use nalgebra::{Matrix2, Vector2};
+use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
+use warpbeam::element::Tangent;
+use warpbeam::method::METHODS;
+use warpbeam::rotation::{Rotation, polar};
+use warpbeam::scene::{Scene, Source, open, registry};
+use warpbeam::simulation::Simulation;
+use warpbeam::solver::Factor;
+
+fn scene(id: &str, set: &[String]) -> Scene {
+    open(&Source { name: id.to_owned(), assignments: set.to_vec() }).unwrap()
+}
+
+/// A cantilever of about 120, 1 440, 5 440 and 20 000 unknowns.
+fn sizes() -> Vec<Scene> {
+    [[20, 2], [80, 8], [160, 16], [320, 30]]
+        .map(|[nx, ny]| scene("cantilever", &[format!("beam.cells=[{nx},{ny}]")]))
+        .to_vec()
+}
+
+fn stages(c: &mut Criterion) {
+    for scene in sizes() {
+        let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
+        let system = problem.system();
+        let dofs = system.dofs();
+        // A state with all rotations different.
+        let bent: Vec<Vector2<f64>> =
+            system.mesh().nodes().iter().map(|x| Rotation::from_angle(-0.05 * x.x).apply(*x) - x).collect();
+        let mut state = system.state_of(&bent).unwrap();
+        let mut forces = Forces::new(bent.len());
+        let mut matrix = Matrix::new(system.pattern());
+        let mut factor = Factor::new(system.symbolic()).unwrap();
+
+        c.bench_function(&format!("rotate/{dofs}"), |b| {
+            b.iter(|| system.follow(black_box(&mut state), Kinematics::Corotated));
+        });
+        c.bench_function(&format!("force/{dofs}"), |b| {
+            b.iter(|| problem.linearize(black_box(&state), &mut forces, None));
+        });
+        for (name, tangent) in [("force and A", Tangent::Warped), ("force and A + G", Tangent::Exact)] {
+            c.bench_function(&format!("{name}/{dofs}"), |b| {
+                b.iter(|| problem.linearize(black_box(&state), &mut forces, Some((tangent, &mut matrix))));
+            });
+        }
+        c.bench_function(&format!("factorize/{dofs}"), |b| {
+            b.iter(|| factor.factorize(black_box(matrix.values())).unwrap());
+        });
+        let mut free = vec![1.0; dofs];
+        c.bench_function(&format!("solve/{dofs}"), |b| {
+            b.iter(|| {
+                free.fill(1.0);
+                factor.solve_in_place(black_box(&mut free));
+            });
+        });
+    }
+}
+
+/// What an edit costs beside one evaluation of the residual and one assembly: see `force` and `force and A` above.
+fn edits(c: &mut Criterion) {
+    for scene in sizes() {
+        let mut simulation = Simulation::new(&scene).unwrap();
+        simulation.solve();
+        let dofs = simulation.system().dofs();
+        let mut force = -1000.0;
+        c.bench_function(&format!("edit a force/{dofs}"), |b| {
+            b.iter(|| {
+                force = -2001.0 - force;
+                simulation.set_force(0, [0.0, force]).unwrap();
+            });
+        });
+        let mut material = scene.material;
+        c.bench_function(&format!("edit the material/{dofs}"), |b| {
+            b.iter(|| {
+                material.young = 2.1e6 - material.young;
+                simulation.set_material(material).unwrap();
+            });
+        });
+    }
+}
+
+/// One iteration of every method, from rest.
+fn iterations(c: &mut Criterion) {
+    for entry in METHODS {
+        for mut scene in sizes() {
+            scene.solver.method = entry.kind;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            let id = format!("iteration/{}/{}", entry.kind.id(), simulation.system().dofs());
+            c.bench_function(&id, |b| {
+                b.iter(|| {
+                    simulation.reset();
+                    simulation.step();
+                });
+            });
+        }
+    }
+}
+
+/// Every built-in scene, from rest to the end.
+fn scenes(c: &mut Criterion) {
+    for built_in in registry::BUILT_IN {
+        let mut simulation = Simulation::new(&scene(built_in.id, &[])).unwrap();
+        c.bench_function(&format!("scene/{}", built_in.id), |b| {
+            b.iter(|| {
+                simulation.reset();
+                simulation.solve();
+            });
+        });
+    }
+}
+
+fn rotation(c: &mut Criterion) {
+    let f = Matrix2::new(0.55, -1.02, 0.875, 0.5);
+    c.bench_function("polar", |b| b.iter(|| polar(black_box(&f))));
+}
+
+criterion_group!(benches, rotation, stages, edits, iterations, scenes);
+criterion_main!(benches);

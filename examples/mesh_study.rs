@@ -1,0 +1,36 @@
+//! A mesh from Gmsh, solved and studied: how far off each element and method is on it, and what they cost here.
+//!
+//! `cargo run --release --example mesh_study --no-default-features`
+
+use std::error::Error;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use warpbeam::study::{Extent, Study};
+use warpbeam::{Field, Scene, Simulation, Status};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("{}", report(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").as_path())?);
+    Ok(())
+}
+
+/// The result and the study of the bracket, whose scene file is in this folder.
+pub fn report(folder: &Path) -> Result<String, Box<dyn Error>> {
+    let text = std::fs::read_to_string(folder.join("bracket.toml"))?;
+    let scene = Scene::from_toml_in(&text, folder)?;
+    let mut bracket = Simulation::new(&scene)?;
+    if *bracket.solve() != Status::Converged {
+        return Err(format!("{:?}", bracket.status()).into());
+    }
+    let stable = bracket.certify().stable;
+    let mut stresses = Vec::new();
+    bracket.field(Field::VonMises, &mut stresses);
+    let largest = stresses.iter().flatten().copied().fold(0.0, f64::max);
+    let study = Study::new(&scene, Extent::Quick, &mut |_| ControlFlow::Continue(()))?;
+    Ok(format!(
+        "{}: stable {stable:?}, largest von Mises stress {largest:.0} Pa, end moved by {:.4} m\n\n{}",
+        scene.name,
+        bracket.probe("end").map_or(0.0, |u| u.norm()),
+        study.summary()
+    ))
+}

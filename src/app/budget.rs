@@ -1,0 +1,346 @@
+//! The budget: error against time of everything measured on this machine, and what of it is within limits.
+
+use egui::{Button, Color32, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
+use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
+
+use super::action::Action;
+use super::background::{Background, BackgroundError, News};
+use super::field::{Messages, NumberField};
+use super::finder::LISTEN;
+use super::format;
+use super::plot::method_color;
+use crate::element::ELEMENTS;
+use crate::method::METHODS;
+use crate::scene::{ElementKind, Scene, SolverSettings, limits};
+use crate::study::plot::drawn_error;
+use crate::study::{Demand, Measurement, Setting, Study};
+use crate::words::number;
+
+/// The study of the lab's scene, and the limits within which its settings are looked for.
+#[derive(Debug, Default)]
+pub(super) struct Budget {
+    background: Option<Background>,
+    study: Option<Study>,
+    /// What was measured, but for what is varied.
+    of: Option<Scene>,
+    error: Option<BackgroundError>,
+    limits: Limits,
+    messages: Messages,
+}
+
+/// What is asked of a solve.
+#[derive(Clone, Copy, Debug)]
+struct Limits {
+    error_percent: f64,
+    time_ms: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        // A frame at 60 Hz, roughly.
+        Self { error_percent: 1.0, time_ms: 16.0 }
+    }
+}
+
+impl From<Limits> for Demand {
+    fn from(limits: Limits) -> Self {
+        Self { max_error_percent: Some(limits.error_percent), max_time_ms: Some(limits.time_ms) }
+    }
+}
+
+/// A scene without what a study varies: what its truth depends on.
+pub(super) fn question(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.set_element(ElementKind::default());
+    if let Some(beam) = &mut scene.beam {
+        beam.cells = [1, 1];
+    }
+    scene.solver = SolverSettings { tolerance: scene.solver.tolerance, ..SolverSettings::default() };
+    scene
+}
+
+impl Budget {
+    /// Starts to measure a scene; what was measured before goes.
+    pub(super) fn measure(&mut self, scene: &Scene) {
+        *self = Self { of: Some(question(scene)), limits: self.limits, ..Self::default() };
+        match Background::start(scene.clone()) {
+            Ok(background) => self.background = Some(background),
+            Err(error) => self.error = Some(error),
+        }
+    }
+
+    /// Calls the study off; what has been measured stays.
+    pub(super) fn cancel(&mut self) {
+        self.background = None;
+    }
+
+    /// Whether a study runs.
+    pub(super) fn runs(&self) -> bool {
+        self.background.is_some()
+    }
+
+    /// What has been measured.
+    pub(super) fn study(&self) -> Option<&Study> {
+        self.study.as_ref()
+    }
+
+    /// Takes a study made elsewhere.
+    pub(super) fn set(&mut self, scene: &Scene, study: Study) {
+        *self = Self { of: Some(question(scene)), study: Some(study), limits: self.limits, ..Self::default() };
+    }
+
+    /// Hears how far the study is.
+    pub(super) fn listen(&mut self, ctx: &Context) {
+        let Some(background) = &mut self.background else { return };
+        match background.listen(&mut self.study) {
+            News::Running => ctx.request_repaint_after(LISTEN),
+            News::Ended(result) => {
+                self.error = result.err();
+                self.background = None;
+            }
+        }
+    }
+
+    /// Shows limits and plot for the lab's scene, which makes so many iterations a displayed frame.
+    pub(super) fn show(&mut self, ui: &mut Ui, scene: &Scene, iterations: u32, actions: &mut Vec<Action>) {
+        let demand = Demand::from(self.limits);
+        let budget = BudgetView {
+            scene,
+            study: self.study.as_ref(),
+            demand,
+            meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
+            current: self.of.as_ref() == Some(&question(scene)),
+            progress: self.background.as_ref().map(|b| (b.fraction, b.now.as_str())),
+            error: self.error.as_ref().map(ToString::to_string),
+            iterations,
+        };
+        let (limits, messages) = (&mut self.limits, &mut self.messages);
+        ui.add_space(4.0);
+        ui.horizontal_top(|ui| {
+            ui.vertical(|ui| {
+                ui.set_width(LIST_WIDTH);
+                settings(ui, &budget, limits, messages, actions);
+            });
+            ui.vertical(|ui| {
+                legend(ui);
+                plot(ui, &budget);
+            });
+        });
+    }
+}
+
+/// What is shown of the budget.
+struct BudgetView<'a> {
+    scene: &'a Scene,
+    study: Option<&'a Study>,
+    demand: Demand,
+    /// What of the study meets the demand, fastest first.
+    meeting: Vec<&'a Measurement>,
+    /// Whether the study is of the body and loads that the lab shows.
+    current: bool,
+    /// Fraction that is done and what is measured now, while a study runs.
+    progress: Option<(f32, &'a str)>,
+    /// Why there is no study.
+    error: Option<String>,
+    /// Iterations the lab makes a displayed frame.
+    iterations: u32,
+}
+
+const LIST_WIDTH: f32 = 384.0;
+
+fn settings(
+    ui: &mut Ui,
+    budget: &BudgetView<'_>,
+    limits: &mut Limits,
+    messages: &mut Messages,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        if let Some((fraction, now)) = budget.progress {
+            if ui.button("Cancel").on_hover_text("Stop measuring; what has been measured stays").clicked() {
+                actions.push(Action::Measure(false));
+            }
+            ui.add(ProgressBar::new(fraction).desired_width(120.0).show_percentage());
+            ui.add(egui::Label::new(RichText::new(now).small()).truncate());
+        } else {
+            let tip = "Measure error and time of every element, mesh, method and number of iterations, on this machine";
+            if ui.button("Measure").on_hover_text(tip).clicked() {
+                actions.push(Action::Measure(true));
+            }
+            let words = match (&budget.error, budget.study) {
+                (Some(error), _) => RichText::new(error).small().color(ui.visuals().error_fg_color),
+                (None, None) => RichText::new("Nothing measured yet: it takes some seconds.").small(),
+                (None, Some(_)) if !budget.current => {
+                    let color = ui.visuals().warn_fg_color;
+                    RichText::new("The body or its load has changed since.").small().color(color)
+                }
+                (None, Some(study)) => RichText::new(format!("Error against {}.", study.reference)).small(),
+            };
+            ui.add(egui::Label::new(words).truncate());
+        }
+    });
+    let time = NumberField {
+        label: "Time ≤",
+        tooltip: "At most so many milliseconds a solve from rest. A frame at 60 Hz has 16.",
+        limit: limits::BUDGET_MS,
+        slider: 1e-3..=1e3,
+        logarithmic: Some(1e-3),
+        whole: false,
+    };
+    let error = NumberField {
+        label: "Error ≤",
+        tooltip: "At most so many percent of the true displacement.",
+        limit: limits::MAX_ERROR_PERCENT,
+        slider: 1e-3..=100.0,
+        logarithmic: Some(1e-3),
+        whole: false,
+    };
+    if let Some(time_ms) = time.show(ui, messages, limits.time_ms) {
+        limits.time_ms = time_ms;
+    }
+    if let Some(error_percent) = error.show(ui, messages, limits.error_percent) {
+        limits.error_percent = error_percent;
+    }
+    let meeting = &budget.meeting;
+    ui.horizontal(|ui| {
+        let best = meeting.first();
+        let apply = ui.add_enabled(best.is_some(), Button::new("Apply the fastest"));
+        let apply = apply
+            .on_hover_text("Use the fastest setting that meets both")
+            .on_disabled_hover_text("No setting that has been measured meets both limits");
+        if let (true, Some(best)) = (apply.clicked(), best) {
+            actions.push(Action::Apply(best.setting));
+        }
+        let measured = budget.study.map_or(0, |s| s.measurements.len());
+        ui.label(format!("{} of {measured} settings meet both", meeting.len()));
+    });
+    list(ui, budget, actions);
+}
+
+/// The settings that meet the demand, fastest first; a click applies one.
+fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
+    let meeting = &budget.meeting;
+    let applied = Setting::of(budget.scene, budget.iterations);
+    let row_height = ui.spacing().interact_size.y;
+    ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
+        for m in meeting.get(rows).unwrap_or_default() {
+            let words = format!(
+                "{:>7} ms {:>7} % {}",
+                format::short(m.milliseconds()),
+                format::short(m.error.bound()),
+                m.setting
+            );
+            let label = ui.add(
+                Button::selectable(m.setting == applied, RichText::new(words).font(FontId::monospace(11.0))).truncate(),
+            );
+            let e = &m.error;
+            let parts = format!(
+                "Click to apply. {} unknowns. Error: mesh {} %, stopped early {} %, linear theory {} %.",
+                m.dofs,
+                format::short(e.discretization),
+                format::short(e.iteration),
+                format::short(e.model)
+            );
+            if label.on_hover_text(parts).clicked() {
+                actions.push(Action::Apply(m.setting));
+            }
+        }
+    });
+}
+
+/// A mark at every decade.
+fn decades(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    (low.ceil() as i64..=high.floor() as i64).map(|e| GridMark { value: e as f64, step_size: 1.0 }).collect()
+}
+
+fn decade_words(mark: GridMark) -> String {
+    number(10f64.powf(mark.value.round()))
+}
+
+/// Where a measurement is in the plot: both logarithms.
+fn place(m: &Measurement) -> [f64; 2] {
+    [m.milliseconds().max(f64::MIN_POSITIVE).log10(), drawn_error(m).log10()]
+}
+
+/// What colours and shapes mean, in one line: the plot has no room for a list.
+fn legend(ui: &mut Ui) {
+    let dark = ui.visuals().dark_mode;
+    ui.horizontal(|ui| {
+        ui.add_space(56.0);
+        ui.spacing_mut().item_spacing.x = 10.0;
+        for method in METHODS {
+            ui.label(RichText::new(method.id).small().strong().color(method_color(method.kind, dark)));
+        }
+        let shapes: Vec<String> = ELEMENTS.iter().map(|e| format!("{} {}", marker(e.kind).1, e.id)).collect();
+        ui.label(RichText::new(format!("{}; nothing beats the line", shapes.join(", "))).small());
+    });
+}
+
+/// The mark of an element and its name: the first for the first of the registry.
+fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
+    const SHAPES: [(MarkerShape, &str); 4] = [
+        (MarkerShape::Up, "triangles"),
+        (MarkerShape::Circle, "circles"),
+        (MarkerShape::Square, "squares"),
+        (MarkerShape::Diamond, "diamonds"),
+    ];
+    let number = ELEMENTS.iter().position(|e| e.kind == element).unwrap_or_default();
+    SHAPES[number % SHAPES.len()]
+}
+
+fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
+    let (dark, text) = (ui.visuals().dark_mode, ui.visuals().text_color());
+    let measured: &[Measurement] = budget.study.map_or(&[], |s| &s.measurements);
+    let nearest = |x: f64, y: f64| {
+        let distance = |m: &Measurement| (place(m)[0] - x).hypot(place(m)[1] - y);
+        measured.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    Plot::new("budget")
+        .x_axis_label("time of a solve, ms")
+        .y_axis_label("error, %")
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
+        .x_axis_formatter(|mark, _| decade_words(mark))
+        .y_axis_formatter(|mark, _| decade_words(mark))
+        .label_formatter(|at| match at {
+            egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y).map(|m| {
+                format!("{}\n{} ms, {} %", m.setting, format::short(m.milliseconds()), format::short(m.error.bound()))
+            }),
+            egui_plot::HoverPosition::Elsewhere { .. } => None,
+        })
+        .include_x(-2.5)
+        .include_x(2.5)
+        .include_y(-3.0)
+        .include_y(2.0)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .show(ui, |plot| {
+            for element in ElementKind::all() {
+                let (shape, _) = marker(element);
+                for method in METHODS.iter().map(|m| m.kind) {
+                    let color = method_color(method, dark);
+                    let own = measured.iter().filter(|m| (m.setting.element, m.setting.method) == (element, method));
+                    let points: Vec<[f64; 2]> = own.map(place).collect();
+                    let name = format!("{} {}", element.id(), method.id());
+                    plot.points(Points::new(name, points).color(color).shape(shape).radius(3.5));
+                }
+            }
+            let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(place).collect();
+            plot.line(Line::new("Pareto front", PlotPoints::from(front)).color(text).width(1.5));
+            let limit = Color32::from_gray(128);
+            let style = LineStyle::dashed_dense();
+            if let Some(time) = budget.demand.max_time_ms {
+                plot.vline(VLine::new("at most", time.log10()).color(limit).style(style));
+            }
+            if let Some(error) = budget.demand.max_error_percent {
+                plot.hline(HLine::new("at most", error.log10()).color(limit).style(style));
+            }
+            if let Some(best) = budget.meeting.first() {
+                let ring = Points::new("fastest", vec![place(best)]).color(text).filled(false).radius(8.0);
+                plot.points(ring);
+            }
+        });
+}

@@ -1,0 +1,82 @@
+//! What takes a while to find out of a scene, found beside the window.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::Duration;
+
+use egui::Context;
+
+use crate::scene::Scene;
+
+/// How often work in the background is listened to.
+pub(super) const LISTEN: Duration = Duration::from_millis(50);
+
+/// Something that a scene may or may not have.
+#[derive(Debug)]
+pub(super) struct Finder<T> {
+    find: fn(&Scene) -> Option<T>,
+    /// Of the present scene: not known yet, or what was found.
+    found: Option<Option<T>>,
+    /// What the thread will say, and whether it is of the present scene. One thread at a time: edits do not pile up.
+    running: Option<(Receiver<Option<T>>, bool)>,
+}
+
+impl<T: Send + 'static> Finder<T> {
+    /// Nothing known yet.
+    pub(super) fn new(find: fn(&Scene) -> Option<T>) -> Self {
+        Self { find, found: None, running: None }
+    }
+
+    /// Forgets what belonged to another scene.
+    pub(super) fn forget(&mut self) {
+        self.found = None;
+        if let Some((_, current)) = &mut self.running {
+            *current = false;
+        }
+    }
+
+    /// Hears what has been found, and starts to look where nothing is known; `ctx` is asked to come back.
+    pub(super) fn ask(&mut self, scene: &Scene, ctx: &Context) {
+        if self.found.is_some() {
+            return;
+        }
+        if let Some((receiver, current)) = &self.running {
+            let heard = receiver.try_recv();
+            if matches!(heard, Err(TryRecvError::Empty)) {
+                ctx.request_repaint_after(LISTEN);
+                return;
+            }
+            if *current {
+                self.found = Some(heard.unwrap_or(None));
+            }
+            self.running = None;
+        }
+        if self.found.is_none() {
+            let (sender, receiver) = channel();
+            let (find, scene) = (self.find, scene.clone());
+            let work = move || drop(sender.send(find(&scene)));
+            match std::thread::Builder::new().name("finder".to_owned()).spawn(work) {
+                Ok(_) => self.running = Some((receiver, true)),
+                Err(_) => self.found = Some(None),
+            }
+            ctx.request_repaint_after(LISTEN);
+        }
+    }
+
+    /// Finds out, however long it takes.
+    pub(super) fn settle(&mut self, scene: &Scene) {
+        if self.found.is_none() {
+            self.found = Some((self.find)(scene));
+            self.running = None;
+        }
+    }
+
+    /// What was found.
+    pub(super) fn get(&self) -> Option<&T> {
+        self.found.as_ref().and_then(Option::as_ref)
+    }
+
+    /// Whether nothing is known yet.
+    pub(super) fn is_open(&self) -> bool {
+        self.found.is_none()
+    }
+}

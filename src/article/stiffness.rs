@@ -1,0 +1,58 @@
+//! An element's stiffness written out, as the article does it: Ke, R Ke, R Ke Rᵀ and R Ke X (eqs. 1–3).
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::element::{QuadraturePoint, Tangent};
+use crate::material::Lame;
+use crate::rotation::Rotation;
+
+/// The matrices of one element. The solver never forms them one element at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementStiffness {
+    /// Ke, 2N×2N, N/m; unknowns x₁ y₁ x₂ y₂ ….
+    pub ke: DMatrix<f64>,
+}
+
+impl ElementStiffness {
+    /// Ke = ∫ Bᵀ C B t dA (eqs. 1, 3), summed over quadrature points; the moduli are times the thickness t, N/m.
+    #[must_use]
+    pub fn new<const N: usize>(points: &[QuadraturePoint<N>], moduli: Lame) -> Self {
+        let mut ke = DMatrix::zeros(2 * N, 2 * N);
+        let no_strain = nalgebra::Matrix2::zeros();
+        for point in points {
+            point.tangent_blocks(moduli, Rotation::IDENTITY, &no_strain, Tangent::Warped, |a, b, k| {
+                let k = nalgebra::Matrix2::from_row_slice(&k);
+                let sum = ke.fixed_view::<2, 2>(2 * a, 2 * b) + k;
+                ke.fixed_view_mut::<2, 2>(2 * a, 2 * b).copy_from(&sum);
+                ke.fixed_view_mut::<2, 2>(2 * b, 2 * a).copy_from(&sum.transpose());
+            });
+        }
+        Self { ke }
+    }
+
+    fn turn(&self, r: Rotation) -> DMatrix<f64> {
+        let mut turn = DMatrix::zeros(self.ke.nrows(), self.ke.nrows());
+        for a in 0..self.ke.nrows() / 2 {
+            turn.fixed_view_mut::<2, 2>(2 * a, 2 * a).copy_from(&r.matrix());
+        }
+        turn
+    }
+
+    /// R Ke, the article's m_cMatRK.
+    #[must_use]
+    pub fn rk(&self, r: Rotation) -> DMatrix<f64> {
+        self.turn(r) * &self.ke
+    }
+
+    /// R Ke Rᵀ, the article's m_cMatRKRT.
+    #[must_use]
+    pub fn rkrt(&self, r: Rotation) -> DMatrix<f64> {
+        self.rk(r) * self.turn(r).transpose()
+    }
+
+    /// The force offset R Ke X, N, for rest positions X of the element's nodes.
+    #[must_use]
+    pub fn force_offset(&self, r: Rotation, rest: &DVector<f64>) -> DVector<f64> {
+        self.rk(r) * rest
+    }
+}

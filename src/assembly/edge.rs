@@ -1,0 +1,126 @@
+//! Named edges: how a traction is shared out among their nodes, and how far they have turned.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+
+use crate::element::side_weights;
+use crate::mesh::Mesh;
+use crate::scene::Invalid;
+
+/// Nodes with a weight each.
+pub type NodeWeights = Vec<(u32, f64)>;
+
+/// A named edge of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edge {
+    name: String,
+    weights: NodeWeights,
+    arms: NodeWeights,
+    direction: Vector2<f64>,
+}
+
+impl Edge {
+    /// All edges of a mesh, by name.
+    pub(super) fn of(mesh: &Mesh) -> Vec<Self> {
+        mesh.edges().keys().map(|name| Self::new(mesh, name)).collect()
+    }
+
+    fn new(mesh: &Mesh, name: &str) -> Self {
+        let mut weights = BTreeMap::new();
+        let mut total = 0.0;
+        for segment in mesh.edges().get(name).into_iter().flatten() {
+            let positions: Vec<Vector2<f64>> = segment.nodes().iter().map(|&n| mesh.node(n)).collect();
+            for (&node, weight) in segment.nodes().iter().zip(side_weights(&positions)) {
+                *weights.entry(node).or_insert(0.0) += weight;
+                total += weight;
+            }
+        }
+        let weights: NodeWeights = weights.into_iter().map(|(node, weight)| (node, weight / total)).collect();
+        let (arms, direction) = arms(mesh, &weights).unwrap_or_default();
+        Self { name: name.to_owned(), weights, arms, direction }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Nodes with their part of a uniform traction, ∫ Nₐ ds over the edge's length; the parts sum to 1.
+    #[must_use]
+    pub fn weights(&self) -> &[(u32, f64)] {
+        &self.weights
+    }
+
+    /// Whether it is straight at rest: only then has it one direction, and can carry a moment.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        !self.arms.is_empty()
+    }
+
+    /// Nodes with their weight cⱼ, 1/m, in the edge's direction d = Σ cⱼ xⱼ, which has length 1 at rest; none where the
+    /// edge is not straight.
+    pub(super) fn arms(&self) -> &[(u32, f64)] {
+        &self.arms
+    }
+
+    /// d₀, the direction at rest.
+    pub(super) fn direction_at_rest(&self) -> Vector2<f64> {
+        self.direction
+    }
+
+    /// d = d₀ + Σ cⱼ uⱼ.
+    pub(super) fn direction(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
+        self.direction + self.sum(u)
+    }
+
+    fn sum(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
+        self.arms.iter().map(|&(node, c)| u[node as usize] * c).sum()
+    }
+
+    /// The angle between the edge's direction now and at rest that is nearest to `previous`, rad; `previous` where the
+    /// edge has shrunk to a point.
+    pub(super) fn turn(&self, u: &[Vector2<f64>], previous: f64) -> f64 {
+        use std::f64::consts::TAU;
+        let now = self.direction(u);
+        let angle = self.direction.perp(&now).atan2(self.direction.dot(&now));
+        let turns = ((previous - angle) / TAU).round();
+        if now == Vector2::zeros() || !(angle + TAU * turns).is_finite() { previous } else { angle + TAU * turns }
+    }
+
+    /// The angle of linear theory, which knows no other direction than that at rest, rad.
+    pub(super) fn linear_turn(&self, u: &[Vector2<f64>]) -> f64 {
+        self.direction.perp(&self.sum(u))
+    }
+}
+
+/// The weights cⱼ and the direction at rest of a straight edge; `None` where it is not straight.
+///
+/// cⱼ is a node's part of the edge times its distance from the edge's middle, normalised.
+fn arms(mesh: &Mesh, weights: &[(u32, f64)]) -> Option<(NodeWeights, Vector2<f64>)> {
+    /// Distance from the line, over the edge's size, that counts as straight.
+    const STRAIGHT: f64 = 1e-6;
+    let middle: Vector2<f64> = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
+    let from_middle = |node: u32| mesh.node(node) - middle;
+    let farthest = weights.iter().map(|&(n, _)| from_middle(n)).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    let size = farthest.norm();
+    if size <= 0.0 {
+        return None;
+    }
+    let axis = farthest / size;
+    if weights.iter().any(|&(node, _)| axis.perp(&from_middle(node)).abs() > STRAIGHT * size) {
+        return None;
+    }
+    let distance = |node: u32| axis.dot(&from_middle(node));
+    let second: f64 = weights.iter().map(|&(node, weight)| weight * distance(node).powi(2)).sum();
+    let arms: NodeWeights = weights.iter().map(|&(node, weight)| (node, weight * distance(node) / second)).collect();
+    let direction: Vector2<f64> = arms.iter().map(|&(node, c)| mesh.node(node) * c).sum();
+    direction.iter().all(|v| v.is_finite()).then_some((arms, direction))
+}
+
+/// The complaint of a scene's table `key` that names an edge that is not there.
+pub(super) fn no_such_edge(mesh: &Mesh, name: &str, key: &str) -> Invalid {
+    let known: Vec<&str> = mesh.edges().keys().map(String::as_str).collect();
+    Invalid::new(format!("{key}.edge"), format!("expected one of {}, got \"{name}\"", known.join(", ")))
+}

@@ -1,0 +1,44 @@
+//! Probes of a scene, put on the nodes of its mesh.
+
+use nalgebra::Vector2;
+
+use super::{NodeWeights, System};
+use crate::scene::{Invalid, Place, Probe};
+
+/// A probe as weights on nodes; the weights sum to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodalProbe {
+    /// What it is called.
+    pub name: String,
+    /// Where the scene puts it.
+    pub place: Place,
+    /// Node and weight.
+    pub weights: NodeWeights,
+}
+
+impl NodalProbe {
+    /// A scene's probes.
+    pub(super) fn of(probes: &[Probe], system: &System) -> Result<Vec<Self>, Invalid> {
+        probes.iter().enumerate().map(|(i, probe)| Self::new(probe, system, &format!("probe.{i}"))).collect()
+    }
+
+    fn new(probe: &Probe, system: &System, key: &str) -> Result<Self, Invalid> {
+        let weights = match &probe.place {
+            Place::Edge(name) => system.edge(name, key)?.1.weights().to_vec(),
+            Place::At(at) => {
+                let mesh = system.mesh();
+                let point = mesh.locate((*at).into()).and_then(|point| mesh.weights(point));
+                point.ok_or_else(|| {
+                    Invalid::new(format!("{key}.at"), format!("expected a point of the body, got {at:?} outside it"))
+                })?
+            }
+        };
+        Ok(Self { name: probe.name.clone(), place: probe.place.clone(), weights })
+    }
+
+    /// The weighted mean of a nodal field.
+    #[must_use]
+    pub fn mean(&self, field: &[Vector2<f64>]) -> Vector2<f64> {
+        self.weights.iter().map(|&(node, weight)| field[node as usize] * weight).sum()
+    }
+}

@@ -1,0 +1,206 @@
+//! A system with its numbers: material, loads, probes.
+
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use super::{Kinematics, Loads, Matrix, NodalProbe, System, SystemError};
+use crate::element::{MatrixSum, Tangent};
+use crate::scene::{Load, Material, Scene};
+use crate::state::State;
+
+/// The discrete problem of a scene.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    system: Arc<System>,
+    material: Material,
+    /// What the scene says of its loads, to see what an edit changes.
+    scene_loads: Vec<Load>,
+    loads: Loads,
+    probes: Vec<NodalProbe>,
+}
+
+/// What an edit has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// At most loads and probes: forces within the body are what they were.
+    Loads,
+    /// The stiffness too; states are still states of the body.
+    Stiffness,
+    /// The free unknowns or their couplings too.
+    Unknowns,
+    /// The mesh.
+    Mesh,
+}
+
+/// Nodal forces of a state, N.
+#[derive(Clone, Debug)]
+pub struct Forces {
+    /// f_int, of the elements.
+    pub(crate) internal: Vec<Vector2<f64>>,
+    /// Σ|fₑ|: the sum of the elements' absolute forces, by component.
+    pub(crate) magnitude: Vec<Vector2<f64>>,
+    /// f_ext, of the loads.
+    pub(crate) external: Vec<Vector2<f64>>,
+    /// The residual force f_ext − f_int. On fixed unknowns it is minus the reaction.
+    pub(crate) residual: Vec<Vector2<f64>>,
+}
+
+impl Forces {
+    /// Room for the forces on so many nodes.
+    #[must_use]
+    pub fn new(nodes: usize) -> Self {
+        let zero = vec![Vector2::zeros(); nodes];
+        Self { internal: zero.clone(), magnitude: zero.clone(), external: zero.clone(), residual: zero }
+    }
+
+    /// f_ext − f_int of every node, N.
+    #[must_use]
+    pub fn residual(&self) -> &[Vector2<f64>] {
+        &self.residual
+    }
+
+    /// f_int of every node, N.
+    #[must_use]
+    pub fn internal(&self) -> &[Vector2<f64>] {
+        &self.internal
+    }
+
+    /// f_ext of every node, N.
+    #[must_use]
+    pub fn external(&self) -> &[Vector2<f64>] {
+        &self.external
+    }
+}
+
+impl Problem {
+    /// The problem of a scene on a system made for it.
+    ///
+    /// # Errors
+    /// The key that is wrong and what was expected there.
+    pub fn new(scene: &Scene, system: Arc<System>) -> Result<Self, SystemError> {
+        let system = system.adapt(scene)?;
+        Ok(Self {
+            material: scene.material,
+            scene_loads: scene.loads.clone(),
+            loads: Loads::new(&scene.loads, &scene.material, &system)?,
+            probes: NodalProbe::of(&scene.probes, &system)?,
+            system,
+        })
+    }
+
+    /// Takes another scene on, at the price of what has changed.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the problem is unchanged then.
+    pub fn update(&mut self, scene: &Scene) -> Result<Change, SystemError> {
+        let system = self.system.adapt(scene)?;
+        let same_mesh = system.shares_mesh(&self.system);
+        let same_system = Arc::ptr_eq(&system, &self.system);
+        let same_probes =
+            self.probes.iter().map(|p| (&p.name, &p.place)).eq(scene.probes.iter().map(|p| (&p.name, &p.place)));
+        let probes = if same_mesh && same_probes { None } else { Some(NodalProbe::of(&scene.probes, &system)?) };
+        let same_weight = self.material.area_density() == scene.material.area_density();
+        let loads = if same_system && same_weight && self.scene_loads == scene.loads {
+            None
+        } else {
+            Some(Loads::new(&scene.loads, &scene.material, &system)?)
+        };
+        let change = if !same_mesh {
+            Change::Mesh
+        } else if !same_system {
+            Change::Unknowns
+        } else if scene.material.membrane() != self.material.membrane() {
+            Change::Stiffness
+        } else {
+            Change::Loads
+        };
+        if let Some(probes) = probes {
+            self.probes = probes;
+        }
+        if let Some(loads) = loads {
+            self.scene_loads.clone_from(&scene.loads);
+            self.loads = loads;
+        }
+        self.system = system;
+        self.material = scene.material;
+        Ok(change)
+    }
+
+    /// The equations.
+    #[must_use]
+    pub fn system(&self) -> &Arc<System> {
+        &self.system
+    }
+
+    /// The material of the whole body.
+    #[must_use]
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// What pulls.
+    #[must_use]
+    pub fn loads(&self) -> &Loads {
+        &self.loads
+    }
+
+    /// What is measured.
+    #[must_use]
+    pub fn probes(&self) -> &[NodalProbe] {
+        &self.probes
+    }
+
+    /// One sweep over the elements: the warped force f_int = Σ R Ke (Rᵀ x − X), its magnitude, and, where one is wanted,
+    /// a tangent of the elements over the free unknowns.
+    ///
+    /// f_int is A x − R K X, the article's system (eq. 2) with everything on one side; written with the strain, so that
+    /// it vanishes exactly at rest.
+    pub fn linearize(&self, state: &State, forces: &mut Forces, tangent: Option<(Tangent, &mut Matrix)>) {
+        let Forces { internal, magnitude, .. } = forces;
+        internal.fill(Vector2::zeros());
+        magnitude.fill(Vector2::zeros());
+        let matrix = tangent.map(|(tangent, matrix)| {
+            matrix.clear();
+            MatrixSum { tangent, slots: self.system.slots(), values: matrix.slots() }
+        });
+        let State { displacement, rotations, .. } = state;
+        self.system.elements().linearize(
+            self.material.membrane(),
+            displacement,
+            rotations,
+            internal,
+            magnitude,
+            matrix,
+        );
+    }
+
+    /// f_ext and the residual force beside the internal force of the last [`Self::linearize`]; returns the relative
+    /// residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ over the free unknowns. Where the elements carry nothing yet it is relative
+    /// to the load.
+    pub fn balance(&self, state: &State, kinematics: Kinematics, load_factor: f64, forces: &mut Forces) -> f64 {
+        let Forces { internal, magnitude, external, residual } = forces;
+        self.loads.force(&self.system, &state.displacement, kinematics, load_factor, external);
+        for (residual, (external, internal)) in residual.iter_mut().zip(external.iter().zip(internal)) {
+            *residual = *external - *internal;
+        }
+        let pattern = self.system.pattern();
+        let residual = pattern.norm(residual);
+        if residual == 0.0 {
+            return 0.0;
+        }
+        residual / pattern.norm(magnitude).max(pattern.norm(external))
+    }
+
+    /// Elastic energy, J.
+    #[must_use]
+    pub fn elastic_energy(&self, state: &State) -> f64 {
+        self.system.elements().energy(self.material.membrane(), &state.displacement, &state.rotations)
+    }
+
+    /// Elastic energy and the potential of the loads at this load factor, J: what an equilibrium makes stationary.
+    #[must_use]
+    pub fn energy(&self, state: &State, load_factor: f64) -> f64 {
+        self.elastic_energy(state) + self.loads.potential(state, load_factor)
+    }
+}

@@ -1,0 +1,275 @@
+//! What is found once for a mesh and its supports, and shared by all who solve on it.
+
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::edge::no_such_edge;
+use super::supports::fixed_unknowns;
+use super::{Edge, Pattern};
+use crate::element::Elements;
+use crate::mesh::Mesh;
+use crate::rotation::Rotation;
+use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
+use crate::solver::Symbolic;
+use crate::state::{State, StateError};
+
+/// How a state is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kinematics {
+    /// Strains are measured after turning elements back.
+    Corotated,
+    /// Strains are those of linear theory.
+    Linear,
+}
+
+/// Why a scene gives no equations.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum SystemError {
+    /// The scene asks for something that is not there.
+    #[error(transparent)]
+    Scene(#[from] Invalid),
+    /// The factor of its matrix does not fit.
+    #[error("the factor of {unknowns} unknowns does not fit in memory; expected a coarser mesh")]
+    TooLarge {
+        /// Free unknowns.
+        unknowns: usize,
+    },
+}
+
+/// Where a mesh came from.
+#[derive(Clone, Debug, PartialEq)]
+enum Origin {
+    /// Given by the caller: it belongs to whatever scene is solved on it.
+    Given,
+    Beam(Beam),
+    File(MeshFile),
+}
+
+/// A mesh with what is known of it apart from supports.
+#[derive(Debug)]
+struct Body {
+    origin: Origin,
+    mesh: Mesh,
+    elements: Box<dyn Elements>,
+    edges: Vec<Edge>,
+    nodal_areas: Vec<f64>,
+    size: f64,
+}
+
+impl Body {
+    fn new(origin: Origin, mesh: Mesh) -> Self {
+        let entry = mesh.entry();
+        let mut nodal_areas = vec![0.0; mesh.nodes().len()];
+        for nodes in mesh.elements() {
+            let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.node(n)).collect();
+            for (&node, area) in nodes.iter().zip(entry.nodal_areas(&rest)) {
+                nodal_areas[node as usize] += area;
+            }
+        }
+        let (low, high) = mesh.bounds();
+        Self {
+            origin,
+            elements: (entry.loops)(mesh.nodes(), mesh.connectivity()),
+            edges: Edge::of(&mesh),
+            nodal_areas,
+            size: (high - low).norm(),
+            mesh,
+        }
+    }
+}
+
+/// The equations of a mesh with its supports, without the numbers in them: elements, free unknowns, sparsity, the order
+/// of elimination. Made once, and shared.
+#[derive(Debug)]
+pub struct System {
+    body: Arc<Body>,
+    supports: Vec<Support>,
+    /// Numbers of the edges whose nodes are coupled, for moments.
+    coupled: Vec<usize>,
+    pattern: Pattern,
+    slots: Vec<u32>,
+    symbolic: Symbolic,
+}
+
+impl System {
+    /// Meshes a scene and sets up its equations. The scene is validated first.
+    ///
+    /// # Errors
+    /// The key that is wrong and what was expected there, or that the mesh is too large.
+    pub fn new(scene: &Scene) -> Result<Self, SystemError> {
+        scene.validate()?;
+        let (origin, mesh) = match (&scene.beam, &scene.mesh) {
+            (Some(beam), _) => {
+                (Origin::Beam(beam.clone()), Mesh::beam(beam).map_err(|e| Invalid::new("beam", e.to_string()))?)
+            }
+            (None, Some(file)) => {
+                let failed = |message: String| Invalid::new("mesh.file", format!("{}: {message}", file.file));
+                let unread = "its contents are not there: open the scene from its folder".to_owned();
+                let text = file.text.as_deref().ok_or_else(|| failed(unread))?;
+                (Origin::File(file.clone()), Mesh::from_gmsh(text, file.element).map_err(|e| failed(e.to_string()))?)
+            }
+            (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither").into()),
+        };
+        Self::of_body(Arc::new(Body::new(origin, mesh)), scene)
+    }
+
+    /// [`Self::new`] on a mesh of the caller's, which has the edges that the scene names. The scene's own `[beam]` or
+    /// `[mesh]`, if it has one, is not read.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, SystemError> {
+        scene.validate_all_but_geometry()?;
+        Self::of_body(Arc::new(Body::new(Origin::Given, mesh)), scene)
+    }
+
+    /// The system of another scene: this one where it serves, one that shares its mesh where only supports differ or a
+    /// moment needs more couplings, else a new one. A mesh of the caller's is kept whatever the scene.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn adapt(self: &Arc<Self>, scene: &Scene) -> Result<Arc<Self>, SystemError> {
+        let same_mesh = match &self.body.origin {
+            Origin::Given => true,
+            Origin::Beam(beam) => scene.beam.as_ref() == Some(beam) && scene.mesh.is_none(),
+            Origin::File(file) => scene.mesh.as_ref() == Some(file) && scene.beam.is_none(),
+        };
+        if !same_mesh {
+            return Ok(Arc::new(Self::new(scene)?));
+        }
+        match &self.body.origin {
+            Origin::Given => scene.validate_all_but_geometry()?,
+            Origin::Beam(_) | Origin::File(_) => scene.validate()?,
+        }
+        let couples = || self.moment_edges(scene).iter().all(|edge| self.coupled.contains(edge));
+        if scene.supports == self.supports && couples() {
+            return Ok(self.clone());
+        }
+        Ok(Arc::new(Self::of_body(self.body.clone(), scene)?))
+    }
+
+    fn of_body(body: Arc<Body>, scene: &Scene) -> Result<Self, SystemError> {
+        let fixed = fixed_unknowns(&scene.supports, &body.mesh)?;
+        let coupled = moment_edges(&body.edges, scene);
+        let groups: Vec<Vec<u32>> =
+            coupled.iter().map(|&edge| body.edges[edge].weights().iter().map(|&(node, _)| node).collect()).collect();
+        let pattern = Pattern::new(&body.mesh, &fixed, &groups);
+        let slots = body.mesh.elements().flat_map(|nodes| pattern.block_slots(nodes)).collect();
+        let symbolic = Symbolic::new(pattern.column_starts(), pattern.row_indices())
+            .map_err(|_| SystemError::TooLarge { unknowns: pattern.dofs() })?;
+        Ok(Self { body, supports: scene.supports.clone(), coupled, pattern, slots, symbolic })
+    }
+
+    fn moment_edges(&self, scene: &Scene) -> Vec<usize> {
+        moment_edges(&self.body.edges, scene)
+    }
+
+    /// The rest mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        &self.body.mesh
+    }
+
+    /// The loops over its elements.
+    #[must_use]
+    pub fn elements(&self) -> &dyn Elements {
+        self.body.elements.as_ref()
+    }
+
+    /// Free unknowns and sparsity.
+    #[must_use]
+    pub fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    /// Where every element's matrix goes; see [`crate::element::MatrixSum`].
+    #[must_use]
+    pub fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
+    /// The order of elimination.
+    #[must_use]
+    pub fn symbolic(&self) -> &Symbolic {
+        &self.symbolic
+    }
+
+    /// The named edges, by name.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        &self.body.edges
+    }
+
+    /// ∫ Nₐ dA of every node, m².
+    #[must_use]
+    pub fn nodal_areas(&self) -> &[f64] {
+        &self.body.nodal_areas
+    }
+
+    /// Size of the body at rest: the diagonal of the box around it, m.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.body.size
+    }
+
+    /// Number of free unknowns.
+    #[must_use]
+    pub fn dofs(&self) -> usize {
+        self.pattern.dofs()
+    }
+
+    /// Whether both have the same mesh: states of one are states of the other.
+    #[must_use]
+    pub(crate) fn shares_mesh(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.body, &other.body)
+    }
+
+    /// A named edge and its number; `key` blames the scene's table that names it.
+    pub(super) fn edge(&self, name: &str, key: &str) -> Result<(usize, &Edge), Invalid> {
+        let edges = self.body.edges.iter().enumerate();
+        edges.into_iter().find(|(_, e)| e.name() == name).ok_or_else(|| no_such_edge(self.mesh(), name, key))
+    }
+
+    /// The body at rest.
+    #[must_use]
+    pub fn at_rest(&self) -> State {
+        State::at_rest(self.mesh().nodes().len(), self.elements().rotation_count(), self.edges().len())
+    }
+
+    /// The state with this displacement, m, one vector a node of the mesh, at rest otherwise.
+    ///
+    /// # Errors
+    /// [`StateError`] where there are not as many vectors as nodes, or one is not finite.
+    pub fn state_of(&self, u: &[Vector2<f64>]) -> Result<State, StateError> {
+        let mut state = self.at_rest().with_displacement(u.to_vec())?;
+        self.follow(&mut state, Kinematics::Corotated);
+        Ok(state)
+    }
+
+    /// Sets rotations and turns of edges to those of the displacement. An edge is taken to have turned to the nearest
+    /// angle from where it was, so that full turns are kept.
+    pub fn follow(&self, state: &mut State, kinematics: Kinematics) {
+        let State { displacement: u, rotations, turns, .. } = state;
+        match kinematics {
+            Kinematics::Corotated => self.elements().rotations(u, rotations),
+            Kinematics::Linear => rotations.fill(Rotation::IDENTITY),
+        }
+        for (edge, turn) in self.edges().iter().zip(turns).filter(|(edge, _)| edge.is_straight()) {
+            *turn = match kinematics {
+                Kinematics::Corotated => edge.turn(u, *turn),
+                Kinematics::Linear => edge.linear_turn(u),
+            };
+        }
+    }
+}
+
+/// Numbers of the edges on which a scene puts moments; names that are not there are left to be complained of later.
+fn moment_edges(edges: &[Edge], scene: &Scene) -> Vec<usize> {
+    let carries = |edge: &Edge| {
+        scene.loads.iter().any(|load| matches!(load, Load::Moment { edge: name, .. } if name == edge.name()))
+    };
+    (0..edges.len()).filter(|&i| edges[i].is_straight() && carries(&edges[i])).collect()
+}

@@ -1,0 +1,191 @@
+//! What can be typed after `warpbeam`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+#[cfg(feature = "app")]
+use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
+use crate::scene;
+use crate::scene::limits::{BUDGET_MS, Limit, MAX_ERROR_PERCENT, OutOfRange};
+use crate::words::number;
+
+const EXIT_CODES: &str = "Exit codes: 0 done and converged, 1 ran but did not converge (the result is still printed), \
+2 bad input or usage, 3 no usable graphics adapter.";
+
+/// A lab for the warped stiffness (corotational finite element) method on 2D triangle beams.
+#[derive(Debug, Parser)]
+#[command(name = "warpbeam", version, after_help = EXIT_CODES)]
+#[cfg_attr(feature = "app", command(before_help = "Without a command: the window."))]
+#[cfg_attr(not(feature = "app"), command(subcommand_required = true, arg_required_else_help = true))]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Open the window. Without a display: solve the scene, write a picture, exit 0.
+    #[cfg(feature = "app")]
+    #[command(after_help = EXIT_CODES)]
+    Run {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// The picture written where there is no display.
+        #[arg(short, long, value_name = "OUT.png", default_value = DEFAULT_PICTURE)]
+        output: PathBuf,
+    },
+    /// List the built-in scenes.
+    Scenes,
+    /// Find the equilibrium of a scene.
+    #[command(after_help = EXIT_CODES)]
+    Solve(SolveArgs),
+    /// Print load against deflection of a cantilever: linear theory, the exact beam, every method, and where linear
+    /// theory leaves the exact beam by 3, 5 and 10 percent.
+    Curve {
+        #[command(flatten)]
+        scene: RequiredSceneArgs,
+        /// Also write the curve as a table.
+        #[arg(long, value_name = "FILE.csv")]
+        out: Option<PathBuf>,
+    },
+    /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
+    /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt).
+    Study {
+        #[command(flatten)]
+        scene: SceneArgs,
+        #[command(flatten)]
+        out: FolderArgs,
+    },
+    /// Choose element, mesh and method for an error and a time: measure finer and finer meshes on this machine until
+    /// both are met, and print what was chosen and why.
+    #[command(
+        after_help = "Exit codes: 0 both are met, 1 nothing meets them (the closest is printed), 2 bad input or usage."
+    )]
+    Tune(TuneArgs),
+    /// Solve at the extremes of load, stiffness, Poisson ratio, slenderness and starting state, and count how each method
+    /// ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary.
+    Extremes {
+        #[command(flatten)]
+        out: FolderArgs,
+    },
+    /// Draw the picture the window shows into a PNG file, without a window.
+    #[cfg(feature = "app")]
+    #[command(after_help = EXIT_CODES)]
+    Shot(ShotArgs),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SceneArgs {
+    /// A built-in scene (see `warpbeam scenes`) or a scene file.
+    #[arg(default_value = scene::registry::DEFAULT)]
+    pub scene: String,
+    #[command(flatten)]
+    pub set: SetArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RequiredSceneArgs {
+    /// A built-in scene (see `warpbeam scenes`) or a scene file.
+    pub scene: String,
+    #[command(flatten)]
+    pub set: SetArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SetArgs {
+    /// Change a value of the scene: material.young=2e6, beam.cells=[40,2], load.0.force=[0,-5].
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub assignments: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SolveArgs {
+    #[command(flatten)]
+    pub scene: RequiredSceneArgs,
+    /// Print one JSON object, and nothing else, on standard output.
+    #[arg(long)]
+    pub json: bool,
+    /// Also write the nodes (.csv) or the mesh with its fields (.vtu, for ParaView).
+    #[arg(long, value_name = "FILE.csv|.vtu")]
+    pub out: Option<PathBuf>,
+    /// Do not look for the truth that errors are measured against: it takes a solve on a finer mesh.
+    #[arg(long)]
+    pub no_truth: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FolderArgs {
+    /// The folder to write to; made if it is not there.
+    #[arg(long = "out", value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Without the dearer part: coarser meshes, fewer cases.
+    #[arg(long)]
+    pub quick: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct TuneArgs {
+    #[command(flatten)]
+    pub scene: RequiredSceneArgs,
+    /// The largest error, percent of the true displacement of the first probe: 1% or 1. Without --time and --error: 1%.
+    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
+    pub error: Option<f64>,
+    /// The longest time of a solve from rest: 0.5ms, 200us, 2s, or milliseconds.
+    #[arg(long, value_name = "TIME", value_parser = parse_milliseconds)]
+    pub time: Option<f64>,
+    /// Save the scene with what was chosen.
+    #[arg(long, value_name = "FILE.toml")]
+    pub write: Option<PathBuf>,
+}
+
+impl From<SceneArgs> for scene::Source {
+    fn from(args: SceneArgs) -> Self {
+        Self { name: args.scene, assignments: args.set.assignments }
+    }
+}
+
+impl From<RequiredSceneArgs> for scene::Source {
+    fn from(args: RequiredSceneArgs) -> Self {
+        Self { name: args.scene, assignments: args.set.assignments }
+    }
+}
+
+/// A number with one of these units, each with its factor; the first is that of a bare number.
+fn parse_with_unit(text: &str, limit: Limit, units: &[(&str, f64)]) -> Result<f64, OutOfRange> {
+    let text = text.trim();
+    let parsed = units.iter().rev().find_map(|(unit, factor)| {
+        let value: f64 = text.strip_suffix(unit)?.trim_end().parse().ok()?;
+        Some(value * factor)
+    });
+    let value = parsed.or_else(|| text.parse().ok()).ok_or_else(|| limit.expected(&format!("`{text}`")))?;
+    limit.check(value).map_err(|_| limit.expected(&number(value)))?;
+    Ok(value)
+}
+
+fn parse_percent(text: &str) -> Result<f64, OutOfRange> {
+    parse_with_unit(text, MAX_ERROR_PERCENT, &[("%", 1.0)])
+}
+
+fn parse_milliseconds(text: &str) -> Result<f64, OutOfRange> {
+    parse_with_unit(text, BUDGET_MS, &[("s", 1e3), ("ms", 1.0), ("us", 1e-3), ("µs", 1e-3)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_and_times_are_read_with_their_units() {
+        for (text, percent) in [("1%", 1.0), ("0.5 %", 0.5), ("2", 2.0)] {
+            assert_eq!(parse_percent(text), Ok(percent), "{text}");
+        }
+        for (text, ms) in [("0.5ms", 0.5), ("200us", 0.2), ("200 µs", 0.2), ("2s", 2e3), ("16", 16.0)] {
+            assert!(parse_milliseconds(text).is_ok_and(|v| (v - ms).abs() < 1e-12), "{text}");
+        }
+        for text in ["", "fast", "-1", "nan", "1 kg", "ms"] {
+            assert!(parse_milliseconds(text).is_err(), "{text}");
+            assert!(parse_percent(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! What commands print for people.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use crate::method::{Certificate, rho_words};
+use crate::scene::{Scene, registry};
+use crate::simulation::{Solution, Status};
+use crate::study::{LoadCurve, Reference};
+use crate::words::count;
+
+/// Prints to standard output. A reader that went away, such as `head`, is no error.
+pub(super) fn print(text: &str) {
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes());
+    let _ = out.flush();
+}
+
+/// The list of built-in scenes.
+pub(super) fn scenes() -> String {
+    let mut text = String::new();
+    for built_in in registry::BUILT_IN {
+        // The registry's own files are checked by a test; one that did not read would still be listed.
+        let (name, about) = Scene::from_toml(built_in.toml)
+            .map_or_else(|error| (error.to_string(), String::new()), |scene| (scene.name, scene.about));
+        let _ = writeln!(text, "{:<12} {name}\n{:12} {about}", built_in.id, "");
+    }
+    text
+}
+
+/// A result.
+pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>) -> String {
+    let mut text = format!(
+        "{}: element {}, method {}, {} unknowns\n",
+        scene.name,
+        scene.element().id(),
+        scene.solver.method.id(),
+        solution.dofs
+    );
+    let word = solution.status.id().replace('_', " ");
+    let _ = writeln!(
+        text,
+        "{word} after {}, relative residual {:.2e}",
+        count(solution.iterations, "iteration"),
+        solution.residual
+    );
+    if let Some(reason) = solution.status.failure() {
+        let _ = writeln!(text, "  {reason}");
+    }
+    if let Some(auto) = &solution.auto {
+        let _ = writeln!(
+            text,
+            "{}: estimated error {:.4} %, {}, {}",
+            auto.decision,
+            100.0 * auto.estimated_error,
+            count(auto.solves, "back substitution"),
+            count(auto.factorizations, "factorization")
+        );
+    }
+    let Certificate { stable, fixed_point_rho } = solution.certificate.unwrap_or_default();
+    if solution.status == Status::Converged && stable == Some(false) {
+        let _ = writeln!(text, "  this equilibrium is unstable: the exact tangent is not positive definite");
+    }
+    if let Some(rho) = fixed_point_rho {
+        let _ = writeln!(text, "{}", rho_words(rho));
+    }
+    let truths = truth.map_or(&[][..], Reference::probes);
+    for (i, probe) in solution.probes.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "{}: at ({:.6}, {:.6}) m, moved by ({:.6}, {:.6}) m",
+            probe.name, probe.x.x, probe.x.y, probe.u.x, probe.u.y
+        );
+        let truth = truths.get(i).and_then(|truth| Some((truth, truth.error_percent(probe)?)));
+        if let Some((truth, error)) = truth {
+            let u = truth.displacement;
+            let _ = writeln!(text, "  {}: ({:.6}, {:.6}) m, error {error:.3} %", truth.source, u.x, u.y);
+        }
+    }
+    if let Some(off) = truth.and_then(|t| t.beam_off_by_percent) {
+        let _ = writeln!(text, "  beam theory, with its small strains, is {off:.1} % off");
+    }
+    let deformation = &solution.deformation;
+    let _ = writeln!(
+        text,
+        "largest rotation {:.2}°, largest strain {:.4}, inverted elements {}",
+        deformation.max_rotation_deg, deformation.max_strain, deformation.inverted_elements
+    );
+    let _ = writeln!(
+        text,
+        "reaction ({:.6}, {:.6}) N, moment about the origin {:.6} N m",
+        solution.reaction.force.x, solution.reaction.force.y, solution.reaction.moment
+    );
+    let _ = writeln!(
+        text,
+        "elastic energy {:.6} J, work of the loads {:.6} J",
+        solution.energy.elastic, solution.energy.external
+    );
+    let time = &solution.time;
+    let us = |time: std::time::Duration| time.as_secs_f64() * 1e6;
+    let _ = writeln!(
+        text,
+        "time {:.0} µs: rotate {:.0}, assemble {:.0}, factorize {:.0}, solve {:.0}",
+        us(time.total()),
+        us(time.rotate),
+        us(time.assemble),
+        us(time.factorize),
+        us(time.solve)
+    );
+    text
+}
+
+/// A load–deflection curve for people.
+pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
+    let mut text = format!("{}: tip displacement, m\n\n", scene.name);
+    let _ =
+        writeln!(text, "  load   linear theory            exact beam               linear error   tip turn   strain");
+    for sample in curve.samples.iter().step_by(5).skip(1) {
+        let _ = writeln!(
+            text,
+            "{:5.1} %  ({:9.4}, {:9.4})   ({:9.4}, {:9.4})   {:9.2} %   {:7.2}°   {:.5}",
+            100.0 * sample.factor,
+            sample.linear.x,
+            sample.linear.y,
+            sample.truth.x,
+            sample.truth.y,
+            sample.linear_error_percent(),
+            sample.rotation.to_degrees(),
+            sample.strain
+        );
+    }
+    text.push('\n');
+    for departure in &curve.departures {
+        let _ = writeln!(
+            text,
+            "linear theory is off by {} % at {:.1} % of the load: the tip has turned by {:.1}°, the largest strain is {:.2} %",
+            departure.percent,
+            100.0 * departure.at.factor,
+            departure.at.rotation.to_degrees().abs(),
+            100.0 * departure.at.strain
+        );
+    }
+    text.push('\n');
+    for point in &curve.methods {
+        let word = point.status.id().replace('_', " ");
+        let _ =
+            writeln!(text, "{:<7} at full load: ({:.4}, {:.4}) m, {word}", point.method.id(), point.tip.x, point.tip.y);
+    }
+    text
+}
+
+/// A load–deflection curve as CSV.
+pub(super) fn curve_table(curve: &LoadCurve) -> String {
+    let mut text =
+        String::from("load_factor,linear_x,linear_y,truth_x,truth_y,linear_error_percent,tip_rotation_deg,strain\n");
+    for s in &curve.samples {
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{},{},{},{}",
+            s.factor,
+            s.linear.x,
+            s.linear.y,
+            s.truth.x,
+            s.truth.y,
+            s.linear_error_percent(),
+            s.rotation.to_degrees(),
+            s.strain
+        );
+    }
+    text
+}

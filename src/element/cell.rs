@@ -1,0 +1,65 @@
+//! The shapes of elements in their reference coordinates (ξ, η), apart from how many nodes they have.
+
+/// A reference shape: what elements of any degree on it have in common.
+#[derive(Debug)]
+pub struct Cell {
+    /// Corners, counter-clockwise.
+    pub corners: &'static [[f64; 2]],
+    /// Area in reference coordinates.
+    pub area: f64,
+    /// The corners of the four parts of a uniform refinement.
+    pub children: &'static [&'static [[f64; 2]]],
+    /// Weights of the corners at a point; they interpolate a map that takes straight sides to straight sides.
+    pub corner_weights: fn(at: [f64; 2]) -> Vec<f64>,
+    /// How far inside a point is: negative outside.
+    pub depth: fn(at: [f64; 2]) -> f64,
+    /// Cuts the cell into small triangles with so many pieces a side.
+    pub lattice: fn(pieces: u32) -> Lattice,
+}
+
+/// A cell cut into small triangles, to be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lattice {
+    /// Reference coordinates of the points.
+    pub points: Vec<[f64; 2]>,
+    /// Triangles between points, counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// Points along each side, counter-clockwise, ends included.
+    pub sides: Vec<Vec<u32>>,
+}
+
+/// The triangle (0, 0), (1, 0), (0, 1): ξ and η are the second and the third area coordinate.
+pub const TRIANGLE: Cell = Cell {
+    corners: &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+    area: 0.5,
+    children: &[
+        &[[0.0, 0.0], [0.5, 0.0], [0.0, 0.5]],
+        &[[0.5, 0.0], [1.0, 0.0], [0.5, 0.5]],
+        &[[0.0, 0.5], [0.5, 0.5], [0.0, 1.0]],
+        &[[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]],
+    ],
+    corner_weights: |[x, y]| vec![1.0 - x - y, x, y],
+    depth: |[x, y]| (1.0 - x - y).min(x).min(y),
+    lattice: triangle_lattice,
+};
+
+fn triangle_lattice(pieces: u32) -> Lattice {
+    // Rows get shorter: row j holds pieces + 1 − j points.
+    let point = |i: u32, j: u32| j * (pieces + 1) - j * j.saturating_sub(1) / 2 + i;
+    let step = 1.0 / f64::from(pieces);
+    let rows = || (0..=pieces).flat_map(move |j| (0..=pieces - j).map(move |i| (i, j)));
+    let points = rows().map(|(i, j)| [f64::from(i) * step, f64::from(j) * step]).collect();
+    let mut triangles = Vec::new();
+    for (i, j) in rows().filter(|(i, j)| i + j < pieces) {
+        triangles.push([point(i, j), point(i + 1, j), point(i, j + 1)]);
+        if i + j + 2 <= pieces {
+            triangles.push([point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)]);
+        }
+    }
+    let sides = vec![
+        (0..=pieces).map(|i| point(i, 0)).collect(),
+        (0..=pieces).map(|j| point(pieces - j, j)).collect(),
+        (0..=pieces).rev().map(|j| point(0, j)).collect(),
+    ];
+    Lattice { points, triangles, sides }
+}

@@ -1,0 +1,224 @@
+//! What an iteration works with, and the step all methods share.
+
+use std::time::{Duration, Instant};
+
+use thiserror::Error;
+
+use crate::assembly::{Forces, Kinematics, Matrix, Problem, System};
+use crate::element::Tangent;
+use crate::solver::{Factor, SolverError};
+use crate::state::State;
+
+/// Why an iteration produced no new state.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum IterationError {
+    /// No factor.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// The solution is not finite.
+    #[error("the solution is not a finite number")]
+    NotFinite,
+}
+
+/// Time spent in each stage of an iteration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Timings {
+    /// Deformation gradients and polar decompositions.
+    pub rotate: Duration,
+    /// Stiffness, forces, residual.
+    pub assemble: Duration,
+    /// Numeric factorization.
+    pub factorize: Duration,
+    /// Forward and back substitution, update.
+    pub solve: Duration,
+}
+
+impl Timings {
+    /// All stages together.
+    #[must_use]
+    pub fn total(&self) -> Duration {
+        self.rotate + self.assemble + self.factorize + self.solve
+    }
+
+    /// Adds other timings, stage by stage.
+    pub fn add(&mut self, other: &Self) {
+        self.rotate += other.rotate;
+        self.assemble += other.assemble;
+        self.factorize += other.factorize;
+        self.solve += other.solve;
+    }
+}
+
+/// Runs `work` and adds the time it took to `stage`.
+pub(crate) fn timed<T>(stage: &mut Duration, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    *stage += start.elapsed();
+    result
+}
+
+/// Memory an iteration works in, made once for a system.
+#[derive(Debug)]
+pub struct Workspace {
+    /// A matrix over the free unknowns …
+    pub(crate) matrix: Matrix,
+    /// … and which it is, where it is a tangent of the present state at the present load.
+    pub(crate) tangent: Option<Tangent>,
+    /// A factor.
+    pub(crate) factor: Factor,
+    /// A vector over the free unknowns.
+    pub(crate) free: Vec<f64>,
+    /// A state to try steps on.
+    pub(crate) trial: State,
+}
+
+impl Workspace {
+    /// Makes room.
+    ///
+    /// # Errors
+    /// [`SolverError::TooLarge`].
+    pub fn new(system: &System) -> Result<Self, SolverError> {
+        Ok(Self {
+            matrix: Matrix::new(system.pattern()),
+            tangent: None,
+            factor: Factor::new(system.symbolic())?,
+            free: vec![0.0; system.dofs()],
+            trial: system.at_rest(),
+        })
+    }
+}
+
+/// When a solve is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Relative residual, for methods that iterate to an equilibrium.
+    pub residual: f64,
+    /// Error relative to the displacement, for `auto`.
+    pub error: f64,
+}
+
+/// What a method may use and change in one iteration.
+#[derive(Debug)]
+pub struct Iteration<'a> {
+    /// The equations and their numbers.
+    pub problem: &'a Problem,
+    /// Forces of the present state at the present load.
+    pub forces: &'a mut Forces,
+    /// The relative residual.
+    pub residual: f64,
+    /// When the solve is done.
+    pub tolerances: Tolerances,
+    /// The state, with the rotations of its displacement; methods replace the displacement.
+    pub state: &'a mut State,
+    /// Memory.
+    pub workspace: &'a mut Workspace,
+    /// Where the time goes.
+    pub timings: &'a mut Timings,
+}
+
+impl Iteration<'_> {
+    /// The system of the problem.
+    pub(super) fn system(&self) -> &System {
+        self.problem.system()
+    }
+
+    /// Sees to it that the workspace's matrix is this tangent of the present state at this load factor, the loads' own
+    /// part included where it is exact.
+    pub(super) fn assemble(&mut self, tangent: Tangent, load_factor: f64) {
+        if self.workspace.tangent == Some(tangent) {
+            return;
+        }
+        let Self { problem, forces, state, workspace, timings, .. } = self;
+        timed(&mut timings.assemble, || {
+            assemble(problem, state, forces, workspace, tangent, load_factor);
+        });
+    }
+
+    /// Factorizes the workspace's matrix, which must be positive definite.
+    pub(super) fn factorize(&mut self) -> Result<(), SolverError> {
+        let Workspace { matrix, factor, .. } = &mut *self.workspace;
+        timed(&mut self.timings.factorize, || factor.factorize(matrix.values()))
+    }
+
+    /// Factorizes the workspace's matrix, definite or not.
+    pub(super) fn factorize_symmetric(&mut self) -> bool {
+        let Workspace { matrix, factor, .. } = &mut *self.workspace;
+        timed(&mut self.timings.factorize, || factor.factorize_symmetric(matrix.values()))
+    }
+
+    /// u ← u + K⁻¹ (f_ext − f_int) with the last factor; returns the step's length.
+    ///
+    /// With K = A = Σ R Ke Rᵀ this is the article's iteration A x = f_ext + R K X (eq. 2) with A x taken to the
+    /// right-hand side: f_int is A x − R K X. The fixed unknowns do not move, so eliminating them leaves no term behind
+    /// (its 24 → 20 → 24), and a small step keeps its digits next to a large x.
+    pub(super) fn step(&mut self) -> Result<f64, IterationError> {
+        self.solve_for_step()?;
+        self.advance(1.0);
+        Ok(self.step_length())
+    }
+
+    /// The step K⁻¹ (f_ext − f_int) with the last factor, left in the workspace.
+    pub(super) fn solve_for_step(&mut self) -> Result<(), IterationError> {
+        let Workspace { factor, free, .. } = &mut *self.workspace;
+        timed(&mut self.timings.solve, || {
+            self.problem.system().pattern().restrict(&self.forces.residual, free);
+            factor.solve_in_place(free);
+            if free.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(IterationError::NotFinite) }
+        })
+    }
+
+    /// u ← u + `fraction` · step; the workspace keeps the step that was made.
+    pub(super) fn advance(&mut self, fraction: f64) {
+        let free = &mut self.workspace.free;
+        if fraction != 1.0 {
+            free.iter_mut().for_each(|v| *v *= fraction);
+        }
+        self.problem.system().pattern().add_free(free, 1.0, &mut self.state.displacement);
+        self.workspace.tangent = None;
+    }
+
+    /// Length of the step in the workspace.
+    pub(super) fn step_length(&self) -> f64 {
+        self.workspace.free.iter().map(|v| v * v).sum::<f64>().sqrt()
+    }
+}
+
+/// Rotations and forces of a state, and a tangent where one is wanted: the loads' own part included where it is exact.
+pub(crate) fn assemble(
+    problem: &Problem,
+    state: &State,
+    forces: &mut Forces,
+    workspace: &mut Workspace,
+    tangent: Tangent,
+    load_factor: f64,
+) {
+    problem.linearize(state, forces, Some((tangent, &mut workspace.matrix)));
+    if matches!(tangent, Tangent::Exact | Tangent::Geometric) {
+        problem.loads().add_stiffness(problem.system(), &state.displacement, load_factor, &mut workspace.matrix);
+    }
+    workspace.tangent = Some(tangent);
+}
+
+/// Measures a state that has the rotations of its displacement: its forces, and a tangent where one is wanted. Returns
+/// the relative residual.
+pub(crate) fn measure(
+    problem: &Problem,
+    state: &State,
+    kinematics: Kinematics,
+    (tangent, load_factor): (Option<Tangent>, f64),
+    forces: &mut Forces,
+    workspace: &mut Workspace,
+    timings: &mut Timings,
+) -> f64 {
+    timed(&mut timings.assemble, || {
+        match tangent {
+            Some(tangent) => assemble(problem, state, forces, workspace, tangent, load_factor),
+            None => {
+                problem.linearize(state, forces, None);
+                workspace.tangent = None;
+            }
+        }
+        problem.balance(state, kinematics, load_factor, forces)
+    })
+}

@@ -1,0 +1,90 @@
+//! Rotations of the plane: the closed-form polar decomposition that every iteration runs once a quadrature point.
+//!
+//! Article eqs. (37)–(39), with the reciprocal its eq. (38) lost.
+
+use nalgebra::{Matrix2, Vector2};
+
+/// A proper rotation of the plane, stored as cosine and sine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation {
+    /// Cosine of the angle.
+    pub c: f64,
+    /// Sine of the angle.
+    pub s: f64,
+}
+
+impl Rotation {
+    /// The rotation by 0.
+    pub const IDENTITY: Self = Self { c: 1.0, s: 0.0 };
+
+    /// The rotation by `angle` (rad, counter-clockwise).
+    #[must_use]
+    pub fn from_angle(angle: f64) -> Self {
+        let (s, c) = angle.sin_cos();
+        Self { c, s }
+    }
+
+    /// The angle in (−π, π], rad.
+    #[must_use]
+    pub fn angle(self) -> f64 {
+        self.s.atan2(self.c)
+    }
+
+    /// The matrix of article eq. (39).
+    #[must_use]
+    pub fn matrix(self) -> Matrix2<f64> {
+        Matrix2::new(self.c, -self.s, self.s, self.c)
+    }
+
+    /// R v.
+    #[must_use]
+    pub fn apply(self, v: Vector2<f64>) -> Vector2<f64> {
+        Vector2::new(self.c * v.x - self.s * v.y, self.s * v.x + self.c * v.y)
+    }
+}
+
+/// The rotation R of the polar decomposition F = R S, S symmetric (article eqs. 37–39); `None` where it is undefined.
+///
+/// R is the proper rotation that maximises tr(RᵀF) = c (F₀₀ + F₁₁) + s (F₁₀ − F₀₁), so (c, s) is that pair of sums,
+/// normalised. It is right for every finite F: inverted, singular, subnormal or near the largest number. It never is a
+/// reflection. It is undefined where both sums vanish (F zero, or a scaled reflection) and where F is not finite.
+///
+/// Erratum: the article's eq. (38) multiplies by √(a² + b²); it must divide.
+///
+/// ```
+/// use nalgebra::Matrix2;
+/// use warpbeam::rotation::polar;
+/// let r = polar(&Matrix2::new(0.0, -3.0, 2.0, 0.0)).unwrap();
+/// assert_eq!((r.c, r.s), (0.0, 1.0));
+/// assert!(polar(&Matrix2::new(1.0, 0.0, 0.0, -1.0)).is_none());
+/// ```
+#[must_use]
+#[inline]
+pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
+    let mut a = f.m11 + f.m22;
+    let mut b = f.m21 - f.m12;
+    if !(a.is_finite() && b.is_finite()) {
+        if !f.iter().all(|v| v.is_finite()) {
+            return None;
+        }
+        // Only the sums overflowed. What halving rounds away is beyond the last digit of the larger one.
+        a = 0.5 * f.m11 + 0.5 * f.m22;
+        b = 0.5 * f.m21 - 0.5 * f.m12;
+    }
+    // A floating-point sum is zero only where the exact one is, and has full relative accuracy otherwise: dividing by
+    // the larger of the two keeps both digits and range.
+    let m = a.abs().max(b.abs());
+    if m == 0.0 {
+        return None;
+    }
+    let (a, b) = (a / m, b / m);
+    let h = (a * a + b * b).sqrt();
+    Some(Rotation { c: a / h, s: b / h })
+}
+
+/// [`polar`], keeping `previous` where the rotation is undefined.
+#[must_use]
+#[inline]
+pub fn polar_or(f: &Matrix2<f64>, previous: Rotation) -> Rotation {
+    polar(f).unwrap_or(previous)
+}

@@ -1,0 +1,217 @@
+//! Scenes in code: builders and setters with numbers, checked where they are simulated.
+
+use super::{
+    Axis, Beam, Diagonals, ElementKind, Invalid, Load, Material, MethodKind, Place, Plane, Probe, Scene,
+    SolverSettings, Support,
+};
+
+impl Scene {
+    /// A scene without a mesh, for [`crate::Simulation::with_mesh`].
+    #[must_use]
+    pub fn named(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            about: String::new(),
+            analysis: super::Analysis::default(),
+            beam: None,
+            mesh: None,
+            material: Material::default(),
+            supports: Vec::new(),
+            loads: Vec::new(),
+            probes: Vec::new(),
+            solver: SolverSettings::default(),
+        }
+    }
+
+    /// A rectangle [0, length] × [−height/2, height/2], m, of rubber, on one row of six-node triangles: nothing holds or
+    /// pulls it yet.
+    ///
+    /// ```
+    /// use warpbeam::{Scene, Simulation};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1000.0]).probe("tip", "right");
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.solve();
+    /// assert!(beam.probe("tip").is_some_and(|u| u.y < -3.0));
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
+    #[must_use]
+    pub fn beam(length: f64, height: f64) -> Self {
+        // Cells about as long as high.
+        let along = (length / height).round().clamp(4.0, 100.0);
+        let along = if along.is_finite() { along as u32 } else { 4 };
+        let beam =
+            Beam { length, height, cells: [along, 1], element: ElementKind::T6, diagonals: Diagonals::default() };
+        Self { beam: Some(beam), ..Self::named("Beam") }
+    }
+
+    /// With so many cells along and across the beam.
+    #[must_use]
+    pub fn with_cells(mut self, along: u32, across: u32) -> Self {
+        if let Some(beam) = &mut self.beam {
+            beam.cells = [along, across];
+        }
+        self
+    }
+
+    /// With this element.
+    #[must_use]
+    pub fn with_element(mut self, element: ElementKind) -> Self {
+        self.set_element(element);
+        self
+    }
+
+    /// With this material.
+    #[must_use]
+    pub fn with_material(mut self, material: Material) -> Self {
+        self.material = material;
+        self
+    }
+
+    /// With this method.
+    #[must_use]
+    pub fn with_method(mut self, method: MethodKind) -> Self {
+        self.solver.method = method;
+        self
+    }
+
+    /// Fixed here in both directions.
+    #[must_use]
+    pub fn clamp(self, place: impl Into<Place>) -> Self {
+        self.support(place, &[Axis::X, Axis::Y])
+    }
+
+    /// Fixed here in these directions.
+    #[must_use]
+    pub fn support(mut self, place: impl Into<Place>, fix: &[Axis]) -> Self {
+        self.supports.push(Support { place: place.into(), fix: fix.to_vec() });
+        self
+    }
+
+    /// Pulled here by a dead force, N.
+    #[must_use]
+    pub fn force(mut self, place: impl Into<Place>, force: [f64; 2]) -> Self {
+        self.loads.push(Load::Force { place: place.into(), force });
+        self
+    }
+
+    /// Turned here by a moment, N m, counter-clockwise, that turns with its edge.
+    #[must_use]
+    pub fn moment(mut self, edge: &str, moment: f64) -> Self {
+        self.loads.push(Load::Moment { edge: edge.to_owned(), moment });
+        self
+    }
+
+    /// With its weight under this acceleration, m/s².
+    #[must_use]
+    pub fn gravity(mut self, acceleration: [f64; 2]) -> Self {
+        self.loads.push(Load::Gravity { acceleration });
+        self
+    }
+
+    /// Measured here.
+    #[must_use]
+    pub fn probe(mut self, name: &str, place: impl Into<Place>) -> Self {
+        self.probes.push(Probe { name: name.to_owned(), place: place.into() });
+        self
+    }
+
+    /// Sets the components of a force, N; `load` counts the loads from 0.
+    ///
+    /// # Errors
+    /// Where there is no such force. What is out of range is refused when the scene is simulated.
+    pub fn set_force(&mut self, load: usize, new: [f64; 2]) -> Result<(), Invalid> {
+        match self.loads.get_mut(load) {
+            Some(Load::Force { force, .. }) => *force = new,
+            other => return Err(no_such_load(load, "force", other.as_deref())),
+        }
+        Ok(())
+    }
+
+    /// Sets a moment, N m; `load` counts the loads from 0.
+    ///
+    /// # Errors
+    /// As [`Self::set_force`].
+    pub fn set_moment(&mut self, load: usize, new: f64) -> Result<(), Invalid> {
+        match self.loads.get_mut(load) {
+            Some(Load::Moment { moment, .. }) => *moment = new,
+            other => return Err(no_such_load(load, "moment", other.as_deref())),
+        }
+        Ok(())
+    }
+
+    /// Sets the acceleration of a weight, m/s²; `load` counts the loads from 0.
+    ///
+    /// # Errors
+    /// As [`Self::set_force`].
+    pub fn set_gravity(&mut self, load: usize, new: [f64; 2]) -> Result<(), Invalid> {
+        match self.loads.get_mut(load) {
+            Some(Load::Gravity { acceleration }) => *acceleration = new,
+            other => return Err(no_such_load(load, "gravity", other.as_deref())),
+        }
+        Ok(())
+    }
+
+    /// Every load times `factor`.
+    pub fn scale_loads(&mut self, factor: f64) {
+        for load in &mut self.loads {
+            match load {
+                Load::Force { force: v, .. } | Load::Gravity { acceleration: v } => *v = v.map(|v| v * factor),
+                Load::Moment { moment, .. } => *moment *= factor,
+            }
+        }
+    }
+
+    /// The element of its mesh.
+    #[must_use]
+    pub fn element(&self) -> ElementKind {
+        let beam = self.beam.as_ref().map(|b| b.element);
+        beam.or(self.mesh.as_ref().map(|m| m.element)).unwrap_or_default()
+    }
+
+    /// Makes every cell of its mesh this element.
+    pub fn set_element(&mut self, element: ElementKind) {
+        if let Some(beam) = &mut self.beam {
+            beam.element = element;
+        }
+        if let Some(mesh) = &mut self.mesh {
+            mesh.element = element;
+        }
+    }
+}
+
+fn no_such_load(load: usize, expected: &str, got: Option<&Load>) -> Invalid {
+    let got = match got {
+        Some(Load::Force { .. }) => "a force",
+        Some(Load::Moment { .. }) => "a moment",
+        Some(Load::Gravity { .. }) => "gravity",
+        None => "no load",
+    };
+    Invalid::new(format!("load.{load}"), format!("expected a load of kind \"{expected}\", got {got}"))
+}
+
+impl Material {
+    /// Rubber-like in plane stress: this Young's modulus (Pa) and Poisson ratio, 1000 kg/m³, 1 m thick.
+    ///
+    /// ```
+    /// use warpbeam::{Material, Plane};
+    /// let mut steel = Material::new(2.1e11, 0.3);
+    /// (steel.density, steel.thickness, steel.plane) = (7800.0, 0.01, Plane::Strain);
+    /// ```
+    #[must_use]
+    pub fn new(young: f64, poisson: f64) -> Self {
+        Self { young, poisson, ..Self::default() }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            young: 1e6,
+            poisson: 0.3,
+            density: super::default_density(),
+            thickness: super::default_thickness(),
+            plane: Plane::default(),
+        }
+    }
+}

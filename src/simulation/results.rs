@@ -1,0 +1,104 @@
+//! The numbers of a state.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::field::largest_principal;
+use crate::assembly::{Forces, Problem};
+use crate::rotation::polar;
+use crate::state::State;
+
+/// What a probe sees.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ProbeResult {
+    /// Its name.
+    pub name: String,
+    /// Current position, m.
+    pub x: Vector2<f64>,
+    /// Displacement, m.
+    pub u: Vector2<f64>,
+}
+
+/// Energies, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Energy {
+    /// Stored in the body.
+    pub elastic: f64,
+    /// Work of the loads at their present size, from rest.
+    pub external: f64,
+}
+
+/// What the supports do to the body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reaction {
+    /// Total force, N.
+    pub force: Vector2<f64>,
+    /// Total moment about the origin, with current lever arms, N m, counter-clockwise.
+    pub moment: f64,
+}
+
+/// How far a state is deformed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Deformation {
+    /// Largest magnitude of the polar rotation, degrees.
+    pub max_rotation_deg: f64,
+    /// Largest magnitude of a principal strain.
+    pub max_strain: f64,
+    /// Elements with det F ≤ 0 somewhere.
+    pub inverted_elements: usize,
+}
+
+impl Deformation {
+    /// Of a state.
+    #[must_use]
+    pub fn of(problem: &Problem, state: &State) -> Self {
+        let elements = problem.system().elements();
+        let mut result = Self::default();
+        let mut last_inverted = None;
+        elements.visit_strains(&state.displacement, &state.rotations, &mut |q, h, strain| {
+            let f = Matrix2::identity() + h;
+            let element = q / elements.points_per_element();
+            if f.determinant() <= 0.0 && last_inverted != Some(element) {
+                last_inverted = Some(element);
+                result.inverted_elements += 1;
+            }
+            let angle = polar(&f).map_or(0.0, |r| r.angle().abs());
+            result.max_rotation_deg = result.max_rotation_deg.max(angle.to_degrees());
+            result.max_strain = result.max_strain.max(largest_principal(strain));
+        });
+        result
+    }
+}
+
+/// What every probe of a problem sees of a state.
+#[must_use]
+pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
+    let mesh = problem.system().mesh();
+    let see = problem.probes().iter().map(|probe| {
+        let u = probe.mean(&state.displacement);
+        ProbeResult { name: probe.name.clone(), x: probe.mean(mesh.nodes()) + u, u }
+    });
+    see.collect()
+}
+
+/// Energies of a state at a load factor.
+#[must_use]
+pub fn energy(problem: &Problem, state: &State, load_factor: f64) -> Energy {
+    Energy { elastic: problem.elastic_energy(state), external: -problem.loads().potential(state, load_factor) }
+}
+
+/// f_int − f_ext on the fixed unknowns.
+#[must_use]
+pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Reaction {
+    let mut total = Reaction::default();
+    let (mesh, mask) = (problem.system().mesh(), problem.system().pattern().mask());
+    let nodes = mesh.nodes().iter().zip(&state.displacement).zip(mask.iter().zip(forces.residual()));
+    for ((x, u), (mask, residual)) in nodes {
+        let force = -residual.zip_map(mask, |f, free| if free > 0.0 { 0.0 } else { f });
+        total.force += force;
+        total.moment += (x + u).perp(&force);
+    }
+    total
+}

@@ -1,0 +1,157 @@
+//! What a simulation knows of its body at an instant. A clone is a snapshot: it can be saved, restored and compared.
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use crate::rotation::Rotation;
+
+/// Where a body is and how it moves. Slices over nodes are in the mesh's order; rotations are those of the elements, one
+/// element after the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// u = x − X of every node, m.
+    pub(crate) displacement: Vec<Vector2<f64>>,
+    /// R of every element or quadrature point. Where the polar factor of F is undefined it is the one before.
+    pub(crate) rotations: Vec<Rotation>,
+    /// How far every named edge has turned since rest, rad, full turns included; 0 for edges that are not straight.
+    pub(crate) turns: Vec<f64>,
+    /// Velocity of every node, m/s; zero in statics.
+    pub(crate) velocity: Vec<Vector2<f64>>,
+    /// Time since the start, s; zero in statics.
+    pub(crate) time: f64,
+}
+
+/// A state, or a nodal vector, that does not belong to a body.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum StateError {
+    /// Not as many values as the body has.
+    #[error("expected {expected} {what}, got {got}")]
+    Length {
+        /// What is counted.
+        what: &'static str,
+        /// How many the body has.
+        expected: usize,
+        /// How many there are.
+        got: usize,
+    },
+    /// A value that is NaN or infinite.
+    #[error("expected finite {what}")]
+    NotFinite {
+        /// What is not finite.
+        what: &'static str,
+    },
+}
+
+impl State {
+    /// A body of so many nodes, rotations and edges at rest.
+    #[must_use]
+    pub(crate) fn at_rest(nodes: usize, rotations: usize, edges: usize) -> Self {
+        Self {
+            displacement: vec![Vector2::zeros(); nodes],
+            rotations: vec![Rotation::IDENTITY; rotations],
+            turns: vec![0.0; edges],
+            velocity: vec![Vector2::zeros(); nodes],
+            time: 0.0,
+        }
+    }
+
+    /// Back to rest.
+    pub(crate) fn reset(&mut self) {
+        self.displacement.fill(Vector2::zeros());
+        self.rotations.fill(Rotation::IDENTITY);
+        self.turns.fill(0.0);
+        self.velocity.fill(Vector2::zeros());
+        self.time = 0.0;
+    }
+
+    /// Becomes a state of the same body, without allocating.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.displacement.clone_from(&other.displacement);
+        self.rotations.clone_from(&other.rotations);
+        self.turns.clone_from(&other.turns);
+        self.velocity.clone_from(&other.velocity);
+        self.time = other.time;
+    }
+
+    /// Displacement u = x − X of every node, m.
+    #[must_use]
+    pub fn displacement(&self) -> &[Vector2<f64>] {
+        &self.displacement
+    }
+
+    /// R of every element or quadrature point, element by element.
+    #[must_use]
+    pub fn rotations(&self) -> &[Rotation] {
+        &self.rotations
+    }
+
+    /// How far every named edge of the mesh has turned since rest, rad, counter-clockwise, full turns included, in the
+    /// order of their names; 0 for edges that are not straight.
+    #[must_use]
+    pub fn turns(&self) -> &[f64] {
+        &self.turns
+    }
+
+    /// Velocity of every node, m/s.
+    #[must_use]
+    pub fn velocity(&self) -> &[Vector2<f64>] {
+        &self.velocity
+    }
+
+    /// Time since the start, s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Whether every number is finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        is_finite(&self.displacement)
+            && is_finite(&self.velocity)
+            && self.rotations.iter().all(|r| r.c.is_finite() && r.s.is_finite())
+            && self.turns.iter().all(|t| t.is_finite())
+            && self.time.is_finite()
+    }
+
+    /// The state with another displacement, m, but the same rotations.
+    ///
+    /// # Errors
+    /// [`StateError`] where there are not as many vectors as nodes, or one is not finite.
+    pub fn with_displacement(&self, u: Vec<Vector2<f64>>) -> Result<Self, StateError> {
+        same_length("displacements", self.displacement.len(), u.len())?;
+        if !is_finite(&u) {
+            return Err(StateError::NotFinite { what: "displacements" });
+        }
+        Ok(Self { displacement: u, ..self.clone() })
+    }
+
+    /// Accepts `other` as a state of the same body.
+    ///
+    /// # Errors
+    /// [`StateError`].
+    pub(crate) fn accept(&self, other: &Self) -> Result<(), StateError> {
+        same_length("displacements", self.displacement.len(), other.displacement.len())?;
+        same_length("rotations", self.rotations.len(), other.rotations.len())?;
+        same_length("turns of edges", self.turns.len(), other.turns.len())?;
+        same_length("velocities", self.velocity.len(), other.velocity.len())?;
+        if other.is_finite() { Ok(()) } else { Err(StateError::NotFinite { what: "numbers in a state" }) }
+    }
+}
+
+/// Whether every component is finite.
+pub(crate) fn is_finite(nodal: &[Vector2<f64>]) -> bool {
+    nodal.iter().all(|v| v.x.is_finite() && v.y.is_finite())
+}
+
+/// Accepts a count, or says what was expected.
+pub(crate) fn same_length(what: &'static str, expected: usize, got: usize) -> Result<(), StateError> {
+    if expected == got { Ok(()) } else { Err(StateError::Length { what, expected, got }) }
+}
+
+/// The largest length in a nodal field.
+#[must_use]
+pub(crate) fn largest(nodal: &[Vector2<f64>]) -> f64 {
+    nodal.iter().map(|v| v.norm()).fold(0.0, f64::max)
+}

@@ -1,0 +1,138 @@
+//! The cheapest setting that is good enough and fast enough: element, mesh and method chosen for a demand.
+
+use super::trade::{Extent, Measurement, MeshChoice, Observer, Progress, Study, StudyError, check, meshes};
+use crate::scene::Scene;
+
+/// What is asked of a solve. What is left out is not asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Demand {
+    /// Error, percent of the true displacement.
+    pub max_error_percent: Option<f64>,
+    /// Time, ms.
+    pub max_time_ms: Option<f64>,
+}
+
+impl Demand {
+    fn time_is_met(self, measurement: &Measurement) -> bool {
+        self.max_time_ms.is_none_or(|most| measurement.milliseconds() <= most)
+    }
+}
+
+impl std::fmt::Display for Demand {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match (self.max_error_percent, self.max_time_ms) {
+            (Some(error), Some(time)) => write!(f, "at most {error} % error and {time} ms"),
+            (Some(error), None) => write!(f, "at most {error} % error"),
+            (None, Some(time)) => write!(f, "at most {time} ms"),
+            (None, None) => write!(f, "nothing in particular"),
+        }
+    }
+}
+
+impl Study {
+    /// Whether a measurement meets a demand; its error and the truth's own count together.
+    #[must_use]
+    pub fn meets(&self, measurement: &Measurement, demand: Demand) -> bool {
+        let error = measurement.error.bound() + self.reference.error_percent;
+        demand.max_error_percent.is_none_or(|most| error <= most) && demand.time_is_met(measurement)
+    }
+
+    /// The measurements that meet a demand, cheapest first.
+    #[must_use]
+    pub fn meeting(&self, demand: Demand) -> Vec<&Measurement> {
+        let mut meeting: Vec<&Measurement> = self.measurements.iter().filter(|m| self.meets(m, demand)).collect();
+        meeting.sort_by_key(|m| m.time.total());
+        meeting
+    }
+}
+
+/// What was chosen for a demand, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tuning {
+    /// The setting, with what it was measured to cost and to be wrong by: the fastest that meets the demand; the closest
+    /// where only a time is asked, or within the time where the error cannot be had.
+    pub chosen: Measurement,
+    /// What was asked.
+    pub demand: Demand,
+    /// Whether the demand is met.
+    pub met: bool,
+    /// Settings measured that end by themselves, and how many of them meet the demand.
+    pub measured: usize,
+    /// See [`Self::measured`].
+    pub meeting: usize,
+    /// Everything that was measured.
+    pub study: Study,
+}
+
+/// Meshes this many times the size of one that meets the demand cannot be cheaper.
+const TOO_FINE: f64 = 3.0;
+/// Nor can finer meshes where the fastest setting of this one takes so many times the time that is asked.
+const TOO_SLOW: f64 = 2.0;
+
+impl Tuning {
+    /// Measures a scene on finer and finer meshes until its demand is met, and chooses among the settings that end by
+    /// themselves: a result that merely ran out of iterations is not called converged.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn of(scene: &Scene, demand: Demand, observe: Observer<'_>) -> Result<Self, StudyError> {
+        let mut meshes = meshes(scene, Extent::Full);
+        meshes.sort_by(|a, b| a.weight.total_cmp(&b.weight));
+        let all: f64 = meshes.iter().map(|m| m.weight).sum();
+        let mut study = Study::begin(scene, observe)?;
+        let (mut enough, mut done) = (f64::INFINITY, 0.0);
+        for mesh in &meshes {
+            if mesh.weight > enough {
+                break;
+            }
+            let MeshChoice { weight, .. } = *mesh;
+            let before = study.measurements.len();
+            let fraction = done / all;
+            study.measure(scene, mesh, &mut |now| check(observe(Progress { fraction, now, so_far: None })))?;
+            done += weight;
+            let added = &study.measurements[before..];
+            let met = demand.max_error_percent.is_some() && added.iter().any(|m| m.converged && study.meets(m, demand));
+            let fastest = added.iter().map(Measurement::milliseconds).fold(f64::INFINITY, f64::min);
+            let slow = demand.max_time_ms.is_some_and(|most| fastest > TOO_SLOW * most);
+            if met || slow {
+                enough = enough.min(TOO_FINE * weight);
+            }
+        }
+        let ended: Vec<&Measurement> = study.measurements.iter().filter(|m| m.converged).collect();
+        let meeting: Vec<&Measurement> = ended.iter().copied().filter(|m| study.meets(m, demand)).collect();
+        let fastest = |of: &[&Measurement]| of.iter().copied().min_by_key(|m| m.time.total()).copied();
+        let closest = |of: &[&Measurement]| {
+            of.iter().copied().min_by(|a, b| a.error.bound().total_cmp(&b.error.bound())).copied()
+        };
+        let in_time: Vec<&Measurement> = ended.iter().copied().filter(|m| demand.time_is_met(m)).collect();
+        let best = if demand.max_error_percent.is_some() { fastest(&meeting) } else { closest(&meeting) };
+        let chosen = best.or_else(|| closest(&in_time)).or_else(|| fastest(&ended)).ok_or(StudyError::NoTruth)?;
+        Ok(Self { chosen, demand, met: best.is_some(), measured: ended.len(), meeting: meeting.len(), study })
+    }
+}
+
+impl std::fmt::Display for Tuning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { chosen, demand, met, measured, meeting, study } = self;
+        let which = match (met, demand.max_error_percent.is_some(), demand.time_is_met(chosen)) {
+            (true, true, _) => "the fastest",
+            (true, false, _) => "the closest",
+            (false, _, true) => "the closest within the time",
+            (false, _, false) => "the fastest of all",
+        };
+        let words = if *met {
+            format!("{meeting} of {measured} settings measured here meet {demand}; {which}")
+        } else {
+            format!("none of {measured} settings measured here meets {demand}; {which}")
+        };
+        let (e, truth) = (&chosen.error, study.reference.error_percent);
+        writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference)?;
+        writeln!(f, "{words}:")?;
+        writeln!(f, "  {}: {:.4} ms, error at most {:.4} %", chosen.setting, chosen.milliseconds(), e.bound() + truth)?;
+        write!(
+            f,
+            "  of which mesh {:.4} %, stopped early {:.4} %, linear theory {:.4} %, the truth's own {truth:.4} %",
+            e.discretization, e.iteration, e.model
+        )
+    }
+}

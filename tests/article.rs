@@ -1,0 +1,238 @@
+//! The article's formulas written out: affine maps, the SVD and its reading, the 3×3 iteration, its examples and errata.
+
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
+use warpbeam::article::affine::{Affine2, Affine3, AffineError, Diagonal, quadrilateral_maps, triangle_system};
+use warpbeam::article::decomposition::{PolarError, orthogonality_error, polar_from_svd, polar3, proper_rotation3};
+use warpbeam::rotation::polar;
+
+/// Erratum: with eq. (38) as printed, c = a √(a² + b²), the result is not a rotation.
+#[test]
+fn erratum_eq_38_lacks_the_reciprocal() {
+    let f = Matrix2::<f64>::new(0.552885, -1.019231, 0.875, 0.5);
+    let (a, b) = (f.m11 + f.m22, f.m21 - f.m12);
+    let root = a.hypot(b);
+    assert!(((a * root).hypot(b * root) - 1.0).abs() > 1.0);
+    let r = polar(&f).unwrap();
+    assert!((r.c - a / root).abs() < 1e-15 && (r.s - b / root).abs() < 1e-15);
+    assert!((r.c - 0.485831).abs() < 1e-6 && (r.s - 0.874053).abs() < 1e-6);
+}
+
+fn corners<const N: usize>(points: [[f64; 2]; N]) -> [Vector2<f64>; N] {
+    points.map(Vector2::from)
+}
+
+const TRIANGLE: [[f64; 2]; 3] = [[0.3, -0.2], [2.1, 0.4], [0.9, 1.7]];
+
+/// The article's system (13) and the direct map agree: P a = y.
+fn assert_solves_the_system(rest: [Vector2<f64>; 3], deformed: [Vector2<f64>; 3], map: &Affine2) {
+    let m = map.homogeneous();
+    let a = SVector::<f64, 6>::from_row_slice(&[m[(0, 0)], m[(0, 1)], m[(0, 2)], m[(1, 0)], m[(1, 1)], m[(1, 2)]]);
+    let y = SVector::<f64, 6>::from_fn(|row, _| deformed[row % 3][row / 3]);
+    assert!((triangle_system(rest) * a - y).norm() < 1e-12);
+}
+
+#[test]
+fn article_example_1_nothing_moves() {
+    let rest = corners(TRIANGLE);
+    let map = Affine2::from_triangle(rest, rest).unwrap();
+    assert!((map.homogeneous() - Matrix3::identity()).norm() < 1e-14);
+    assert_solves_the_system(rest, rest, &map);
+}
+
+#[test]
+fn article_example_2_a_translation() {
+    let rest = corners(TRIANGLE);
+    let deformed = rest.map(|p| p + Vector2::new(6.0, 7.0));
+    let map = Affine2::from_triangle(rest, deformed).unwrap();
+    let expected = Matrix3::new(1.0, 0.0, 6.0, 0.0, 1.0, 7.0, 0.0, 0.0, 1.0);
+    assert!((map.homogeneous() - expected).norm() < 1e-13);
+    assert_solves_the_system(rest, deformed, &map);
+}
+
+#[test]
+fn article_example_3_onto_a_line_but_not_back() {
+    let (k, b) = (0.5, -1.0);
+    let rest = corners(TRIANGLE);
+    let deformed = rest.map(|p| Vector2::new(p.x, k * p.x + b));
+    let map = Affine2::from_triangle(rest, deformed).unwrap();
+    let expected = Matrix3::new(1.0, 0.0, 0.0, k, 0.0, b, 0.0, 0.0, 1.0);
+    assert!((map.homogeneous() - expected).norm() < 1e-13);
+    assert!(map.linear.determinant().abs() < 1e-14);
+    assert_solves_the_system(rest, deformed, &map);
+    assert!(matches!(Affine2::from_triangle(deformed, rest), Err(AffineError::CollinearCorners { .. })));
+}
+
+#[test]
+fn collinear_corners_are_refused_at_every_size() {
+    for scale in [1e-150, 1e-3, 1.0, 1e6, 1e150] {
+        let rest = corners([[0.0, 0.0], [1.0, 2.0], [3.0, 6.0]]).map(|p| p * scale);
+        assert!(matches!(Affine2::from_triangle(rest, rest), Err(AffineError::CollinearCorners { .. })), "{scale}");
+        let rest = corners(TRIANGLE).map(|p| p * scale);
+        let map = Affine2::from_triangle(rest, rest).unwrap();
+        assert!((map.linear - Matrix2::identity()).norm() < 1e-13, "{scale}");
+    }
+    let point = corners([[1.0, 1.0]; 3]);
+    assert!(matches!(Affine2::from_triangle(point, point), Err(AffineError::CollinearCorners { .. })));
+    let nan = corners([[f64::NAN, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert_eq!(Affine2::from_triangle(nan, nan), Err(AffineError::NotFinite));
+}
+
+#[test]
+fn a_quadrilateral_has_two_maps_that_depend_on_the_diagonal() {
+    let rest = corners([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
+    let deformed = corners([[0.0, 0.0], [2.0, 0.3], [2.5, 1.6], [-0.2, 1.0]]);
+    let one_three = quadrilateral_maps(rest, deformed, Diagonal::OneThree).unwrap();
+    let two_four = quadrilateral_maps(rest, deformed, Diagonal::TwoFour).unwrap();
+    // Each map takes its corners where they go.
+    for (map, corners) in
+        [(one_three[0], [0, 1, 2]), (one_three[1], [0, 2, 3]), (two_four[0], [0, 1, 3]), (two_four[1], [1, 2, 3])]
+    {
+        for i in corners {
+            assert!((map.apply(rest[i]) - deformed[i]).norm() < 1e-13);
+        }
+    }
+    // All four differ: there is no one map of the quadrilateral, and the diagonal matters.
+    let maps = [one_three[0], one_three[1], two_four[0], two_four[1]];
+    for (i, a) in maps.iter().enumerate() {
+        for b in &maps[..i] {
+            assert!((a.linear - b.linear).norm() > 0.1);
+        }
+    }
+    // Unless the deformation is affine.
+    let affine = rest.map(|p| Vector2::new(1.0 + 2.0 * p.x - p.y, 0.5 * p.x + 3.0 * p.y));
+    let a = quadrilateral_maps(rest, affine, Diagonal::OneThree).unwrap();
+    let b = quadrilateral_maps(rest, affine, Diagonal::TwoFour).unwrap();
+    for map in [a[1], b[0], b[1]] {
+        assert!((map.homogeneous() - a[0].homogeneous()).norm() < 1e-13);
+    }
+}
+
+#[test]
+fn a_tetrahedron_has_one_map() {
+    let rest = [[0.1, 0.0, 0.2], [1.3, 0.1, 0.0], [0.2, 1.1, -0.1], [0.0, 0.3, 0.9]].map(Vector3::from);
+    let m = Matrix3::new(8.442, 0.559, 2.790, 2.771, 1.936, 4.589, 0.818, 6.158, 5.564);
+    let d = Vector3::new(1.0, -2.0, 3.0);
+    let map = Affine3::from_tetrahedron(rest, rest.map(|p| m * p + d)).unwrap();
+    assert!((map.linear - m).norm() < 1e-12 && (map.translation - d).norm() < 1e-12);
+    assert!((map.homogeneous().fixed_view::<3, 3>(0, 0) - m).norm() < 1e-12);
+    // Eq. (24), all twelve rows of it, by a general solve.
+    let p = SMatrix::<f64, 12, 12>::from_fn(|row, column| {
+        let corner = rest[row % 4];
+        if row / 4 == column / 4 { [corner.x, corner.y, corner.z, 1.0][column % 4] } else { 0.0 }
+    });
+    let y = SVector::<f64, 12>::from_fn(|row, _| (m * rest[row % 4] + d)[row / 4]);
+    let a = p.lu().solve(&y).unwrap();
+    for (row, entries) in a.as_slice().chunks(4).enumerate() {
+        for (column, &entry) in entries.iter().enumerate() {
+            assert!((map.homogeneous()[(row, column)] - entry).abs() < 1e-11);
+        }
+    }
+    let flat = rest.map(|p| Vector3::new(p.x, p.y, p.x + p.y));
+    assert_eq!(Affine3::from_tetrahedron(flat, rest), Err(AffineError::CoplanarCorners));
+}
+
+/// Eq. (26): a shear is a rotation, a stretch and a rotation; the printed singular values and factors.
+#[test]
+fn article_eq_26_svd_of_a_shear() {
+    let shear = Matrix2::new(1.0, 1.0, 0.0, 1.0);
+    let p = polar_from_svd(&shear).unwrap();
+    // Eqs. (25), (31), (32): S = V Σ Vᵀ and V = U Σ Uᵀ have the singular values, with the printed vectors.
+    let u = Matrix2::new(0.8506, 0.5257, 0.5257, -0.8506);
+    let v_t = Matrix2::new(0.5257, 0.8506, 0.8506, -0.5257);
+    let sigma = Matrix2::new(1.618, 0.0, 0.0, 0.618);
+    assert!((p.right - v_t.transpose() * sigma * v_t).norm() < 1e-3, "{}", p.right);
+    assert!((p.left - u * sigma * u.transpose()).norm() < 1e-3, "{}", p.left);
+    assert!((p.orthogonal - u * v_t).norm() < 1e-3);
+    // Left and right factors share one rotation, that of the closed form.
+    assert!((p.orthogonal - polar(&shear).unwrap().matrix()).norm() < 1e-14);
+    assert!((p.orthogonal * p.right - shear).norm() < 1e-14 && (p.left * p.orthogonal - shear).norm() < 1e-14);
+}
+
+/// Eqs. (28), (30): a plane translation as a 3×3 matrix has the printed singular values.
+#[test]
+fn article_eq_30_svd_of_a_translation() {
+    let rest = corners(TRIANGLE);
+    let map = Affine2::from_triangle(rest, rest.map(|p| p + Vector2::new(6.0, 7.0))).unwrap();
+    let translation = map.homogeneous();
+    let p = polar_from_svd(&translation).unwrap();
+    let mut stretches = p.right.symmetric_eigenvalues().as_slice().to_vec();
+    stretches.sort_by(|a, b| b.total_cmp(a));
+    assert!((Vector3::from_vec(stretches) - Vector3::new(9.3268, 1.0, 0.107)).norm() < 1e-3, "{}", p.right);
+    assert!((p.orthogonal * p.right - translation).norm() < 1e-12);
+}
+
+fn article_matrix() -> Matrix3<f64> {
+    Matrix3::new(8.442, 0.559, 2.790, 2.771, 1.936, 4.589, 0.818, 6.158, 5.564)
+}
+
+/// The worked example, to its printed digits: seven iterations, R, U and V.
+#[test]
+fn article_example_of_the_3x3_iteration() {
+    let p = polar3(&article_matrix()).unwrap();
+    assert_eq!(p.iterations, 7);
+    let error = orthogonality_error(&p.orthogonal);
+    assert!((error - 3.6e-10).abs() < 0.1e-10, "{error:e}");
+    let r = Matrix3::new(0.998, 0.058, -0.021, 0.039, -0.332, 0.942, -0.047, 0.941, 0.334);
+    let u = Matrix3::new(8.497, 0.341, 2.702, 0.341, 5.184, 3.872, 2.702, 3.872, 6.124);
+    let v = Matrix3::new(8.398, 2.779, 1.056, 2.779, 3.790, 3.225, 1.056, 3.225, 7.618);
+    // Printed to three decimals, from a matrix printed to three decimals.
+    for (ours, printed) in [(p.orthogonal, r), (p.right, u), (p.left, v)] {
+        assert!((ours - printed).amax() < 1.6e-3, "{ours} {printed}");
+    }
+    assert!((p.orthogonal * p.right - article_matrix()).norm() < 1e-8);
+    assert!((p.left * p.orthogonal - article_matrix()).norm() < 1e-8);
+}
+
+/// Erratum: the V printed beside eq. (36) is F Rᵀ; FᵀR, as the equation says, is U transposed.
+#[test]
+fn erratum_eq_36_v_is_f_r_transposed() {
+    let f = article_matrix();
+    let p = polar3(&f).unwrap();
+    let as_printed = f.transpose() * p.orthogonal;
+    assert!((as_printed - p.left).norm() > 1.0);
+    assert!((as_printed - p.right).norm() < 1e-8);
+}
+
+/// Erratum: what the example prints as A⁻ᵀ is A⁻¹. A and A⁻ᵀ have the same orthogonal factor; the printed matrix has its
+/// transpose.
+#[test]
+fn erratum_the_printed_inverse_is_not_transposed() {
+    let printed = Matrix3::new(0.157, -0.126, 0.025, 0.105, -0.402, 0.279, -0.139, 0.464, -0.133);
+    let [of_a, of_printed] = [article_matrix(), printed].map(|m| polar3(&m).unwrap().orthogonal);
+    assert!((of_printed - of_a.transpose()).amax() < 5e-3, "{of_printed} {of_a}");
+    assert!((of_printed - of_a).amax() > 0.02, "{of_printed} {of_a}");
+}
+
+/// Erratum: the example's R is a reflection; the proper rotation is another one.
+#[test]
+fn erratum_the_example_is_a_reflection() {
+    let f = article_matrix();
+    assert!((f.determinant() + 110.96).abs() < 0.01);
+    assert!((polar3(&f).unwrap().orthogonal.determinant() + 1.0).abs() < 1e-8);
+    let proper = proper_rotation3(&f).unwrap();
+    let expected = Matrix3::new(0.8672, -0.3313, 0.3717, 0.4401, 0.8591, -0.2611, -0.2329, 0.3900, 0.8909);
+    assert!((proper.orthogonal - expected).amax() < 1e-4, "{}", proper.orthogonal);
+    assert!((proper.orthogonal.determinant() - 1.0).abs() < 1e-8);
+    assert!((proper.orthogonal * proper.right - f).norm() < 1e-8);
+}
+
+/// Erratum: eq. (31) writes U V⁻¹ for U Vᵀ: the same, as what the SVD is read for is orthogonal.
+#[test]
+fn erratum_eq_31_inverse_and_transpose_agree() {
+    let q = polar_from_svd(&article_matrix()).unwrap().orthogonal;
+    assert!((q.try_inverse().unwrap() - q.transpose()).norm() < 1e-12);
+    assert!((q - polar3(&article_matrix()).unwrap().orthogonal).norm() < 1e-8);
+}
+
+#[test]
+fn the_3x3_iteration_at_the_extremes() {
+    for scale in [1e-300, 1e-100, 1e-3, 1e100, 1e300] {
+        let p = polar3(&(article_matrix() * scale)).unwrap();
+        assert!((p.orthogonal - polar3(&article_matrix()).unwrap().orthogonal).norm() < 1e-8, "{scale:e}");
+    }
+    assert_eq!(polar3(&Matrix3::zeros()), Err(PolarError::Singular));
+    assert_eq!(polar3(&Matrix3::from_element(f64::NAN)), Err(PolarError::NotFinite));
+    assert_eq!(polar_from_svd(&Matrix2::from_element(f64::INFINITY)), Err(PolarError::NotFinite));
+    let thin = Matrix3::from_diagonal(&Vector3::new(1.0, 1e-6, 1e3));
+    assert!((polar3(&thin).unwrap().orthogonal - Matrix3::identity()).norm() < 1e-8);
+}

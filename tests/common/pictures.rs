@@ -1,0 +1,48 @@
+//! Pictures of labs, and how they differ.
+#![allow(dead_code, reason = "each test uses its part")]
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use warpbeam::Simulation;
+use warpbeam::app::Lab;
+use warpbeam::picture::Picture;
+use warpbeam::scene::Source;
+
+use super::scene;
+
+/// A scene in a lab.
+pub fn lab(id: &str) -> Lab {
+    let scene = scene(id);
+    let simulation = Simulation::new(&scene).unwrap();
+    Lab::new(Source { name: id.to_owned(), assignments: Vec::new() }, scene, simulation)
+}
+
+pub fn read_png(path: &Path) -> Picture {
+    let file = File::open(path).unwrap_or_else(|e| unreachable!("{}: {e}", path.display()));
+    let mut reader = png::Decoder::new(BufReader::new(file)).read_info().unwrap();
+    let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut rgba).unwrap();
+    assert_eq!((info.color_type, info.bit_depth), (png::ColorType::Rgba, png::BitDepth::Eight));
+    Picture { size: [info.width, info.height], rgba }
+}
+
+pub fn pixel(picture: &Picture, x: u32, y: u32) -> [u8; 3] {
+    let at = 4 * (y * picture.size[0] + x) as usize;
+    [picture.rgba[at], picture.rgba[at + 1], picture.rgba[at + 2]]
+}
+
+/// The largest difference of a colour's components.
+pub fn distance(a: [u8; 3], b: [u8; 3]) -> u8 {
+    a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap()
+}
+
+/// The share of pixels that differ by more than antialiasing on another driver would make them.
+pub fn difference(a: &Picture, b: &Picture) -> f64 {
+    const VISIBLE: u8 = 24;
+    assert_eq!(a.size, b.size);
+    let pixels = a.rgba.chunks(4).zip(b.rgba.chunks(4));
+    let different = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > VISIBLE)).count();
+    different as f64 / f64::from(a.size[0] * a.size[1])
+}

@@ -1,0 +1,155 @@
+//! Edits under a solved body: what they keep and what they leave.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{scene, scene_with, solved};
+use warpbeam::{Load, Mesh, MethodKind, Scene, Simulation, Status};
+
+fn largest(simulation: &Simulation) -> f64 {
+    simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max)
+}
+
+/// No edit of loads sends a loaded body back to rest, also where it couples unknowns that were not coupled.
+#[test]
+fn edits_of_loads_keep_the_state() {
+    let start = scene_with("cantilever", &["solver.method=newton", "solver.tolerance=1e-12"]);
+    let before = solved(&start);
+    let edits: [(&str, Scene); 5] = [
+        ("a moment is added", start.clone().moment("right", 100.0)),
+        ("a moment on a long edge", start.clone().moment("top", 100.0)),
+        ("a weight is added", start.clone().gravity([0.0, -0.01])),
+        ("a force elsewhere", start.clone().force("top", [1.0, 0.0])),
+        ("loads go", {
+            let mut scene = start.clone();
+            scene.loads.clear();
+            scene
+        }),
+    ];
+    for (what, scene) in edits {
+        let mut simulation = solved(&start);
+        simulation.change_scene(&scene).unwrap();
+        assert_eq!(simulation.displacement(), before.displacement(), "{what}");
+        assert_eq!(*simulation.solve(), Status::Converged, "{what}");
+        let mut fresh = Simulation::new(&scene).unwrap();
+        fresh.solve();
+        for (a, b) in simulation.displacement().iter().zip(fresh.displacement()) {
+            assert!((a - b).norm() < 1e-6, "{what}: {a} {b}");
+        }
+        // And back, which needs no other couplings.
+        let system = simulation.system().clone();
+        simulation.change_scene(&start).unwrap();
+        assert!(Arc::ptr_eq(&system, simulation.system()), "{what}");
+        assert_eq!(*simulation.solve(), Status::Converged);
+        assert!((simulation.probe("tip").unwrap() - before.probe("tip").unwrap()).norm() < 1e-6);
+    }
+}
+
+/// What an edit does not change is not made again, and one system serves all who solve on it.
+#[test]
+fn equations_are_shared_and_kept() {
+    let mut body = solved(&scene("cantilever"));
+    let system = body.system().clone();
+    body.set_force(0, [0.0, -1200.0]).unwrap();
+    let mut material = body.scene().material;
+    material.young *= 2.0;
+    body.set_material(material).unwrap();
+    let mut other = body.scene().clone();
+    other.solver.method = MethodKind::Newton;
+    other.solver.tolerance = 1e-10;
+    body.change_scene(&other).unwrap();
+    assert!(Arc::ptr_eq(&system, body.system()));
+    let mut ghost_scene = other.clone();
+    ghost_scene.solver.method = MethodKind::Linear;
+    let ghost = Simulation::with_system(&ghost_scene, system.clone()).unwrap();
+    assert!(Arc::ptr_eq(&system, ghost.system()));
+    // Another mesh is another system.
+    body.change_scene(&other.clone().with_cells(40, 4)).unwrap();
+    assert!(!Arc::ptr_eq(&system, body.system()));
+    fn shared_between_threads<T: Send + Sync>(_: &T) {}
+    shared_between_threads(&body);
+}
+
+/// A mesh of the caller's stays through every edit; nothing swaps it for the scene's own.
+#[test]
+fn a_mesh_of_ones_own_survives_every_edit() {
+    let scene = scene("elastica");
+    let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
+    let finer = mesh.refined();
+    for own in [scene.clone(), without_geometry(&scene)] {
+        let mut simulation = Simulation::with_mesh(&own, finer.clone()).unwrap();
+        let dofs = simulation.system().dofs();
+        simulation.solve();
+        let edits: [&dyn Fn(&mut Scene); 6] = [
+            &|s| s.set_force(0, [0.0, -1.0]).unwrap(),
+            &|s| s.material.young *= 2.0,
+            &|s| s.solver.method = MethodKind::Warped,
+            &|s| s.loads.push(Load::Moment { edge: "right".to_owned(), moment: 5.0 }),
+            &|s| s.supports.remove(0).fix.clear(),
+            &|s| {
+                if let Some(beam) = &mut s.beam {
+                    beam.cells = [2, 1];
+                }
+            },
+        ];
+        for (i, edit) in edits.iter().enumerate() {
+            let mut edited = simulation.scene().clone();
+            edit(&mut edited);
+            match simulation.change_scene(&edited) {
+                Ok(()) => assert_ne!(i, 4, "a body that nothing holds"),
+                Err(error) => assert_eq!(i, 4, "{error}"),
+            }
+            assert_eq!(simulation.system().dofs(), dofs, "edit {i}");
+            assert_eq!(simulation.system().mesh(), &finer);
+            assert_eq!(*simulation.solve(), Status::Converged, "edit {i}");
+        }
+    }
+}
+
+fn without_geometry(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.beam = None;
+    scene
+}
+
+/// A mesh file is read when the scene is opened, and never again: an edit works though the file is gone.
+#[test]
+fn a_mesh_file_is_read_once() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("square.msh"), include_str!("data/square.msh")).unwrap();
+    let text = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"force\"\nat = [1, 0]\nforce = [0, -100]\n";
+    let scene = Scene::from_toml_in(text, folder.path()).unwrap();
+    let unread = Scene::from_toml(text).unwrap();
+    let refused = Simulation::new(&unread).unwrap_err().to_string();
+    assert!(refused.contains("square.msh") && refused.contains("open the scene from its folder"), "{refused}");
+    let mut simulation = Simulation::new(&scene).unwrap();
+    folder.close().unwrap();
+    for element in warpbeam::ElementKind::all() {
+        simulation.change_scene(&scene.clone().with_element(element)).unwrap();
+        simulation.set_force(0, [0.0, 50.0]).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        assert!(largest(&simulation) > 0.0);
+    }
+}
+
+/// A refused edit changes nothing.
+#[test]
+fn a_refused_edit_changes_nothing() {
+    let mut simulation = solved(&scene("cantilever"));
+    let (before, state) = (simulation.scene().clone(), simulation.state().clone());
+    assert!(simulation.set_force(0, [f64::NAN, 0.0]).is_err());
+    assert!(simulation.set_force(0, [0.0, 1e16]).is_err());
+    assert!(simulation.set_force(7, [0.0, 1.0]).is_err());
+    assert!(simulation.set_moment(0, 1.0).is_err());
+    assert!(simulation.set_gravity(0, [0.0, 1.0]).is_err());
+    let mut material = before.material;
+    material.poisson = 0.7;
+    assert!(simulation.set_material(material).is_err());
+    assert!(simulation.change_scene(&before.clone().clamp("nowhere")).is_err());
+    assert!(simulation.change_scene(&before.clone().with_cells(0, 1)).is_err());
+    assert!(simulation.change_scene(&before.clone().probe("p", [99.0, 0.0])).is_err());
+    assert_eq!((simulation.scene(), simulation.state(), simulation.status()), (&before, &state, &Status::Converged));
+}

@@ -1,0 +1,76 @@
+//! Meshes: what is accepted, what is refused and how.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+use warpbeam::mesh::{MeshError, Segment};
+use warpbeam::{ElementKind, Mesh, Scene, Simulation, Status};
+
+fn square() -> Vec<Vector2<f64>> {
+    [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from).to_vec()
+}
+
+fn edge(name: &str, nodes: &[&[u32]]) -> BTreeMap<String, Vec<Segment>> {
+    BTreeMap::from([(name.to_owned(), nodes.iter().map(|n| Segment::new(n).unwrap()).collect())])
+}
+
+#[test]
+fn meshes_without_area_are_refused_and_clockwise_triangles_turned() {
+    let nodes = vec![Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0), Vector2::new(2.0, 0.0)];
+    let mesh = Mesh::new(nodes.clone(), ElementKind::T3, vec![0, 2, 1], BTreeMap::new()).unwrap();
+    assert_eq!(mesh.connectivity(), [0, 1, 2]);
+    let flat = Mesh::new(nodes.clone(), ElementKind::T3, vec![0, 1, 2, 0, 1, 3], BTreeMap::new());
+    assert!(matches!(flat, Err(MeshError::Degenerate { element: 1, .. })));
+    let missing = Mesh::new(nodes, ElementKind::T3, vec![0, 1, 9], BTreeMap::new());
+    assert!(matches!(missing, Err(MeshError::NoSuchNode { element: 0, node: 9, count: 4 })));
+}
+
+/// Whatever is wrong is an error that names it; nothing panics later.
+#[test]
+fn what_is_no_mesh_is_refused() {
+    let triangles = || vec![0, 1, 2, 0, 2, 3];
+    let mesh = |nodes, element, connectivity, edges| Mesh::new(nodes, element, connectivity, edges).map(|_| ());
+    let none = BTreeMap::new;
+    assert_eq!(mesh(square(), ElementKind::T3, vec![], none()), Err(MeshError::Connectivity { expected: 3, got: 0 }));
+    assert_eq!(
+        mesh(square(), ElementKind::T6, vec![0, 1, 2], none()),
+        Err(MeshError::Connectivity { expected: 6, got: 3 })
+    );
+    assert!(matches!(mesh(vec![], ElementKind::T3, vec![0, 1, 2], none()), Err(MeshError::NoSuchNode { .. })));
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut nodes = square();
+        nodes[2].y = bad;
+        assert!(matches!(mesh(nodes, ElementKind::T3, triangles(), none()), Err(MeshError::NotFinite { node: 2, .. })));
+    }
+    let mut far = square();
+    far[1].x = 1e200;
+    assert!(mesh(far, ElementKind::T3, triangles(), none()).is_err());
+    // Edges: a node that is not there, nodes that no element's side has, too many nodes.
+    for nodes in [&[0, 9][..], &[1, 3], &[0, 0], &[0, 1, 2]] {
+        let refused = mesh(square(), ElementKind::T3, triangles(), edge("e", &[nodes]));
+        let expected = MeshError::NoSuchSide { edge: "e".to_owned(), nodes: nodes.to_vec() };
+        assert_eq!(refused, Err(expected));
+    }
+    for nodes in [&[][..], &[1], &[0, 1, 2, 3]] {
+        assert_eq!(Segment::new(nodes), None);
+    }
+    // Either direction of a side will do, and a diagonal inside.
+    assert_eq!(mesh(square(), ElementKind::T3, triangles(), edge("e", &[&[1, 0], &[0, 2]])), Ok(()));
+    // A side so curved that its element folds over.
+    let mut nodes = square();
+    nodes.extend([[0.5, 0.8], [1.0, 0.5], [0.5, 0.5]].map(Vector2::from));
+    let folded = mesh(nodes, ElementKind::T6, vec![0, 1, 2, 4, 5, 6], none());
+    assert_eq!(folded, Err(MeshError::Folded { element: 0 }));
+}
+
+/// A mesh of the caller's, with its own edges, is solved on like any other.
+#[test]
+fn a_mesh_of_ones_own_is_solved_on() {
+    let mesh = Mesh::new(square(), ElementKind::T3, vec![0, 1, 2, 0, 2, 3], edge("foot", &[&[0, 1]])).unwrap();
+    let scene = Scene::named("Square").clamp("foot").force([0.0, 1.0], [1000.0, 0.0]).probe("corner", [1.0, 1.0]);
+    let mut simulation = Simulation::with_mesh(&scene, mesh).unwrap();
+    assert_eq!(*simulation.solve(), Status::Converged);
+    assert!(simulation.probe("corner").unwrap().x > 0.0);
+    assert_eq!(simulation.probe("nowhere"), None);
+}

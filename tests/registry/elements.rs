@@ -1,0 +1,634 @@
+//! What every element must do.
+
+use std::f64::consts::PI;
+
+use libtest_mimic::Trial;
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
+use warpbeam::element::{ELEMENTS, ElementType, RulePoint, Tangent};
+use warpbeam::mesh::{MaterialPoint, Mesh};
+use warpbeam::method::METHODS;
+use warpbeam::rotation::Rotation;
+use warpbeam::simulation::{Field, Simulation};
+use warpbeam::solver::Factor;
+use warpbeam::{Axis, ElementKind, Load, Material, Plane, Scene, State, Status};
+
+use crate::{Test, suite};
+
+const TESTS: &[Test<ElementKind>] = &[
+    ("its_id_is_the_word_of_scene_files", its_id_is_the_word_of_scene_files),
+    ("shape_functions_are_one_at_their_node_and_zero_at_others", shape_functions_are_one_at_their_node),
+    ("shape_functions_sum_to_one", shape_functions_sum_to_one),
+    ("local_gradients_are_derivatives", local_gradients_are_derivatives),
+    ("sides_run_around", sides_run_around),
+    ("rules_integrate_what_they_must", rules_integrate_what_they_must),
+    ("values_at_points_are_interpolated", values_at_points_are_interpolated),
+    ("children_and_lattice_cover_the_cell", children_and_lattice_cover_the_cell),
+    ("clockwise_elements_are_turned_over", clockwise_elements_are_turned_over),
+    ("refinement_keeps_the_body", refinement_keeps_the_body),
+    ("material_points_are_found_in_curved_elements", material_points_are_found_in_curved_elements),
+    ("patch_test", patch_test),
+    ("uniform_traction_gives_uniform_strain", uniform_traction_gives_uniform_strain),
+    ("rigid_motions_give_no_force_and_no_energy", rigid_motions_give_no_force_and_no_energy),
+    ("the_force_is_the_gradient_of_the_energy", the_force_is_the_gradient_of_the_energy),
+    ("the_tangent_is_the_derivative_of_the_force", the_tangent_is_the_derivative_of_the_force),
+    ("the_stiffness_and_the_offset_make_up_the_force", the_stiffness_and_the_offset_make_up_the_force),
+    ("works_are_reciprocal", works_are_reciprocal),
+    ("a_moment_is_a_couple", a_moment_is_a_couple),
+    ("the_energy_norm_converges_at_its_rate", the_energy_norm_converges_at_its_rate),
+    ("stress_is_that_of_the_bent_beam", stress_is_that_of_the_bent_beam),
+    ("stress_turns_with_the_body", stress_turns_with_the_body),
+];
+
+pub fn trials() -> Vec<Trial> {
+    suite("element", ELEMENTS.iter().map(|e| (e.id.to_owned(), e.kind)), TESTS)
+}
+
+/// Points inside a cell.
+fn samples(entry: &ElementType) -> Vec<[f64; 2]> {
+    (entry.cell.lattice)(5).points.into_iter().map(|[x, y]| [0.9 * x + 0.03, 0.9 * y + 0.02]).collect()
+}
+
+fn its_id_is_the_word_of_scene_files(kind: ElementKind) {
+    let word = toml::Value::try_from(kind).unwrap();
+    assert_eq!(word.as_str(), Some(kind.id()));
+    assert_eq!(kind.entry().kind, kind);
+}
+
+fn shape_functions_are_one_at_their_node(kind: ElementKind) {
+    let entry = kind.entry();
+    for (b, &at) in entry.nodes.iter().enumerate() {
+        for (a, n) in (entry.shape)(at).into_iter().enumerate() {
+            assert!((n - if a == b { 1.0 } else { 0.0 }).abs() < 1e-15, "N{a} at node {b}: {n}");
+        }
+        assert_eq!(entry.node_at(at), Some(b));
+    }
+    let corners = entry.cell.corners.len();
+    assert_eq!(&entry.nodes[..corners], entry.cell.corners);
+    assert!(entry.node_at([0.123, 0.456]).is_none());
+}
+
+fn shape_functions_sum_to_one(kind: ElementKind) {
+    let entry = kind.entry();
+    for at in samples(entry) {
+        assert!(((entry.shape)(at).iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        let gradient: Vector2<f64> = (entry.local_gradients)(at).iter().sum();
+        assert!(gradient.norm() < 1e-14, "{gradient}");
+        let weights = (entry.cell.corner_weights)(at);
+        let back = [0, 1].map(|i| weights.iter().zip(entry.cell.corners).map(|(w, c)| w * c[i]).sum::<f64>());
+        assert!((back[0] - at[0]).abs() < 1e-15 && (back[1] - at[1]).abs() < 1e-15);
+    }
+}
+
+fn local_gradients_are_derivatives(kind: ElementKind) {
+    const STEP: f64 = 1e-5;
+    let entry = kind.entry();
+    for [x, y] in samples(entry) {
+        let shape = entry.shape;
+        let along = |from: [f64; 2], to: [f64; 2]| -> Vec<f64> {
+            shape(from).into_iter().zip(shape(to)).map(|(a, b)| (b - a) / (2.0 * STEP)).collect()
+        };
+        let (dx, dy) = (along([x - STEP, y], [x + STEP, y]), along([x, y - STEP], [x, y + STEP]));
+        for ((g, dx), dy) in (entry.local_gradients)([x, y]).iter().zip(dx).zip(dy) {
+            assert!((g - Vector2::new(dx, dy)).norm() < 1e-9, "{g} {dx} {dy}");
+        }
+    }
+}
+
+fn sides_run_around(kind: ElementKind) {
+    let entry = kind.entry();
+    let corners = entry.cell.corners.len();
+    assert_eq!(entry.sides.len(), corners);
+    for (i, side) in entry.sides.iter().enumerate() {
+        assert_eq!((side[0], side[side.len() - 1]), (i, (i + 1) % corners));
+        // Nodes in equal distances.
+        let place = |n: usize| Vector2::from(entry.nodes[n]);
+        for (j, &n) in side.iter().enumerate() {
+            let t = j as f64 / (side.len() - 1) as f64;
+            let expected = place(side[0]) * (1.0 - t) + place(side[side.len() - 1]) * t;
+            assert!((place(n) - expected).norm() < 1e-15);
+        }
+    }
+}
+
+/// ∫ g over the cell, by its lattice of small triangles and the rule of degree 2 in each.
+fn integrate(entry: &ElementType, pieces: u32, g: impl Fn([f64; 2]) -> f64) -> f64 {
+    let lattice = (entry.cell.lattice)(pieces);
+    let mut sum = 0.0;
+    for t in &lattice.triangles {
+        let [a, b, c] = t.map(|p| Vector2::from(lattice.points[p as usize]));
+        let area = 0.5 * (b - a).perp(&(c - a));
+        for [p, q, r] in [[a, b, c], [b, c, a], [c, a, b]] {
+            sum += area / 3.0 * g((p * (2.0 / 3.0) + q / 6.0 + r / 6.0).into());
+        }
+    }
+    sum
+}
+
+fn rules_integrate_what_they_must(kind: ElementKind) {
+    let entry = kind.entry();
+    let apply =
+        |rule: &[RulePoint], g: &dyn Fn([f64; 2]) -> f64| -> f64 { rule.iter().map(|p| p.weight * g(p.at)).sum() };
+    for rule in [entry.points, entry.mass_points] {
+        assert!(rule.iter().all(|p| p.weight > 0.0 && (entry.cell.depth)(p.at) > 0.0));
+        assert!((apply(rule, &|_| 1.0) - entry.cell.area).abs() < 1e-14);
+    }
+    // Products of local gradients, and of shape functions. The fine rule itself errs by h³.
+    for a in 0..entry.nodes.len() {
+        for b in 0..=a {
+            let stiffness = |at| {
+                let g = (entry.local_gradients)(at);
+                g[a].x * g[b].y + g[a].y * g[b].y
+            };
+            let mass = |at| {
+                let n = (entry.shape)(at);
+                n[a] * n[b]
+            };
+            let difference = apply(entry.points, &stiffness) - integrate(entry, 48, stiffness);
+            assert!(difference.abs() < 1e-5, "stiffness {a} {b}: {difference:e}");
+            let difference = apply(entry.mass_points, &mass) - integrate(entry, 48, mass);
+            assert!(difference.abs() < 1e-6, "mass {a} {b}: {difference:e}");
+        }
+    }
+}
+
+fn values_at_points_are_interpolated(kind: ElementKind) {
+    let entry = kind.entry();
+    for (i, point) in entry.points.iter().enumerate() {
+        for (j, weight) in (entry.point_weights)(point.at).into_iter().enumerate() {
+            assert!((weight - if i == j { 1.0 } else { 0.0 }).abs() < 1e-14, "{i} {j}: {weight}");
+        }
+    }
+    for at in samples(entry) {
+        assert!(((entry.point_weights)(at).iter().sum::<f64>() - 1.0).abs() < 1e-14);
+    }
+}
+
+fn children_and_lattice_cover_the_cell(kind: ElementKind) {
+    let entry = kind.entry();
+    let polygon = |corners: &[[f64; 2]]| -> f64 {
+        let at = |i: usize| Vector2::from(corners[i % corners.len()]);
+        0.5 * (0..corners.len()).map(|i| at(i).perp(&at(i + 1))).sum::<f64>()
+    };
+    let parts: Vec<f64> = entry.cell.children.iter().map(|c| polygon(c)).collect();
+    assert_eq!(parts.len(), 4);
+    assert!(parts.iter().all(|&area| (area - 0.25 * entry.cell.area).abs() < 1e-15));
+    for pieces in [1, 2, 5] {
+        assert!((integrate(entry, pieces, |_| 1.0) - entry.cell.area).abs() < 1e-14);
+        let lattice = (entry.cell.lattice)(pieces);
+        for (side, points) in entry.sides.iter().zip(&lattice.sides) {
+            let [from, to] = [points[0], points[points.len() - 1]].map(|p| lattice.points[p as usize]);
+            assert_eq!((from, to), (entry.nodes[side[0]], entry.nodes[side[side.len() - 1]]));
+        }
+    }
+}
+
+/// A square [0, 2] × [−1, 1] of irregular elements with straight edges and, where they can be, curved inner sides.
+fn irregular_mesh(kind: ElementKind) -> Mesh {
+    let square = Scene::beam(2.0, 2.0).with_cells(4, 3).with_element(kind);
+    let mesh = Mesh::beam(square.beam.as_ref().unwrap()).unwrap();
+    let warp = |x: Vector2<f64>| {
+        let bump = x.x * (2.0 - x.x) * (1.0 - x.y * x.y);
+        x + Vector2::new(0.12 * (3.0 * x.y + 1.0).sin(), 0.1 * (2.0 * x.x).cos()) * bump
+    };
+    mesh.moved(warp).unwrap()
+}
+
+/// Held like a bar: the left edge along x, one corner of it along y.
+fn irregular_scene(plane: Plane) -> Scene {
+    let material = Material { thickness: 0.5, plane, ..Material::new(100.0, 0.3) };
+    Scene::named("Irregular").with_material(material).support("left", &[Axis::X]).support([0.0, -1.0], &[Axis::Y])
+}
+
+fn problem(scene: &Scene, kind: ElementKind) -> Problem {
+    Problem::new(scene, System::with_mesh(scene, irregular_mesh(kind)).unwrap().into()).unwrap()
+}
+
+fn nodes(problem: &Problem) -> &[Vector2<f64>] {
+    problem.system().mesh().nodes()
+}
+
+/// The state of a simulation of `problem` whose node at X is at `place(X)`, held or not.
+fn state(problem: &Problem, place: impl Fn(Vector2<f64>) -> Vector2<f64>) -> State {
+    let u: Vec<_> = nodes(problem).iter().map(|&x| place(x) - x).collect();
+    common_state(problem, &u)
+}
+
+/// A state with this displacement, its rotations and turns.
+fn common_state(problem: &Problem, u: &[Vector2<f64>]) -> State {
+    problem.system().state_of(u).unwrap()
+}
+
+fn forces(problem: &Problem, state: &State) -> Forces {
+    let mut forces = Forces::new(nodes(problem).len());
+    problem.linearize(state, &mut forces, None);
+    forces
+}
+
+/// The dense matrix of a tangent over the free unknowns, the loads' part included where it is exact.
+fn dense(problem: &Problem, state: &State, tangent: Tangent, load_factor: f64) -> DMatrix<f64> {
+    let system = problem.system();
+    let mut matrix = Matrix::new(system.pattern());
+    problem.linearize(state, &mut Forces::new(nodes(problem).len()), Some((tangent, &mut matrix)));
+    if tangent == Tangent::Exact {
+        problem.loads().add_stiffness(system, state.displacement(), load_factor, &mut matrix);
+    }
+    let n = system.dofs();
+    let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
+    let mut dense = DMatrix::zeros(n, n);
+    for column in 0..n {
+        unit[column] = 1.0;
+        matrix.multiply(system.pattern(), &unit, &mut image);
+        unit[column] = 0.0;
+        dense.set_column(column, &DVector::from_column_slice(&image));
+    }
+    dense
+}
+
+fn restrict(problem: &Problem, nodal: &[Vector2<f64>]) -> DVector<f64> {
+    let mut free = vec![0.0; problem.system().dofs()];
+    problem.system().pattern().restrict(nodal, &mut free);
+    DVector::from_vec(free)
+}
+
+fn is_inside(x: &Vector2<f64>) -> bool {
+    x.x > 1e-9 && x.x < 2.0 - 1e-9 && x.y.abs() < 1.0 - 1e-9
+}
+
+fn clockwise_elements_are_turned_over(kind: ElementKind) {
+    let mesh = irregular_mesh(kind);
+    let entry = kind.entry();
+    let over = entry.turned_over();
+    let clockwise: Vec<u32> = mesh.elements().flat_map(|e| over.iter().map(|&i| e[i]).collect::<Vec<_>>()).collect();
+    assert_ne!(clockwise, mesh.connectivity());
+    let turned = Mesh::new(mesh.nodes().to_vec(), kind, clockwise, mesh.edges().clone()).unwrap();
+    assert_eq!(turned, mesh);
+}
+
+fn refinement_keeps_the_body(kind: ElementKind) {
+    let mesh = irregular_mesh(kind);
+    let fine = mesh.refined();
+    assert_eq!(fine.element_count(), 4 * mesh.element_count());
+    assert_eq!(&fine.nodes()[..mesh.nodes().len()], mesh.nodes());
+    let again = Mesh::new(fine.nodes().to_vec(), kind, fine.connectivity().to_vec(), fine.edges().clone());
+    assert_eq!(again.as_ref(), Ok(&fine), "elements turned over, or edges that are no sides");
+    assert_eq!(fine.outline().len(), 2 * mesh.outline().len(), "not conforming");
+    let scene = irregular_scene(Plane::Stress);
+    let area = |mesh: Mesh| -> f64 { System::with_mesh(&scene, mesh).unwrap().nodal_areas().iter().sum() };
+    assert!((area(mesh.clone()) - 4.0).abs() < 1e-12);
+    assert!((area(fine.clone()) - 4.0).abs() < 1e-12);
+    for (name, segments) in mesh.edges() {
+        assert_eq!(fine.edges()[name].len(), 2 * segments.len());
+        let nodes = fine.edge_nodes(name).unwrap();
+        assert!(mesh.edge_nodes(name).unwrap().iter().all(|n| nodes.contains(n)));
+    }
+}
+
+/// A point of an element is found again at the place that the shape functions put it.
+fn material_points_are_found_in_curved_elements(kind: ElementKind) {
+    let bend = |x: Vector2<f64>| Rotation::from_angle(0.6 * x.x).apply(Vector2::new(0.0, x.y - 3.0));
+    let mesh = irregular_mesh(kind).moved(bend).unwrap();
+    let entry = kind.entry();
+    for (element, own) in mesh.elements().enumerate() {
+        for at in samples(entry).into_iter().filter(|&at| (entry.cell.depth)(at) > 1e-6) {
+            let point = MaterialPoint { element, at };
+            let weights = mesh.weights(point).unwrap();
+            assert_eq!(weights.iter().map(|w| w.0).collect::<Vec<_>>(), own);
+            let place: Vector2<f64> = weights.iter().map(|&(n, w)| mesh.nodes()[n as usize] * w).sum();
+            let found = mesh.locate(place).unwrap();
+            assert_eq!(found.element, element);
+            let off = Vector2::from(found.at) - Vector2::from(at);
+            assert!(off.norm() < 1e-9, "element {element}: {:?} for {at:?}", found.at);
+        }
+    }
+    let outside = MaterialPoint { element: mesh.element_count(), at: [0.1, 0.1] };
+    assert_eq!(mesh.weights(outside), None);
+    assert_eq!(mesh.locate(Vector2::new(50.0, 0.0)), None);
+    // A node on a side belongs to some element, whatever rounding says.
+    assert!(mesh.nodes().iter().all(|&x| mesh.locate(x).is_some()));
+}
+
+/// A linear displacement field has a constant strain, and no inner node feels a force: in linear theory as it is, in the
+/// warped one with a turn by 70° on top.
+fn patch_test(kind: ElementKind) {
+    let turn = Rotation::from_angle(70f64.to_radians());
+    let (gradient, stretch) = (Matrix2::new(0.02, -0.01, 0.03, -0.015), Matrix2::new(1.02, 0.01, 0.01, 0.97));
+    for plane in [Plane::Stress, Plane::Strain] {
+        let problem = problem(&irregular_scene(plane), kind);
+        let mut linear = state(&problem, |x| x + gradient * x + Vector2::new(0.4, -0.1));
+        problem.system().follow(&mut linear, Kinematics::Linear);
+        let turned = state(&problem, |x| turn.apply(stretch * x));
+        assert!(turned.rotations().iter().all(|r| (r.c - turn.c).hypot(r.s - turn.s) < 1e-13));
+        for state in [linear, turned] {
+            let forces = forces(&problem, &state);
+            let largest = forces.internal().iter().map(|f| f.norm()).fold(0.0, f64::max);
+            for (x, f) in nodes(&problem).iter().zip(forces.internal()).filter(|(x, _)| is_inside(x)) {
+                assert!(f.norm() < 1e-12 * largest, "{plane:?} at {x}: {f}");
+            }
+        }
+    }
+}
+
+/// The patch test as a user would run it: p/E along, −ν p/E across, with every method.
+fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
+    for method in METHODS {
+        let mut scene = irregular_scene(Plane::Stress).force("right", [3.0, 0.0]).with_method(method.kind);
+        scene.solver.tolerance = 1e-13;
+        let mut simulation = Simulation::with_mesh(&scene, irregular_mesh(kind)).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged, "{}", method.id);
+        let strain = 3.0 / (100.0 * 0.5 * 2.0);
+        // `auto` takes linear theory here, others iterate to the tolerance.
+        for (x, u) in simulation.system().mesh().nodes().iter().zip(simulation.displacement()) {
+            let expected = Vector2::new(strain * x.x, -0.3 * strain * (x.y + 1.0));
+            assert!((u - expected).norm() < 1e-12, "{}: {u} {expected}", method.id);
+        }
+    }
+}
+
+fn rigid_motions_give_no_force_and_no_energy(kind: ElementKind) {
+    let problem = problem(&irregular_scene(Plane::Strain), kind);
+    for degrees in [0.0f64, 1e-6, 10.0, 90.0, 179.0, -135.0] {
+        let turn = Rotation::from_angle(degrees.to_radians());
+        let state = state(&problem, |x| turn.apply(x) + Vector2::new(3.0, -20.0));
+        // Forces of a strain of 1 are about 100 N; coordinates of 20 leave roundings of 20 ε.
+        assert!(forces(&problem, &state).internal().iter().all(|f| f.norm() < 1e-11), "{degrees}°");
+        assert!(problem.elastic_energy(&state) < 1e-25, "{degrees}°");
+    }
+}
+
+/// A bent, stretched and turned state.
+fn bent(x: Vector2<f64>) -> Vector2<f64> {
+    Rotation::from_angle(0.8 + 0.3 * x.x).apply(x) * (1.0 + 0.1 * x.y - 0.2 * x.x)
+}
+
+/// f_int is the gradient of the energy, with R following x.
+fn the_force_is_the_gradient_of_the_energy(kind: ElementKind) {
+    const STEP: f64 = 1e-5;
+    let problem = problem(&irregular_scene(Plane::Strain), kind);
+    let start = state(&problem, bent);
+    let force = forces(&problem, &start).internal().to_vec();
+    let scale = force.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    let mut u = start.displacement().to_vec();
+    for node in 0..u.len() {
+        for axis in 0..2 {
+            let at = u[node][axis];
+            let mut energy = |value: f64| {
+                u[node][axis] = value;
+                problem.elastic_energy(&common_state(&problem, &u))
+            };
+            let numeric = (energy(at + STEP) - energy(at - STEP)) / (2.0 * STEP);
+            energy(at);
+            let error = (numeric - force[node][axis]).abs() / scale;
+            assert!(error < 1e-8, "node {node}: {error:e}");
+        }
+    }
+}
+
+/// A + G and the moment's own tangent are the derivative of f_int − f_ext; A + max(G, 0) is positive definite.
+fn the_tangent_is_the_derivative_of_the_force(kind: ElementKind) {
+    const STEP: f64 = 1e-6;
+    const FACTOR: f64 = 0.7;
+    let problem = problem(&irregular_scene(Plane::Strain).moment("right", 3.0), kind);
+    let start = state(&problem, bent);
+    let mut u = start.displacement().to_vec();
+    let out_of_balance = |u: &[Vector2<f64>]| {
+        let state = common_state(&problem, u);
+        let mut forces = forces(&problem, &state);
+        problem.balance(&state, Kinematics::Corotated, FACTOR, &mut forces);
+        restrict(&problem, forces.residual())
+    };
+    let n = problem.system().dofs();
+    let mut numeric = DMatrix::zeros(n, n);
+    for (column, &unknown) in problem.system().pattern().free().iter().enumerate() {
+        let (node, axis) = (unknown as usize / 2, unknown as usize % 2);
+        let at = u[node][axis];
+        u[node][axis] = at + STEP;
+        let above = out_of_balance(&u);
+        u[node][axis] = at - STEP;
+        let below = out_of_balance(&u);
+        u[node][axis] = at;
+        numeric.set_column(column, &((below - above) / (2.0 * STEP)));
+    }
+    let exact = dense(&problem, &start, Tangent::Exact, FACTOR);
+    let error = (&numeric - &exact).norm() / exact.norm();
+    assert!(error < 1e-8, "{error:e}");
+    // G is what A lacks, and its positive part alone leaves a positive definite matrix.
+    let parts = dense(&problem, &start, Tangent::Warped, 0.0) + dense(&problem, &start, Tangent::Geometric, 0.0);
+    assert!((parts - dense(&problem, &start, Tangent::Exact, 0.0)).norm() < 1e-12 * exact.norm());
+    let definite = dense(&problem, &start, Tangent::Definite, 0.0);
+    assert!(definite.symmetric_eigenvalues().min() > 0.0);
+}
+
+/// A = Σ R Ke Rᵀ is the derivative of f_int with R kept, and f_int = A x − R K X.
+fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
+    let problem = problem(&irregular_scene(Plane::Stress), kind);
+    let start = state(&problem, |x| Rotation::from_angle(0.4 * x.x).apply(x));
+    let a = dense(&problem, &start, Tangent::Warped, 0.0);
+    let with_rotations_of_start = |u: Vec<Vector2<f64>>| {
+        let state = start.with_displacement(u).unwrap();
+        forces(&problem, &state).internal().to_vec()
+    };
+    // Moving free nodes by d changes the force by A d, exactly: it is linear in x for fixed R.
+    let d = DVector::from_fn(a.nrows(), |i, _| ((i * 7 % 11) as f64 - 5.0) * 0.01);
+    let mut moved = start.displacement().to_vec();
+    problem.system().pattern().add_free(d.as_slice(), 1.0, &mut moved);
+    let before = with_rotations_of_start(start.displacement().to_vec());
+    let change: Vec<_> = with_rotations_of_start(moved).iter().zip(&before).map(|(a, b)| a - b).collect();
+    assert!((restrict(&problem, &change) - &a * d).norm() < 1e-10);
+    // All nodes at the origin: what is left of f_int is −R K X, which is exact in a rigidly turned body.
+    let turn = Rotation::from_angle(1.1);
+    let turned = state(&problem, |x| turn.apply(x));
+    let collapsed = turned.with_displacement(nodes(&problem).iter().map(|x| -x).collect()).unwrap();
+    let offset = forces(&problem, &collapsed);
+    let magnitude = offset.internal().iter().map(|f| f.norm()).fold(0.0, f64::max);
+    assert!(magnitude > 1.0);
+    // A x − R K X vanishes there.
+    assert!(forces(&problem, &turned).internal().iter().all(|f| f.norm() < 1e-12 * magnitude));
+}
+
+/// Betti's theorem: the work of one load along the displacement of another is that of the other along its own.
+fn works_are_reciprocal(kind: ElementKind) {
+    let tip = |force: [f64; 2], at: [f64; 2]| {
+        let scene = irregular_scene(Plane::Strain).force(at, force).with_method(warpbeam::MethodKind::Linear);
+        let mut simulation = Simulation::with_mesh(&scene, irregular_mesh(kind)).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        simulation
+    };
+    let loads = [([1.0, 2.0], [2.0, 1.0]), ([-3.0, 0.5], [1.0, -1.0]), ([0.2, -1.0], [2.0, -1.0])];
+    for (force, at) in loads {
+        for (other_force, other_at) in loads {
+            let (one, other) = (tip(force, at), tip(other_force, other_at));
+            let along = |simulation: &Simulation, force: [f64; 2], at: [f64; 2]| {
+                let node = simulation.system().mesh().nearest_node(at.into()) as usize;
+                simulation.displacement()[node].dot(&Vector2::from(force))
+            };
+            let (a, b) = (along(&other, force, at), along(&one, other_force, other_at));
+            assert!((a - b).abs() < 1e-12 * a.abs().max(1e-3), "{a} {b}");
+        }
+    }
+}
+
+/// A moment turns nothing but the body: no net force, and its size about any point.
+fn a_moment_is_a_couple(kind: ElementKind) {
+    let problem = problem(&irregular_scene(Plane::Stress).moment("right", 3.0), kind);
+    let state = state(&problem, |x| Rotation::from_angle(2.0 + 0.1 * x.y).apply(x));
+    let mut force = vec![Vector2::zeros(); nodes(&problem).len()];
+    problem.loads().force(problem.system(), state.displacement(), Kinematics::Corotated, 1.0, &mut force);
+    let net: Vector2<f64> = force.iter().sum();
+    let positions = nodes(&problem).iter().zip(state.displacement()).map(|(x, u)| x + u);
+    let moment: f64 = positions.zip(&force).map(|(x, f)| x.perp(f)).sum();
+    assert!(net.norm() < 1e-12 && (moment - 3.0).abs() < 1e-12, "{net} {moment}");
+}
+
+/// The exact displacement gradient of a smooth field that vanishes on the left edge,
+/// u = (sin 1.3x · cos 0.7y, sin x · sin(1.1y + 0.4)).
+fn smooth_gradient(x: Vector2<f64>) -> Matrix2<f64> {
+    let (a, b) = (1.3 * x.x, 0.7 * x.y);
+    let (c, d) = (x.x, 1.1 * x.y + 0.4);
+    Matrix2::new(1.3 * a.cos() * b.cos(), -0.7 * a.sin() * b.sin(), c.cos() * d.sin(), 1.1 * c.sin() * d.cos())
+}
+
+/// A manufactured solution of linear theory: under the loads that go with a smooth field, the finite element solution
+/// approaches it in the energy norm with hᵖ, p the degree of the shape functions.
+fn the_energy_norm_converges_at_its_rate(kind: ElementKind) {
+    let degree = (kind.entry().sides[0].len() - 1) as f64;
+    let errors = [4, 8, 16].map(|n| energy_norm_error(kind, n));
+    let rate = (errors[1] / errors[2]).log2();
+    println!("{}: energy-norm rate {rate:.3}", kind.id());
+    assert!((rate - degree).abs() < 0.1, "{errors:?} {rate}");
+}
+
+/// ‖u − u_h‖ over ‖u‖ in the energy norm, on n × n cells.
+fn energy_norm_error(kind: ElementKind, n: u32) -> f64 {
+    let material = Material { thickness: 0.5, plane: Plane::Strain, ..Material::new(100.0, 0.3) };
+    let scene = Scene::beam(1.0, 1.0).with_cells(n, n).with_element(kind).with_material(material).clamp("left");
+    let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
+    let entry = kind.entry();
+    let moduli = material.membrane();
+    let sym = |h: Matrix2<f64>| (h + h.transpose()) * 0.5;
+    // f_a = ∫ σ(u) ∇N_a dA, and ‖u‖² = ∫ σ(u) : ε(u) dA, by a rule fine enough to be exact beside the error.
+    let lattice = (entry.cell.lattice)(4);
+    let mut force = vec![Vector2::zeros(); nodes(&problem).len()];
+    let mut energy = 0.0;
+    for own in problem.system().mesh().elements() {
+        let rest: Vec<_> = own.iter().map(|&n| nodes(&problem)[n as usize]).collect();
+        for t in &lattice.triangles {
+            let [a, b, c] = t.map(|p| Vector2::from(lattice.points[p as usize]));
+            let small = 0.5 * (b - a).perp(&(c - a)) / 3.0;
+            for [p, q, r] in [[a, b, c], [b, c, a], [c, a, b]] {
+                let at: [f64; 2] = (p * (2.0 / 3.0) + q / 6.0 + r / 6.0).into();
+                let jacobian = entry.jacobian(&rest, at);
+                let x: Vector2<f64> = rest.iter().zip((entry.shape)(at)).map(|(x, n)| x * n).sum();
+                let strain = sym(smooth_gradient(x));
+                let stress = moduli.stress(&strain) * (small * jacobian.determinant());
+                energy += stress.dot(&strain);
+                let to_global = jacobian.try_inverse().unwrap().transpose();
+                for (&node, g) in own.iter().zip((entry.local_gradients)(at)) {
+                    force[node as usize] += stress * (to_global * g);
+                }
+            }
+        }
+    }
+    let system = problem.system();
+    let mut matrix = Matrix::new(system.pattern());
+    problem.linearize(&system.at_rest(), &mut Forces::new(force.len()), Some((Tangent::Warped, &mut matrix)));
+    let mut factor = Factor::new(system.symbolic()).unwrap();
+    factor.factorize(matrix.values()).unwrap();
+    let load = restrict(&problem, &force);
+    let mut u = load.as_slice().to_vec();
+    factor.solve_in_place(&mut u);
+    // Galerkin: ‖u − u_h‖² = ‖u‖² − f · u_h.
+    let work: f64 = load.iter().zip(&u).map(|(f, u)| f * u).sum();
+    ((energy - work) / energy).sqrt()
+}
+
+/// A field's values with the rest positions of their quadrature points.
+fn field_at_points(simulation: &Simulation, field: Field) -> Vec<(Vector2<f64>, f64)> {
+    let mesh = simulation.system().mesh();
+    let entry = mesh.element().entry();
+    let mut values = Vec::new();
+    simulation.field(field, &mut values);
+    let places = mesh.elements().flat_map(|own| {
+        entry.points.iter().map(|p| {
+            own.iter().zip((entry.shape)(p.at)).map(|(&n, w)| mesh.nodes()[n as usize] * w).sum::<Vector2<f64>>()
+        })
+    });
+    places.zip(values.into_iter().map(Option::unwrap)).collect()
+}
+
+/// A beam L/H = 20 in plane stress, ν = 0, under an end moment.
+fn moment_beam(kind: ElementKind, moment: f64) -> Scene {
+    let cells = if kind.entry().sides[0].len() == 2 { [640, 32] } else { [80, 4] };
+    Scene::beam(20.0, 1.0)
+        .with_element(kind)
+        .with_cells(cells[0], cells[1])
+        .with_material(Material::new(1e6, 0.0))
+        .clamp("left")
+        .moment("right", moment)
+        .probe("tip", "right")
+}
+
+/// Pure bending: σ_xx = −M y / I, whose magnitude is the von Mises stress; and its mean over the upper half is M h / 4 I.
+fn stress_is_that_of_the_bent_beam(kind: ElementKind) {
+    // Small enough for the beam to stay straight: M L / E I = 0.02.
+    let moment = 0.02 * 1e6 / 12.0 / 20.0;
+    let mut simulation = Simulation::new(&moment_beam(kind, moment)).unwrap();
+    assert_eq!(*simulation.solve(), Status::Converged);
+    let largest = moment * 0.5 * 12.0;
+    for (x, von_mises) in field_at_points(&simulation, Field::VonMises) {
+        // Away from the clamp and the loaded end.
+        if (x.x - 10.0).abs() < 8.0 {
+            let expected = moment * x.y.abs() * 12.0;
+            assert!((von_mises - expected).abs() < 0.03 * largest, "at {x}: {von_mises} {expected}");
+        }
+    }
+    // With its sign, tension below where the moment lifts the end, and no stress across.
+    let (system, lame) = (simulation.system(), simulation.problem().material().lame());
+    let places: Vec<_> = field_at_points(&simulation, Field::VonMises).into_iter().map(|(x, _)| x).collect();
+    let state = simulation.state();
+    system.elements().visit_strains(state.displacement(), state.rotations(), &mut |q, _, strain| {
+        let (x, stress) = (places[q], lame.stress(strain));
+        if (x.x - 10.0).abs() < 8.0 {
+            let expected = Matrix2::new(-moment * x.y * 12.0, 0.0, 0.0, 0.0);
+            assert!((stress - expected).amax() < 0.03 * largest, "at {x}: {stress}");
+        }
+    });
+    // The same from the strain energy, ½ σ²/E.
+    for (x, energy) in field_at_points(&simulation, Field::EnergyDensity) {
+        if (x.x - 10.0).abs() < 8.0 {
+            let expected = (moment * x.y * 12.0).powi(2) / 2e6;
+            assert!((energy - expected).abs() < 0.05 * largest * largest / 2e6, "at {x}: {energy} {expected}");
+        }
+    }
+    for (x, strain) in field_at_points(&simulation, Field::LargestStrain) {
+        if (x.x - 10.0).abs() < 8.0 {
+            assert!((strain - moment * x.y.abs() * 12.0 / 1e6).abs() < 0.03 * largest / 1e6, "at {x}: {strain}");
+        }
+    }
+}
+
+/// The whole scene turned by 37°: the same stresses, and rotations 37° more than before seen from outside are the same.
+fn stress_turns_with_the_body(kind: ElementKind) {
+    let turn = Rotation::from_angle(37.0 / 180.0 * PI);
+    let scene = moment_beam(kind, 500.0).with_cells(20, 1).force("right", [30.0, -20.0]);
+    let mut straight = Simulation::new(&scene).unwrap();
+    straight.solve();
+    let mut turned_scene = scene.clone();
+    for load in &mut turned_scene.loads {
+        if let Load::Force { force, .. } = load {
+            *force = turn.apply((*force).into()).into();
+        }
+    }
+    let mesh = straight.system().mesh().moved(|x| turn.apply(x)).unwrap();
+    let mut turned = Simulation::with_mesh(&turned_scene, mesh).unwrap();
+    assert_eq!((straight.status(), turned.solve()), (&Status::Converged, &Status::Converged));
+    for field in Field::ALL {
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        straight.field(field, &mut a);
+        turned.field(field, &mut b);
+        let largest = a.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
+        for (a, b) in a.iter().flatten().zip(b.iter().flatten()) {
+            assert!((a - b).abs() < 1e-6 * largest, "{field:?}: {a} {b}");
+        }
+    }
+}

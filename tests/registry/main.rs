@@ -1,0 +1,48 @@
+//! Suites that every entry of a registry passes under its own name: `cargo test --test registry -- t6` runs those of
+//! one element, `-- newton` those of one method.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod elements;
+mod methods;
+#[cfg(feature = "app")]
+mod pictures;
+mod scenes;
+
+use std::process::ExitCode;
+
+use libtest_mimic::{Arguments, Trial};
+
+fn main() -> ExitCode {
+    let args = Arguments::from_args();
+    let suites = [
+        elements::trials(),
+        methods::trials(),
+        scenes::trials(),
+        #[cfg(feature = "app")]
+        pictures::trials(),
+    ];
+    libtest_mimic::run(&args, suites.into_iter().flatten().collect()).exit_code()
+}
+
+/// A test that an entry of a registry must pass.
+type Test<T> = (&'static str, fn(T));
+
+/// Every test for every entry: `suite::entry::test`.
+fn suite<T: Copy + Send + 'static>(
+    name: &str,
+    entries: impl IntoIterator<Item = (String, T)>,
+    tests: &[Test<T>],
+) -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for (id, entry) in entries {
+        for &(test, run) in tests {
+            trials.push(Trial::test(format!("{name}::{id}::{test}"), move || {
+                run(entry);
+                Ok(())
+            }));
+        }
+    }
+    trials
+}

@@ -1,0 +1,205 @@
+//! What every method must do.
+
+use libtest_mimic::Trial;
+use nalgebra::Vector2;
+use warpbeam::method::METHODS;
+use warpbeam::simulation::{Field, Simulation};
+use warpbeam::{MethodKind, Scene, Status};
+
+use crate::common::{scene, scene_with};
+use crate::{Test, suite};
+
+const TESTS: &[Test<MethodKind>] = &[
+    ("its_id_is_the_word_of_scene_files", its_id_is_the_word_of_scene_files),
+    ("its_colours_are_its_own", its_colours_are_its_own),
+    ("an_axial_bar_stretches_by_pl_over_ea", an_axial_bar_stretches_by_pl_over_ea),
+    ("without_load_nothing_moves", without_load_nothing_moves),
+    ("extremes_stay_finite", extremes_stay_finite),
+    ("an_edit_ends_where_a_start_at_rest_does", an_edit_ends_where_a_start_at_rest_does),
+    ("a_hopeless_load_leaves_no_trace", a_hopeless_load_leaves_no_trace),
+    ("a_restored_state_goes_on_as_the_saved_one", a_restored_state_goes_on_as_the_saved_one),
+    ("a_running_state_says_so", a_running_state_says_so),
+];
+
+pub fn trials() -> Vec<Trial> {
+    suite("method", METHODS.iter().map(|m| (m.id.to_owned(), m.kind)), TESTS)
+}
+
+fn its_id_is_the_word_of_scene_files(kind: MethodKind) {
+    let word = toml::Value::try_from(kind).unwrap();
+    assert_eq!(word.as_str(), Some(kind.id()));
+    assert_eq!(kind.entry().kind, kind);
+}
+
+fn its_colours_are_its_own(kind: MethodKind) {
+    for dark in [false, true] {
+        let same = METHODS.iter().filter(|m| m.color(dark) == kind.entry().color(dark));
+        assert_eq!(same.count(), 1);
+    }
+}
+
+fn with_method(mut scene: Scene, method: MethodKind) -> Scene {
+    scene.solver.method = method;
+    scene
+}
+
+fn ended(scene: &Scene) -> Simulation {
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.solve();
+    simulation
+}
+
+/// δ = P L / (E A), on every mesh.
+fn an_axial_bar_stretches_by_pl_over_ea(method: MethodKind) {
+    for cells in ["[1,1]", "[16,2]", "[7,3]"] {
+        let scene = with_method(scene_with("stretch", &[&format!("beam.cells={cells}")]), method);
+        let simulation = ended(&scene);
+        assert_eq!(*simulation.status(), Status::Converged);
+        let result = simulation.solution();
+        let expected = 50_000.0 * 4.0 / (1e6 * 0.5);
+        assert!((result.probes[0].u.x - expected).abs() < 1e-9 * expected, "{cells}: {}", result.probes[0].u.x);
+        assert!(result.deformation.max_rotation_deg < 1e-9);
+    }
+}
+
+fn without_load_nothing_moves(method: MethodKind) {
+    let scene = with_method(scene_with("cantilever", &["load.0.force=[0,0]"]), method);
+    let simulation = ended(&scene);
+    assert_eq!(*simulation.status(), Status::Converged);
+    assert!(simulation.displacement().iter().all(|u| *u == Vector2::zeros()));
+}
+
+/// Extreme numbers of every kind: no panic, nothing that is not finite, a status in words.
+fn extremes_stay_finite(method: MethodKind) {
+    let sets: &[&[&str]] = &[
+        &["load.0.force=[0,-1e15]"],
+        &["load.0.force=[1e15,0]"],
+        &["load.0.force=[-1e15,0]"],
+        &["load.0.force=[0,0]"],
+        &["material.young=1e15", "load.0.force=[0,-1e-9]"],
+        &["material.young=1e-6", "load.0.force=[0,-1e15]"],
+        &["material.poisson=0.4999", "material.plane=strain"],
+        &["material.poisson=-0.99"],
+        &["beam.length=1e5"],
+        &["beam.length=1e-6", "beam.height=1e-6"],
+        &["beam.height=1e-3", "beam.cells=[100,1]"],
+        &["solver.tolerance=1e-14"],
+        &["beam.cells=[1,1]"],
+    ];
+    for id in ["cantilever", "article"] {
+        for set in sets {
+            let mut simulation = ended(&with_method(scene_with(id, set), method));
+            assert_ne!(*simulation.status(), Status::Running);
+            simulation.certify();
+            let s = simulation.solution();
+            let rho = s.certificate.and_then(|c| c.fixed_point_rho).unwrap_or_default();
+            let numbers = [
+                s.residual,
+                s.deformation.max_strain,
+                s.deformation.max_rotation_deg,
+                s.reaction.moment,
+                s.reaction.force.x,
+                s.energy.external,
+                rho,
+            ];
+            assert!(numbers.iter().all(|v| v.is_finite()), "{id} {set:?}: {s:?}");
+            assert!(simulation.state().is_finite(), "{id} {set:?}");
+            let mut values = Vec::new();
+            for field in Field::ALL {
+                simulation.field(field, &mut values);
+                assert!(values.iter().all(Option::is_some), "{id} {set:?} {field:?}");
+            }
+        }
+    }
+}
+
+/// The largest distance between two displacements, over the largest of the second.
+fn difference(a: &Simulation, b: &Simulation) -> f64 {
+    let size = b.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let pairs = a.displacement().iter().zip(b.displacement());
+    pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / size
+}
+
+/// Whatever is edited under a solved body, the end is that of a fresh start.
+fn an_edit_ends_where_a_start_at_rest_does(method: MethodKind) {
+    let start = with_method(scene_with("cantilever", &["solver.tolerance=1e-10"]), method);
+    let edits: &[&[&str]] = &[
+        &["load.0.force=[0,-1300]"],
+        &["load.0.force=[200,-700]"],
+        &["material.young=1.4e6"],
+        &["material.thickness=0.7"],
+        &["material.poisson=0.1", "material.plane=strain"],
+        &["beam.cells=[30,2]"],
+        &["beam.element=t6", "beam.cells=[20,1]"],
+        &["support=[{edge=\"left\",fix=[\"x\"]},{at=[0,0],fix=[\"y\"]}]"],
+        &["support=[{edge=\"left\",fix=[\"x\",\"y\"]},{at=[5,0],fix=[\"x\",\"y\"]}]"],
+        &["load=[{kind=\"gravity\",acceleration=[0,-0.05]},{kind=\"force\",edge=\"right\",force=[0,-100]}]"],
+        &["load=[{kind=\"moment\",edge=\"right\",moment=2000}]"],
+    ];
+    for edit in edits {
+        let mut edited = ended(&start);
+        let all: Vec<&str> = edit.iter().copied().chain(["solver.tolerance=1e-10"]).collect();
+        let scene = with_method(scene_with("cantilever", &all), method);
+        edited.change_scene(&scene).unwrap();
+        assert_eq!(edited.scene(), &scene);
+        let fresh = ended(&scene);
+        assert_eq!((edited.solve(), fresh.status()), (&Status::Converged, &Status::Converged), "{edit:?}");
+        assert_eq!(edited.system().dofs(), fresh.system().dofs());
+        // `auto` ends within its asked error.
+        let close = if method == MethodKind::Auto { 1e-2 } else { 1e-6 };
+        assert!(difference(&edited, &fresh) < close, "{edit:?}: {:e}", difference(&edited, &fresh));
+    }
+}
+
+/// After a load beyond all measure, any edit that can be solved is.
+fn a_hopeless_load_leaves_no_trace(method: MethodKind) {
+    for id in ["article", "cantilever"] {
+        for force in [1e12, -1e12, 1e15] {
+            let mut simulation = ended(&with_method(scene(id), method));
+            for (horizontal, vertical) in [(0.0, force), (force, 0.0)] {
+                simulation.set_force(0, [horizontal, vertical]).unwrap();
+                simulation.solve();
+                assert!(simulation.state().is_finite());
+            }
+            simulation.set_force(0, [0.0, 0.0]).unwrap();
+            assert_eq!(*simulation.solve(), Status::Converged, "{id}: {force:e}, then nothing");
+            let left = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+            assert!(left < 1e-9, "{id}: {force:e}, then nothing: {left:e} m are left");
+            simulation.set_force(0, [0.0, force]).unwrap();
+            simulation.solve();
+            simulation.set_force(0, [0.0, -100.0]).unwrap();
+            assert_eq!(*simulation.solve(), Status::Converged, "{id}: {force:e}, then 100 N");
+            let mut small = with_method(scene(id), method);
+            small.set_force(0, [0.0, -100.0]).unwrap();
+            let close = if method == MethodKind::Auto { 1e-2 } else { 1e-6 };
+            assert!(difference(&simulation, &ended(&small)) < close, "{id}: {force:e}, then 100 N");
+        }
+    }
+}
+
+fn a_restored_state_goes_on_as_the_saved_one(method: MethodKind) {
+    let mut simulation = ended(&with_method(scene("cantilever"), method));
+    let saved = simulation.state().clone();
+    simulation.set_force(0, [0.0, 500.0]).unwrap();
+    simulation.solve();
+    assert_ne!(*simulation.state(), saved);
+    simulation.set_force(0, [0.0, -1000.0]).unwrap();
+    simulation.restore(&saved).unwrap();
+    // Linear theory solves anew; what the others restore is converged.
+    if method != MethodKind::Linear && method != MethodKind::Auto {
+        assert_eq!((simulation.status(), simulation.iterations()), (&Status::Converged, 0));
+        assert_eq!(*simulation.state(), saved);
+    }
+    assert_eq!(*simulation.solve(), Status::Converged);
+    let other = Simulation::new(&scene("article")).unwrap();
+    assert!(simulation.restore(other.state()).is_err());
+}
+
+fn a_running_state_says_so(method: MethodKind) {
+    let mut simulation = Simulation::new(&with_method(scene("cantilever"), method)).unwrap();
+    assert_eq!((simulation.status(), simulation.status().id()), (&Status::Running, "running"));
+    assert!(simulation.status().failure().is_none());
+    assert_eq!(simulation.certify(), Default::default(), "nothing is certified before the end");
+    simulation.solve();
+    assert_eq!(simulation.status().id(), "converged");
+}

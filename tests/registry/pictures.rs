@@ -1,0 +1,128 @@
+//! The picture of every built-in scene: against a golden one, and against what the solver says.
+//!
+//! `UPDATE_GOLDEN=1 cargo test --test registry -- picture` draws the golden pictures anew; look at them before committing.
+
+use std::path::PathBuf;
+
+use libtest_mimic::Trial;
+use nalgebra::Vector2;
+use warpbeam::Place;
+use warpbeam::app::picture;
+use warpbeam::render::{Camera, Gpu, colormap};
+use warpbeam::scene::registry;
+
+use crate::common::pictures::{difference, distance, lab, pixel, read_png};
+use crate::common::{stderr, warpbeam};
+use crate::{Test, suite};
+
+const TESTS: &[Test<&'static str>] = &[
+    ("it_is_the_golden_one_on_dark", |id| it_is_the_golden_one(id, "dark")),
+    ("it_is_the_golden_one_on_light", |id| it_is_the_golden_one(id, "light")),
+    ("the_body_is_drawn_where_the_solver_says", the_body_is_drawn_where_the_solver_says),
+];
+
+pub fn trials() -> Vec<Trial> {
+    suite("picture", registry::BUILT_IN.iter().map(|b| (b.id.to_owned(), b.id)), TESTS)
+}
+
+/// `warpbeam shot`, without the panel (whose times differ from run to run).
+fn it_is_the_golden_one(id: &'static str, theme: &str) {
+    const TOLERANCE: f64 = 2e-3;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shot.png");
+    let to = path.to_str().unwrap();
+    let output = warpbeam(&["shot", id, "-o", to, "--size", "640x400", "--no-panel", "--theme", theme]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let golden = PathBuf::from(format!("tests/golden/{id}-{theme}.png"));
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::create_dir_all("tests/golden").unwrap();
+        std::fs::copy(&path, &golden).unwrap();
+    }
+    let difference = difference(&read_png(&path), &read_png(&golden));
+    assert!(difference < TOLERANCE, "{:.2} % of the pixels differ", 100.0 * difference);
+}
+
+/// Where a point of the plane is in the picture, pixels.
+fn project(camera: &Camera, rect: egui::Rect, p: Vector2<f64>) -> [f64; 2] {
+    let [x, y] = camera.to_view(p);
+    [f64::from(rect.center().x) + x, f64::from(rect.center().y) + y]
+}
+
+/// The body's pixels end where the solver's nodes end, and every triangle has the colour of its value.
+fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
+    let gpu = Gpu::headless().unwrap();
+    let mut lab = lab(id);
+    lab.set_panel(false);
+    lab.set_outlines(false);
+    lab.solve();
+    let picture = picture(&gpu, &mut lab, [900, 600], 1.0, egui::Theme::Dark).unwrap();
+    let (camera, rect) = (lab.camera(), lab.view_rect());
+    let frame = lab.frame();
+    let positions: Vec<_> = lab
+        .simulation()
+        .system()
+        .mesh()
+        .nodes()
+        .iter()
+        .zip(lab.simulation().displacement())
+        .map(|(x, u)| x + u)
+        .collect();
+    // Straight triangles are drawn as they are, one for one.
+    if lab.scene().element() == warpbeam::scene::ElementKind::T3 {
+        for (drawn, solved) in frame.triangles.iter().zip(lab.simulation().system().mesh().elements()) {
+            let drawn = drawn.map(|p| frame.positions[p as usize]);
+            let solved = [solved[0], solved[1], solved[2]].map(|n| positions[n as usize]);
+            assert_eq!(drawn, solved, "{id}: what is drawn is not what was solved");
+        }
+    }
+
+    // Colours, at the middle of triangles that are large enough to have one without an edge in it.
+    let mut seen = 0;
+    for (triangle, &value) in frame.triangles.iter().zip(frame.values) {
+        let [a, b, c] = triangle.map(|p| project(&camera, rect, frame.positions[p as usize]));
+        let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs();
+        if area < 60.0 {
+            continue;
+        }
+        let [x, y] = [0, 1].map(|i| ((a[i] + b[i] + c[i]) / 3.0) as u32);
+        let expected = colormap::color(colormap::position(value.unwrap(), frame.range));
+        let got = pixel(&picture, x, y);
+        if distance(expected, got) <= 2 {
+            seen += 1;
+        }
+    }
+    let large = frame.triangles.iter().filter(|t| {
+        let [a, b, c] = t.map(|p| project(&camera, rect, frame.positions[p as usize]));
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs() >= 60.0
+    });
+    let large = large.count();
+    // The load's arrow and the supports may cover a few.
+    assert!(seen as f64 >= 0.9 * large as f64, "{id}: {seen} of {large} triangles have their colour");
+
+    // The tip: just inside the body is body, just outside is background. The outline between them is 1.2 wide.
+    let probe = lab.simulation().solution().probes[0].clone();
+    let tip = project(&camera, rect, probe.x);
+    let mesh = lab.simulation().system().mesh();
+    let centre = positions.iter().sum::<Vector2<f64>>() / positions.len() as f64;
+    // The roll-up's tip lies on its clamp; the others' tips are where nothing else is.
+    let Some(Place::Edge(edge)) = Some(&lab.scene().probes[0].place).filter(|_| id != "roll-up") else { return };
+    let edge = mesh.edges().get(edge).unwrap();
+    for segment in edge.iter().step_by(edge.len().div_ceil(4)) {
+        let [p, q] = segment.ends().map(|n| positions[n as usize]);
+        let middle = (p + q) * 0.5;
+        let normal = Vector2::new((q - p).y, -(q - p).x).normalize();
+        let outward = if normal.dot(&(middle - centre)) > 0.0 { normal } else { -normal };
+        let at = |pixels: f64| {
+            let [x, y] = project(&camera, rect, middle + outward * (pixels / camera.scale));
+            pixel(&picture, x as u32, y as u32)
+        };
+        // The arrow starts at the middle of a loaded edge and may run either way.
+        let [x, y] = project(&camera, rect, middle);
+        if (x - tip[0]).hypot(y - tip[1]) < 8.0 {
+            continue;
+        }
+        let outside = at(4.0);
+        assert!(distance(outside, frame.background) <= 8, "{id}: {outside:?} outside the tip");
+        assert!(distance(at(-3.0), frame.background) > 8, "{id}: background inside the tip");
+    }
+}

@@ -1,0 +1,114 @@
+//! What every built-in scene must do.
+
+use libtest_mimic::Trial;
+use nalgebra::Vector2;
+use warpbeam::element::ELEMENTS;
+use warpbeam::method::METHODS;
+use warpbeam::scene::registry;
+use warpbeam::simulation::{Reason, Simulation};
+use warpbeam::{MethodKind, Scene, Status};
+
+use crate::common::scene;
+use crate::{Test, suite};
+
+const TESTS: &[Test<&'static str>] = &[
+    ("its_file_is_what_is_built_in", its_file_is_what_is_built_in),
+    ("it_survives_the_way_through_toml", it_survives_the_way_through_toml),
+    ("reactions_balance_the_loads", reactions_balance_the_loads),
+    ("linear_theory_obeys_clapeyron", linear_theory_obeys_clapeyron),
+    ("every_element_converges", every_element_converges),
+    ("warped_ends_where_newton_does", warped_ends_where_newton_does),
+];
+
+pub fn trials() -> Vec<Trial> {
+    suite("scene", registry::BUILT_IN.iter().map(|b| (b.id.to_owned(), b.id)), TESTS)
+}
+
+fn its_file_is_what_is_built_in(id: &'static str) {
+    let file = std::fs::read_to_string(format!("assets/scenes/{id}.toml")).unwrap();
+    assert_eq!(file, registry::find(id).unwrap().toml);
+    assert!(!scene(id).about.is_empty() && !scene(id).probes.is_empty());
+}
+
+fn it_survives_the_way_through_toml(id: &'static str) {
+    let scene = scene(id);
+    let again = Scene::from_toml_in(&scene.to_toml().unwrap(), "assets/scenes".as_ref()).unwrap();
+    assert_eq!(scene, again);
+}
+
+fn with_method(mut scene: Scene, method: MethodKind) -> Scene {
+    scene.solver.method = method;
+    scene
+}
+
+/// Equilibrium of reactions and loads with every method that converges, as forces and as moments about the origin.
+fn reactions_balance_the_loads(id: &'static str) {
+    for method in METHODS {
+        let mut simulation = Simulation::new(&with_method(scene(id), method.kind)).unwrap();
+        // Some scenes are there to show what the warped iteration cannot do.
+        if *simulation.solve() != Status::Converged {
+            assert_eq!(method.kind, MethodKind::Warped, "{:?}", simulation.status());
+            assert!(!["article", "cantilever", "gravity", "bridge", "stretch", "shear"].contains(&id));
+            continue;
+        }
+        let reaction = simulation.solution().reaction;
+        let (system, loads) = (simulation.system(), simulation.problem().loads());
+        let total: Vector2<f64> = loads.dead_force().iter().sum();
+        // A moment loads the body too, though its forces cancel.
+        let scale = loads.dead_force().iter().map(|f| f.norm()).sum::<f64>()
+            + loads.moments().map(|(_, moment)| moment.abs()).sum::<f64>();
+        // `auto` ends within its asked error, the others at a residual.
+        let close = if method.kind == MethodKind::Auto { 1e-2 } else { 1e-6 };
+        assert!((reaction.force + total).norm() < close * scale, "{}: {:?}", method.id, reaction.force);
+        if simulation.is_linear() {
+            // Linear theory balances moments about the rest positions; the reaction is about the current ones.
+            continue;
+        }
+        let arms = system.mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+        let dead: f64 = arms.zip(loads.dead_force()).map(|(x, f)| x.perp(f)).sum();
+        let moment = dead + loads.moments().map(|(_, moment)| moment).sum::<f64>();
+        let size = system.mesh().bounds().1.norm();
+        assert!((reaction.moment + moment).abs() < close * scale * size, "{}: {}", method.id, reaction.moment);
+    }
+}
+
+/// Clapeyron's theorem: the loads do twice the work that is stored.
+fn linear_theory_obeys_clapeyron(id: &'static str) {
+    let mut simulation = Simulation::new(&with_method(scene(id), MethodKind::Linear)).unwrap();
+    assert_eq!(*simulation.solve(), Status::Converged);
+    let energy = simulation.solution().energy;
+    assert!(energy.elastic > 0.0);
+    assert!((energy.external - 2.0 * energy.elastic).abs() < 1e-8 * energy.elastic, "{energy:?}");
+}
+
+fn every_element_converges(id: &'static str) {
+    for element in ELEMENTS {
+        let mut scene = with_method(scene(id), MethodKind::Newton);
+        scene.set_element(element.kind);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged, "{}", element.id);
+        assert_eq!(simulation.certify().stable, Some(true), "{}", element.id);
+        assert_eq!(simulation.solution().deformation.inverted_elements, 0, "{}", element.id);
+    }
+}
+
+/// A warped result is an exact equilibrium: Newton, from rest, finds the same.
+fn warped_ends_where_newton_does(id: &'static str) {
+    let mut scene = scene(id);
+    (scene.solver.tolerance, scene.solver.max_iterations) = (1e-10, 500);
+    let mut newton = Simulation::new(&with_method(scene.clone(), MethodKind::Newton)).unwrap();
+    assert_eq!(*newton.solve(), Status::Converged);
+    let rho = newton.certify().fixed_point_rho.unwrap();
+    let mut warped = Simulation::new(&with_method(scene, MethodKind::Warped)).unwrap();
+    let status = warped.solve().clone();
+    if rho < 0.98 {
+        assert_eq!(status, Status::Converged, "ρ = {rho}");
+        let size = newton.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        for (a, b) in warped.displacement().iter().zip(newton.displacement()) {
+            assert!((a - b).norm() < 1e-7 * size.max(1.0), "{a} {b}");
+        }
+    } else if id != "stretch" {
+        // The bar's rotations are never excited: it converges whatever ρ.
+        assert!(matches!(status, Status::Diverged(Reason::Stalled(_))), "ρ = {rho}: {status:?}");
+    }
+}
