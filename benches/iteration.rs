@@ -45,7 +45,7 @@ fn stages(c: &mut Criterion) {
         c.bench_function(&format!("force/{dofs}"), |b| {
             b.iter(|| problem.linearize(black_box(&state), &mut forces, None));
         });
-        for (name, tangent) in [("force and A", Tangent::Warped), ("force and A + G", Tangent::Exact)] {
+        for (name, tangent) in [("force and A", Tangent::WARPED), ("force and A + G", Tangent::EXACT)] {
             c.bench_function(&format!("{name}/{dofs}"), |b| {
                 b.iter(|| problem.linearize(black_box(&state), &mut forces, Some((tangent, &mut matrix))));
             });

@@ -10,7 +10,7 @@
 //!     beam.step(); // one iteration: rotations → assemble → factorize → solve → update
 //! }
 //! let tip = beam.probe("tip").unwrap_or_default();
-//! assert!((tip.y + 1.935).abs() < 1e-3, "the tip went down by {} m", -tip.y);
+//! assert!((tip.y + 1.93).abs() < 0.02, "the tip went down by {} m", -tip.y);
 //! # Ok::<(), warpbeam::SimulationError>(())
 //! ```
 //!
@@ -61,8 +61,10 @@ pub mod article;
 pub mod assembly;
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod dynamics;
 pub mod element;
 pub mod export;
+mod lanczos;
 pub mod material;
 pub mod mesh;
 pub mod method;
@@ -76,12 +78,13 @@ pub mod simulation;
 pub mod solver;
 pub mod state;
 pub mod study;
+pub mod timings;
 pub mod truth;
 pub mod words;
 
 pub use nalgebra;
 
 pub use mesh::Mesh;
-pub use scene::{Axis, Beam, ElementKind, Load, Material, MethodKind, Place, Plane, Scene, SceneError};
+pub use scene::{Axis, Beam, ElementKind, IntegratorKind, Load, Material, MethodKind, Place, Plane, Scene, SceneError};
 pub use simulation::{Field, Simulation, SimulationError, Solution, Status};
 pub use state::State;

@@ -14,6 +14,12 @@ pub struct Lame {
 }
 
 impl Lame {
+    /// Times a factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self { lambda: factor * self.lambda, mu: factor * self.mu }
+    }
+
     /// T = 2 μ ε + λ tr(ε) I, Pa, for a strain ε. With the Biot strain S − I this is the Biot stress.
     #[must_use]
     #[inline]

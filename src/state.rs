@@ -19,6 +19,10 @@ pub struct State {
     pub(crate) velocity: Vec<Vector2<f64>>,
     /// Time since the start, s; zero in statics.
     pub(crate) time: f64,
+    /// The force that accelerates every node at the end of a time step, as that step has left it, N …
+    pub(crate) net_force: Vec<Vector2<f64>>,
+    /// … where it is known: not at the start, and not of a body that has been moved or loaded anew.
+    pub(crate) knows_net_force: bool,
 }
 
 /// A state, or a nodal vector, that does not belong to a body.
@@ -53,6 +57,8 @@ impl State {
             turns: vec![0.0; edges],
             velocity: vec![Vector2::zeros(); nodes],
             time: 0.0,
+            net_force: vec![Vector2::zeros(); nodes],
+            knows_net_force: false,
         }
     }
 
@@ -61,8 +67,14 @@ impl State {
         self.displacement.fill(Vector2::zeros());
         self.rotations.fill(Rotation::IDENTITY);
         self.turns.fill(0.0);
+        self.stop();
+    }
+
+    /// Takes its velocity, and puts it at the start of time.
+    pub(crate) fn stop(&mut self) {
         self.velocity.fill(Vector2::zeros());
         self.time = 0.0;
+        self.knows_net_force = false;
     }
 
     /// Becomes a state of the same body, without allocating.
@@ -72,6 +84,8 @@ impl State {
         self.turns.clone_from(&other.turns);
         self.velocity.clone_from(&other.velocity);
         self.time = other.time;
+        self.net_force.clone_from(&other.net_force);
+        self.knows_net_force = other.knows_net_force;
     }
 
     /// Displacement u = x − X of every node, m.
@@ -113,6 +127,7 @@ impl State {
             && self.rotations.iter().all(|r| r.c.is_finite() && r.s.is_finite())
             && self.turns.iter().all(|t| t.is_finite())
             && self.time.is_finite()
+            && (!self.knows_net_force || is_finite(&self.net_force))
     }
 
     /// The state with another displacement, m, but the same rotations.
@@ -124,7 +139,7 @@ impl State {
         if !is_finite(&u) {
             return Err(StateError::NotFinite { what: "displacements" });
         }
-        Ok(Self { displacement: u, ..self.clone() })
+        Ok(Self { displacement: u, knows_net_force: false, ..self.clone() })
     }
 
     /// Accepts `other` as a state of the same body.
@@ -136,6 +151,7 @@ impl State {
         same_length("rotations", self.rotations.len(), other.rotations.len())?;
         same_length("turns of edges", self.turns.len(), other.turns.len())?;
         same_length("velocities", self.velocity.len(), other.velocity.len())?;
+        same_length("net forces", self.net_force.len(), other.net_force.len())?;
         if other.is_finite() { Ok(()) } else { Err(StateError::NotFinite { what: "numbers in a state" }) }
     }
 }

@@ -13,9 +13,9 @@
 //! t = (cos θ, sin θ), m = (−sin θ, cos θ), ε = n·t / EA, γ = n·m / GA (both 0 for the elastica), θ(0) = 0, M(L) = M_tip.
 //! Solved by multiple shooting with RK4, following the load up from zero.
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix4, Vector2};
 
-use crate::scene::{Axis, Load, Place, Plane, Scene};
+use crate::scene::{Analysis, Axis, Load, Place, Plane, Scene};
 
 /// A clamped beam and its loads. Any consistent units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,6 +106,50 @@ impl ClampedBeam {
             };
         }
         state
+    }
+
+    /// The lowest angular frequency of small vibrations without loads, rad/s, of a beam of this mass per length (kg/m) and
+    /// rotary inertia per length (kg m): Timoshenko's beam; Euler's and Bernoulli's without shear and rotary inertia.
+    /// `None` where there is none below the second frequency of the slender beam.
+    ///
+    /// With amplitudes w, θ, M, V over the length: w′ = θ + V/GA, θ′ = M/EI, M′ = −V − ω² J θ, V′ = −ω² m w; w and θ vanish at
+    /// the clamp, M and V at the tip.
+    #[must_use]
+    pub fn lowest_frequency(&self, mass: f64, rotary_inertia: f64) -> Option<f64> {
+        let Self { length, bending, shear_compliance, .. } = *self;
+        let shear = bending * shear_compliance / (length * length);
+        let rotary = rotary_inertia / (mass * length * length);
+        // In units of the length and EI, β⁴ = ω² m L⁴/EI.
+        let at_tip = |beta: f64| {
+            let mu = beta.powi(4);
+            #[rustfmt::skip]
+            let slope = Matrix4::new(
+                0.0, 1.0, 0.0, shear,
+                0.0, 0.0, 1.0, 0.0,
+                0.0, -mu * rotary, 0.0, -1.0,
+                -mu, 0.0, 0.0, 0.0,
+            );
+            let end = slope.exp();
+            end.fixed_view::<2, 2>(2, 2).determinant()
+        };
+        /// Between the first two roots of the slender beam, 1.875 and 4.694.
+        const MOST: f64 = 4.0;
+        const SCAN: f64 = 0.05;
+        let (mut low, mut high) = (SCAN, 2.0 * SCAN);
+        while at_tip(high) > 0.0 {
+            (low, high) = (high, high + SCAN);
+            if high > MOST {
+                return None;
+            }
+        }
+        while high - low > 1e-14 * high {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if at_tip(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        Some(low * low * (bending / mass).sqrt() / (length * length))
     }
 
     /// One Newton step of multiple shooting on the unknowns θₖ, Mₖ; returns the scaled size of the step, and on which
@@ -253,6 +297,9 @@ impl BeamTruth {
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         const SHEAR_AREA: f64 = 5.0 / 6.0;
+        if scene.analysis != Analysis::Static {
+            return None;
+        }
         let beam = scene.beam.as_ref()?;
         let m = &scene.material;
         let young = match m.plane {
@@ -272,13 +319,13 @@ impl BeamTruth {
         };
         for load in &scene.loads {
             match load {
-                Load::Force { place: Place::Edge(edge), force } if edge == "right" => {
+                Load::Force { place: Place::Edge(edge), force, pulse: None } if edge == "right" => {
                     clamped.tip_force += Vector2::from(*force);
                 }
-                Load::Gravity { acceleration } => {
+                Load::Gravity { acceleration, pulse: None } => {
                     clamped.weight += Vector2::from(*acceleration) * (m.density * area);
                 }
-                Load::Moment { edge, moment } if edge == "right" => clamped.tip_moment += moment,
+                Load::Moment { edge, moment, pulse: None } if edge == "right" => clamped.tip_moment += moment,
                 _ => return None,
             }
         }

@@ -18,6 +18,7 @@ pub fn number(value: f64) -> String {
 
 /// A number of things: `1 iteration`, `2 iterations`.
 #[must_use]
-pub fn count(n: u32, what: &str) -> String {
+pub fn count(n: impl Into<u64>, what: &str) -> String {
+    let n = n.into();
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }

@@ -210,7 +210,7 @@ fn truths_and_words_take_any_number() {
     }
     assert_eq!(BeamTruth::of(&Scene::named("nothing")), None);
     assert_eq!(
-        (count(0, "step"), count(1, "step"), count(2, "step")),
+        (count(0_u32, "step"), count(1_u32, "step"), count(2_u32, "step")),
         ("0 steps".into(), "1 step".into(), "2 steps".into())
     );
 }

@@ -81,14 +81,14 @@ fn the_result_does_not_depend_on_the_frame_of_reference() {
             let mut turned = straight.clone();
             for load in &mut turned.loads {
                 match load {
-                    Load::Force { place, force } => {
+                    Load::Force { place, force, .. } => {
                         *force = turn.apply((*force).into()).into();
                         if let Place::At(at) = place {
                             *at = turn.apply((*at).into()).into();
                         }
                     }
                     Load::Moment { .. } => {}
-                    Load::Gravity { acceleration } => *acceleration = turn.apply((*acceleration).into()).into(),
+                    Load::Gravity { acceleration, .. } => *acceleration = turn.apply((*acceleration).into()).into(),
                     other => unreachable!("{other:?}"),
                 }
             }

@@ -5,8 +5,8 @@ mod common;
 
 use std::fs;
 
-use common::{scene, scene_ids, solve_json, stderr, stdout, warpbeam, warpbeam_in};
-use warpbeam::scene::registry;
+use common::{ids_of, scene, scene_ids, solve_json, stderr, stdout, warpbeam, warpbeam_in};
+use warpbeam::scene::{Analysis, registry};
 
 #[test]
 fn every_command_has_help() {
@@ -51,7 +51,7 @@ fn every_scene_file_is_in_the_registry() {
 
 #[test]
 fn json_has_every_field_of_the_contract() {
-    for id in scene_ids() {
+    for id in ids_of(Analysis::Static) {
         let json = solve_json(&[id]);
         let keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
         let contract = [
@@ -95,6 +95,29 @@ fn json_has_every_field_of_the_contract() {
         let stages = ["rotate", "assemble", "factorize", "solve"].map(|k| json["time_us"][k].as_f64().unwrap());
         assert!((stages.iter().sum::<f64>() - total).abs() < 0.01 * total.max(1.0));
     }
+}
+
+/// A motion has the same object and its own fields beside; its books are closed and its energy is the contract's.
+#[test]
+fn json_of_a_motion_has_its_books() {
+    for integrator in ["implicit-euler", "tr-bdf2", "energy-momentum"] {
+        let choice = format!("dynamics.integrator={integrator}");
+        let json = solve_json(&["swing", "--set", &choice, "--set", "dynamics.duration=0.5"]);
+        assert_eq!(json["status"], "finished");
+        assert_eq!((json["integrator"].as_str(), json["steps"].as_u64()), (Some(integrator), Some(30)));
+        assert!((json["time"].as_f64().unwrap() - 0.5).abs() < 1e-9);
+        let energy = |key: &str| json["energy"][key].as_f64().unwrap_or_else(|| panic!("{integrator}: {key}"));
+        let lost = energy("dissipated") + energy("integrator") - energy("pulses") - energy("hands");
+        let sum = energy("kinetic") + energy("elastic") - energy("external") + lost;
+        assert!(sum.abs() < 1e-9 * energy("external"), "{integrator}: the sum of the books is {sum} J");
+        assert!(json["energy_drift"].as_f64().unwrap() < 1e-6);
+        assert!(json["momentum"]["linear"][1].as_f64().unwrap() < 0.0 && json["momentum"]["angular"].is_number());
+    }
+    let explicit = ["solve", "swing", "--json", "--set", "dynamics.integrator=symplectic-euler"];
+    let too_long = warpbeam(&explicit);
+    let json: serde_json::Value = serde_json::from_str(&stdout(&too_long)).unwrap();
+    assert_eq!((too_long.status.code(), json["status"].as_str()), (Some(1), Some("stopped")));
+    assert!(json["critical_step"].as_f64().unwrap() < 1e-3);
 }
 
 #[test]

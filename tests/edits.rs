@@ -86,7 +86,7 @@ fn a_mesh_of_ones_own_survives_every_edit() {
             &|s| s.set_force(0, [0.0, -1.0]).unwrap(),
             &|s| s.material.young *= 2.0,
             &|s| s.solver.method = MethodKind::Warped,
-            &|s| s.loads.push(Load::Moment { edge: "right".to_owned(), moment: 5.0 }),
+            &|s| s.loads.push(Load::moment("right", 5.0)),
             &|s| s.supports.remove(0).fix.clear(),
             &|s| {
                 if let Some(beam) = &mut s.beam {

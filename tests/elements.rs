@@ -9,7 +9,7 @@ use warpbeam::assembly::{Problem, System};
 use warpbeam::element::{QuadraturePoint, warped_strain};
 use warpbeam::material::Lame;
 use warpbeam::rotation::polar;
-use warpbeam::{ElementKind, Load, Material, Place, Plane, Scene};
+use warpbeam::{ElementKind, Load, Material, Plane, Scene};
 
 const X: [[f64; 2]; 3] = [[0.0, 0.0], [2.0, 0.3], [0.4, 1.1]];
 const MOVED: [[f64; 2]; 3] = [[0.1, -0.2], [0.9, 1.7], [-0.8, 0.7]];
@@ -165,14 +165,14 @@ fn dead_force(scene: &Scene) -> Vec<Vector2<f64>> {
 fn loads_on_curved_elements_add_up() {
     let mut scene = common::scene("bracket");
     let area = 1.2 * 0.3 + 0.9 * 0.3 + 0.2 * 0.2 * (1.0 - std::f64::consts::FRAC_PI_4);
-    scene.loads = vec![Load::Gravity { acceleration: [0.0, -9.81] }];
+    scene.loads = vec![Load::gravity([0.0, -9.81])];
     let total = |scene: &Scene| dead_force(scene).iter().sum::<Vector2<f64>>();
     let weight = 9.81 * scene.material.density * scene.material.thickness * area;
     assert!((total(&scene).y + weight).abs() < 1e-4 * weight, "{} {weight}", total(&scene).y);
-    scene.loads = vec![Load::Force { place: Place::from("fillet"), force: [3.0, -4.0] }];
+    scene.loads = vec![Load::force("fillet", [3.0, -4.0])];
     assert!((total(&scene) - Vector2::new(3.0, -4.0)).norm() < 1e-12);
     // A moment needs a straight edge.
-    scene.loads = vec![Load::Moment { edge: "fillet".to_owned(), moment: 1.0 }];
+    scene.loads = vec![Load::moment("fillet", 1.0)];
     let problem = Problem::new(&scene, System::new(&scene).unwrap().into());
     assert!(problem.unwrap_err().to_string().contains("expected a straight edge"));
 }

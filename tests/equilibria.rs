@@ -5,7 +5,7 @@ mod common;
 
 use common::{cantilever, cantilever_table, scene, scene_with, solved};
 use nalgebra::Vector2;
-use warpbeam::{ElementKind, Load, Mesh, MethodKind, Place, Scene, Simulation, Status};
+use warpbeam::{ElementKind, Load, Mesh, MethodKind, Scene, Simulation, Status};
 
 fn tip(simulation: &Simulation) -> Vector2<f64> {
     simulation.solution().probes[0].x
@@ -29,9 +29,9 @@ fn the_reference_table_is_met() {
             // EI = 1e6/12; the weight per length is ρ g with ρ = 1000.
             let per_length = row.alpha * 1e6 / 12.0 / length.powi(3);
             scene.loads = if row.gravity {
-                vec![Load::Gravity { acceleration: (direction * per_length / 1000.0).into() }]
+                vec![Load::gravity((direction * per_length / 1000.0).into())]
             } else {
-                vec![Load::Force { place: Place::from("right"), force: (direction * per_length * length).into() }]
+                vec![Load::force("right", (direction * per_length * length).into())]
             };
             let error = (tip(&solved(&scene)) / length - row.reissner).norm();
             worst[slot] = worst[slot].max(error);

@@ -9,7 +9,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use warpbeam::app::Lab;
-use warpbeam::scene::{Load, MethodKind, Plane, Source};
+use warpbeam::scene::{Analysis, Load, MethodKind, Plane, Source};
 use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::Demand;
 
@@ -102,7 +102,7 @@ fn typed_values_take_effect_also_beyond_the_slider() {
     type_into(&mut harness, "Force", "2e7");
     assert_eq!(force(harness.state()), [0.0, 2e7]);
     type_into(&mut harness, "Gravity", "9.81");
-    assert!(harness.state().scene().loads.contains(&Load::Gravity { acceleration: [0.0, -9.81] }));
+    assert!(harness.state().scene().loads.contains(&Load::gravity([0.0, -9.81])));
     type_into(&mut harness, "Young E", "2 MPa");
     type_into(&mut harness, "Poisson ν", "0.45");
     type_into(&mut harness, "Density ρ", "1200");
@@ -338,14 +338,14 @@ fn results_are_certified_and_compared_with_the_truth() {
     harness.run();
     assert!(harness.state().view_rect().height() < before.height() - 200.0, "no room for the load curve");
     type_into(&mut harness, "Moment", "500");
-    assert!(harness.state().scene().loads.contains(&Load::Moment { edge: "right".to_owned(), moment: 500.0 }));
+    assert!(harness.state().scene().loads.contains(&Load::moment("right", 500.0)));
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
 }
 
 #[test]
 fn every_scene_and_element_can_be_chosen() {
     let mut harness = harness("article");
-    for id in common::scene_ids() {
+    for id in common::ids_of(Analysis::Static) {
         harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
         harness.run();
         harness.get_by_role_and_label(Role::Button, id).click();

@@ -62,8 +62,7 @@ fn pictures_of_extremes_and_of_tiny_views() {
     let mut lab = lab("cantilever");
     for force in [0.0, 1e-9, 9e3, 1e9, 1e15] {
         let mut scene = scene("cantilever");
-        scene.loads =
-            vec![warpbeam::scene::Load::Force { place: warpbeam::scene::Place::from("right"), force: [0.0, -force] }];
+        scene.loads = vec![warpbeam::Load::force("right", [0.0, -force])];
         lab.set_scene(scene).unwrap();
         lab.solve();
         for size in [[1, 1], [40, 300], [400, 40], [500, 400]] {

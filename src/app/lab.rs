@@ -13,11 +13,11 @@ use super::overlay::{self, Overlay};
 use super::panel::{self, PanelInput, PanelState, status_words};
 use super::pointer::{self, Look};
 use super::{help, keys, plot};
-use crate::method::Timings;
 use crate::render::{Camera, Frame, Margins};
-use crate::scene::{self, MethodKind, Scene, SceneError, Source};
+use crate::scene::{self, Analysis, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::{LoadCurve, Reference, Study};
+use crate::timings::Timings;
 
 /// Width of the panel, points.
 pub const PANEL_WIDTH: f32 = 324.0;
@@ -469,6 +469,10 @@ impl Lab {
     }
 
     fn solve_linear(&mut self) {
+        if self.scene.analysis == Analysis::Dynamic {
+            self.linear = None;
+            return;
+        }
         let scene = Scene {
             solver: scene::SolverSettings { method: MethodKind::Linear, ..self.scene.solver.clone() },
             ..self.scene.clone()

@@ -246,20 +246,20 @@ fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
     let view = projection.rect;
     for load in &overlay.scene.loads {
         let (vector, from, label) = match load {
-            Load::Force { place, force } => {
+            Load::Force { place, force, .. } => {
                 let Some(point) = load_point(overlay, place) else {
                     continue;
                 };
                 let magnitude = force[0].hypot(force[1]);
                 (force, projection.point(point), format!("{} N", format::short(magnitude)))
             }
-            Load::Moment { edge, moment } => {
+            Load::Moment { edge, moment, .. } => {
                 if let (Some(point), true) = (load_point(overlay, &Place::from(edge.as_str())), *moment != 0.0) {
                     turning_arrow(painter, projection.point(point), *moment, palette.load, visuals);
                 }
                 continue;
             }
-            Load::Gravity { acceleration } => {
+            Load::Gravity { acceleration, .. } => {
                 let magnitude = acceleration[0].hypot(acceleration[1]);
                 (acceleration, view.right_top() + vec2(-64.0, 30.0), format!("{} m/s²", format::short(magnitude)))
             }

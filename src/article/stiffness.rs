@@ -20,7 +20,7 @@ impl ElementStiffness {
         let mut ke = DMatrix::zeros(2 * N, 2 * N);
         let no_strain = nalgebra::Matrix2::zeros();
         for point in points {
-            point.tangent_blocks(moduli, Rotation::IDENTITY, &no_strain, Tangent::Warped, |a, b, k| {
+            point.tangent_blocks(moduli, Rotation::IDENTITY, &no_strain, Tangent::WARPED, |a, b, k| {
                 let k = nalgebra::Matrix2::from_row_slice(&k);
                 let sum = ke.fixed_view::<2, 2>(2 * a, 2 * b) + k;
                 ke.fixed_view_mut::<2, 2>(2 * a, 2 * b).copy_from(&sum);

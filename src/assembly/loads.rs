@@ -1,19 +1,27 @@
-//! What pulls: dead forces, and moments that turn with their edges.
+//! What pulls: dead forces, and moments that turn with their edges; always, or as pulses in time.
 //!
 //! In the plane such a moment is conservative: its potential is −M θ, θ the angle its edge has turned, and its nodal
 //! forces are M ∇θ.
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{Kinematics, Matrix, System};
-use crate::scene::{Invalid, Load, Material, Place};
+use super::{Edge, Kinematics, Matrix, System};
+use crate::scene::{Invalid, Load, Material, Place, Pulse};
 use crate::state::State;
 
-/// The loads of a scene on its nodes.
+/// Forces on some nodes, N.
+type NodalForces = Vec<(u32, Vector2<f64>)>;
+
+/// The loads of a scene on its nodes, at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loads {
-    dead: Vec<Vector2<f64>>,
+    /// Dead forces that act always, N.
+    constant: Vec<Vector2<f64>>,
+    /// Dead forces in time.
+    pulses: Vec<(Pulse, NodalForces)>,
     moments: Vec<Moment>,
+    /// All dead forces at the present time, N.
+    dead: Vec<Vector2<f64>>,
 }
 
 /// A moment on a straight edge.
@@ -21,55 +29,117 @@ pub struct Loads {
 struct Moment {
     /// The edge's number.
     edge: usize,
-    /// N m, positive counter-clockwise.
+    /// Its full size, N m, positive counter-clockwise.
     moment: f64,
+    pulse: Option<Pulse>,
+    /// Its size at the present time, N m.
+    now: f64,
     /// Where the blocks of its tangent go.
     slots: Vec<u32>,
 }
 
 impl Loads {
-    /// The loads of a scene on a system that couples the edges of its moments.
+    /// The loads of a scene on a system that couples the edges of its moments, at time 0.
     pub(super) fn new(loads: &[Load], material: &Material, system: &System) -> Result<Self, Invalid> {
-        let mut dead = vec![Vector2::zeros(); system.mesh().nodes().len()];
-        let mut moments = Vec::new();
+        let nodes = system.mesh().nodes().len();
+        let mut result = Self {
+            constant: vec![Vector2::zeros(); nodes],
+            pulses: Vec::new(),
+            moments: Vec::new(),
+            dead: vec![Vector2::zeros(); nodes],
+        };
         for (i, load) in loads.iter().enumerate() {
             let key = format!("load.{i}");
-            match load {
-                Load::Force { place: Place::At(at), force } => {
-                    dead[system.mesh().nearest_node((*at).into()) as usize] += Vector2::from(*force);
+            let (forces, pulse): (NodalForces, _) = match load {
+                Load::Force { place: Place::At(at), force, pulse } => {
+                    (vec![(system.mesh().nearest_node((*at).into()), Vector2::from(*force))], pulse)
                 }
-                Load::Force { place: Place::Edge(name), force } => {
-                    for &(node, weight) in system.edge(name, &key)?.1.weights() {
-                        dead[node as usize] += Vector2::from(*force) * weight;
-                    }
+                Load::Force { place: Place::Edge(name), force, pulse } => {
+                    let weights = system.edge(name, &key)?.1.weights();
+                    (weights.iter().map(|&(node, weight)| (node, Vector2::from(*force) * weight)).collect(), pulse)
                 }
-                Load::Gravity { acceleration } => {
+                Load::Gravity { acceleration, pulse } => {
                     let per_area = Vector2::from(*acceleration) * material.area_density();
-                    dead.iter_mut().zip(system.nodal_areas()).for_each(|(f, area)| *f += per_area * *area);
+                    ((0..).zip(system.nodal_areas().iter().map(|area| per_area * *area)).collect(), pulse)
                 }
-                Load::Moment { edge: name, moment } => {
+                Load::Moment { edge: name, moment, pulse } => {
                     let (edge, straight) = system.edge(name, &key)?;
                     if !straight.is_straight() {
                         let message = format!("expected a straight edge, got \"{name}\", which is not");
                         return Err(Invalid::new(format!("{key}.edge"), message));
                     }
                     let nodes: Vec<u32> = straight.arms().iter().map(|&(node, _)| node).collect();
-                    moments.push(Moment { edge, moment: *moment, slots: system.pattern().block_slots(&nodes) });
+                    let slots = system.pattern().block_slots(&nodes);
+                    result.moments.push(Moment { edge, moment: *moment, pulse: *pulse, now: 0.0, slots });
+                    continue;
                 }
+            };
+            match pulse {
+                Some(pulse) => result.pulses.push((*pulse, forces)),
+                None => forces.into_iter().for_each(|(node, f)| result.constant[node as usize] += f),
             }
         }
-        Ok(Self { dead, moments })
+        result.dead.copy_from_slice(&result.constant);
+        result.set_moments(0.0);
+        result.add_pulses(0.0);
+        Ok(result)
     }
 
-    /// Nodal force of the dead loads, N.
+    /// Takes the pulses of another time, s.
+    pub fn set_time(&mut self, time: f64) {
+        if !self.pulses.is_empty() {
+            self.dead.copy_from_slice(&self.constant);
+            self.add_pulses(time);
+        }
+        self.set_moments(time);
+    }
+
+    fn add_pulses(&mut self, time: f64) {
+        for (pulse, forces) in &self.pulses {
+            let factor = pulse.factor(time);
+            forces.iter().for_each(|&(node, f)| self.dead[node as usize] += f * factor);
+        }
+    }
+
+    fn set_moments(&mut self, time: f64) {
+        for moment in &mut self.moments {
+            moment.now = moment.moment * moment.pulse.map_or(1.0, |pulse| pulse.factor(time));
+        }
+    }
+
+    /// When the last pulse is over, s; `None` where there is none.
+    #[must_use]
+    pub fn last_pulse_end(&self) -> Option<f64> {
+        let moments = self.moments.iter().filter_map(|m| m.pulse);
+        self.pulses.iter().map(|(pulse, _)| *pulse).chain(moments).map(|p| p.end()).reduce(f64::max)
+    }
+
+    /// The work of the pulses from one state to another, each at the time it has, J: the mean of the forces at both ends
+    /// times the way.
+    #[must_use]
+    pub(crate) fn pulse_work(&self, [before, after]: [&State; 2]) -> f64 {
+        let mean = |pulse: &Pulse| 0.5 * (pulse.factor(before.time) + pulse.factor(after.time));
+        let way = |node: u32| after.displacement[node as usize] - before.displacement[node as usize];
+        let forces = self
+            .pulses
+            .iter()
+            .map(|(pulse, forces)| mean(pulse) * forces.iter().map(|&(node, f)| f.dot(&way(node))).sum::<f64>());
+        let moments = self.moments.iter().filter_map(|m| {
+            let pulse = m.pulse.as_ref()?;
+            Some(mean(pulse) * m.moment * (after.turns[m.edge] - before.turns[m.edge]))
+        });
+        forces.chain(moments).sum()
+    }
+
+    /// Nodal force of the dead loads at present, N.
     #[must_use]
     pub fn dead_force(&self) -> &[Vector2<f64>] {
         &self.dead
     }
 
-    /// Number of every edge that carries a moment, with the moment, N m.
+    /// Number of every edge that carries a moment, with its size at present, N m.
     pub fn moments(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.moments.iter().map(|m| (m.edge, m.moment))
+        self.moments.iter().map(|m| (m.edge, m.now))
     }
 
     /// The external nodal force f_ext at this load factor, N. Linear theory knows the directions at rest only.
@@ -81,17 +151,47 @@ impl Loads {
         factor: f64,
         force: &mut [Vector2<f64>],
     ) {
+        self.sum(system, factor, force, |edge, _| {
+            turn_gradient(match kinematics {
+                Kinematics::Corotated => edge.direction(u),
+                Kinematics::Linear => edge.direction_at_rest(),
+            })
+        });
+    }
+
+    /// The discrete gradient of the loads between two states, N: its work from one to the other is exactly that of the
+    /// loads (Gonzalez 1996, for the angle of an edge).
+    pub fn force_between(&self, system: &System, [before, after]: [&State; 2], force: &mut [Vector2<f64>]) {
+        /// Relative size of a turn whose angle is all rounding.
+        const NO_TURN: f64 = 1e-10;
+        self.sum(system, 1.0, force, |edge, number| {
+            let (d0, d1) = (edge.direction(&before.displacement), edge.direction(&after.displacement));
+            let (mean, change) = ((d0 + d1) * 0.5, d1 - d0);
+            let gradient = turn_gradient(mean);
+            let turned = after.turns[number] - before.turns[number];
+            if change.norm() > NO_TURN * mean.norm() {
+                gradient + change * ((turned - gradient.dot(&change)) / change.norm_squared())
+            } else {
+                gradient
+            }
+        });
+    }
+
+    /// Dead forces, and moments along the gradients of their edges' turns with respect to their directions.
+    fn sum(
+        &self,
+        system: &System,
+        factor: f64,
+        force: &mut [Vector2<f64>],
+        gradient: impl Fn(&Edge, usize) -> Vector2<f64>,
+    ) {
         for (f, dead) in force.iter_mut().zip(&self.dead) {
             *f = dead * factor;
         }
-        for Moment { edge, moment, .. } in &self.moments {
-            let edge = &system.edges()[*edge];
-            let d = match kinematics {
-                Kinematics::Corotated => edge.direction(u),
-                Kinematics::Linear => edge.direction_at_rest(),
-            };
+        for Moment { edge: number, now, .. } in &self.moments {
+            let edge = &system.edges()[*number];
             // M ∇θ. Where the edge has shrunk to a point θ has no gradient, and none is added.
-            let turned = Vector2::new(-d.y, d.x) * (factor * moment / d.norm_squared());
+            let turned = gradient(edge, *number) * (factor * now);
             if turned.iter().all(|v| v.is_finite()) {
                 for &(node, c) in edge.arms() {
                     force[node as usize] += turned * c;
@@ -102,35 +202,29 @@ impl Loads {
 
     /// Adds the derivative of −f_ext at this load factor: the Hessian of the moments' potential, N/m.
     pub fn add_stiffness(&self, system: &System, u: &[Vector2<f64>], factor: f64, matrix: &mut Matrix) {
-        for Moment { edge, moment, slots } in &self.moments {
+        for Moment { edge, now, slots, .. } in &self.moments {
             let edge = &system.edges()[*edge];
             let d = edge.direction(u);
             let (p, q) = (2.0 * d.x * d.y, d.y * d.y - d.x * d.x);
-            let hessian = Matrix2::new(p, q, q, -p) * (-factor * moment / d.norm_squared().powi(2));
-            if !hessian.iter().all(|v| v.is_finite()) {
-                continue;
-            }
-            let mut slots = slots.iter();
-            let values = matrix.slots();
-            let mut add = |value: f64| {
-                if let Some(&slot) = slots.next() {
-                    values[slot as usize] += value;
-                }
-            };
-            for (i, &(_, a)) in edge.arms().iter().enumerate() {
-                for &(_, b) in &edge.arms()[..i] {
-                    [hessian.m11, hessian.m12, hessian.m21, hessian.m22].into_iter().for_each(|h| add(h * a * b));
-                }
-                [hessian.m11, hessian.m21, hessian.m22].into_iter().for_each(|h| add(h * a * a));
+            let hessian = Matrix2::new(p, q, q, -p) * (-factor * now / d.norm_squared().powi(2));
+            if hessian.iter().all(|v| v.is_finite()) {
+                matrix.add_blocks(slots, edge.arms(), &hessian);
             }
         }
     }
 
-    /// Potential of the loads relative to rest at this load factor, J: minus the work they have done at full size.
+    /// Potential of the loads relative to rest at this load factor, J: minus the work that those that act always have
+    /// done at full size. Pulses have none.
     #[must_use]
     pub fn potential(&self, state: &State, factor: f64) -> f64 {
-        let dead: f64 = self.dead.iter().zip(&state.displacement).map(|(f, u)| f.dot(u)).sum();
-        let moments: f64 = self.moments.iter().map(|m| m.moment * state.turns[m.edge]).sum();
+        let dead: f64 = self.constant.iter().zip(&state.displacement).map(|(f, u)| f.dot(u)).sum();
+        let always = self.moments.iter().filter(|m| m.pulse.is_none());
+        let moments: f64 = always.map(|m| m.moment * state.turns[m.edge]).sum();
         -factor * (dead + moments)
     }
+}
+
+/// ∇θ with respect to an edge's direction d: a quarter turn of it over its squared length.
+fn turn_gradient(d: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-d.y, d.x) / d.norm_squared()
 }

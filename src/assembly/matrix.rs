@@ -1,5 +1,7 @@
 //! The values of a sparse symmetric matrix.
 
+use nalgebra::Matrix2;
+
 use super::Pattern;
 
 /// Values of a symmetric matrix over the free unknowns: the lower triangle, in the order of a [`Pattern`].
@@ -30,6 +32,28 @@ impl Matrix {
     /// Where sums are made: slots are those of [`Pattern::slot`].
     pub(crate) fn slots(&mut self) -> &mut [f64] {
         &mut self.values
+    }
+
+    /// Adds wᵢ wⱼ B for weighted nodes i, j, where [`Pattern::block_slots`] says; B is symmetric.
+    pub(super) fn add_blocks(&mut self, slots: &[u32], weights: &[(u32, f64)], block: &Matrix2<f64>) {
+        let mut slots = slots.iter();
+        let mut add = |value: f64| {
+            if let Some(&slot) = slots.next() {
+                self.values[slot as usize] += value;
+            }
+        };
+        for (i, &(_, a)) in weights.iter().enumerate() {
+            for &(_, b) in &weights[..i] {
+                [block.m11, block.m12, block.m21, block.m22].into_iter().for_each(|v| add(v * a * b));
+            }
+            [block.m11, block.m21, block.m22].into_iter().for_each(|v| add(v * a * a));
+        }
+    }
+
+    /// The diagonal.
+    pub(crate) fn diagonal<'a>(&'a self, pattern: &'a Pattern) -> impl Iterator<Item = f64> + 'a {
+        // Rows are sorted, so that the diagonal comes first in every column of the lower triangle.
+        pattern.column_starts()[..pattern.dofs()].iter().map(|&start| self.values[start])
     }
 
     /// y = K x.

@@ -6,7 +6,9 @@
 //! - [`Problem`]: a system with its material, loads and probes; forces, tangents and energies of a state.
 
 mod edge;
+mod hand;
 mod loads;
+mod mass;
 mod matrix;
 mod pattern;
 mod probe;
@@ -15,7 +17,9 @@ mod supports;
 mod system;
 
 pub use edge::{Edge, NodeWeights};
+pub use hand::Hand;
 pub use loads::Loads;
+pub use mass::Mass;
 pub use matrix::Matrix;
 pub use pattern::Pattern;
 pub use probe::NodalProbe;

@@ -104,6 +104,11 @@ impl Pattern {
         u.iter().zip(&self.mask).all(|(u, m)| (m.x > 0.0 || u.x == 0.0) && (m.y > 0.0 || u.y == 0.0))
     }
 
+    /// Sets the fixed components of a nodal vector to zero.
+    pub fn stop_fixed(&self, nodal: &mut [Vector2<f64>]) {
+        nodal.iter_mut().zip(&self.mask).for_each(|(v, m)| v.component_mul_assign(m));
+    }
+
     /// Takes a nodal vector's free components.
     pub fn restrict(&self, nodal: &[Vector2<f64>], free: &mut [f64]) {
         for (value, &unknown) in free.iter_mut().zip(&self.free) {
@@ -157,7 +162,7 @@ impl Pattern {
     }
 
     /// Where the entry of two unknowns is; the slot after the last where one is fixed.
-    fn slot(&self, i: u32, j: u32) -> u32 {
+    pub(super) fn slot(&self, i: u32, j: u32) -> u32 {
         let (i, j) = (self.free_of[i as usize], self.free_of[j as usize]);
         if i == FIXED || j == FIXED {
             return self.entries() as u32;

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::{Kinematics, Loads, Matrix, NodalProbe, System, SystemError};
-use crate::element::{MatrixSum, Tangent};
+use super::{Hand, Kinematics, Loads, Matrix, NodalProbe, System, SystemError};
+use crate::element::{Elements, MatrixSum, Tangent};
+use crate::material::Lame;
 use crate::scene::{Load, Material, Scene};
 use crate::state::State;
 
@@ -18,10 +19,11 @@ pub struct Problem {
     scene_loads: Vec<Load>,
     loads: Loads,
     probes: Vec<NodalProbe>,
+    hand: Option<Hand>,
 }
 
-/// What an edit has changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What an edit has changed, each more than the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Change {
     /// At most loads and probes: forces within the body are what they were.
     Loads,
@@ -86,10 +88,11 @@ impl Problem {
             loads: Loads::new(&scene.loads, &scene.material, &system)?,
             probes: NodalProbe::of(&scene.probes, &system)?,
             system,
+            hand: None,
         })
     }
 
-    /// Takes another scene on, at the price of what has changed.
+    /// Takes another scene on, at the price of what has changed. A hand keeps its hold where the mesh is kept.
     ///
     /// # Errors
     /// As [`Self::new`]; the problem is unchanged then.
@@ -122,6 +125,11 @@ impl Problem {
             self.scene_loads.clone_from(&scene.loads);
             self.loads = loads;
         }
+        self.hand = match change {
+            Change::Mesh => None,
+            Change::Unknowns => self.hand.as_ref().map(|hand| hand.adapt(&system)),
+            Change::Stiffness | Change::Loads => self.hand.take(),
+        };
         self.system = system;
         self.material = scene.material;
         Ok(change)
@@ -145,6 +153,24 @@ impl Problem {
         &self.loads
     }
 
+    /// The hand that holds the body, if one does.
+    #[must_use]
+    pub fn hand(&self) -> Option<&Hand> {
+        self.hand.as_ref()
+    }
+
+    pub(crate) fn hand_mut(&mut self) -> &mut Option<Hand> {
+        &mut self.hand
+    }
+
+    /// Takes loads and pointer to another time, s.
+    pub(crate) fn set_time(&mut self, time: f64) {
+        self.loads.set_time(time);
+        if let Some(hand) = &mut self.hand {
+            hand.set_time(time);
+        }
+    }
+
     /// What is measured.
     #[must_use]
     pub fn probes(&self) -> &[NodalProbe] {
@@ -157,30 +183,62 @@ impl Problem {
     /// f_int is A x − R K X, the article's system (eq. 2) with everything on one side; written with the strain, so that
     /// it vanishes exactly at rest.
     pub fn linearize(&self, state: &State, forces: &mut Forces, tangent: Option<(Tangent, &mut Matrix)>) {
-        let Forces { internal, magnitude, .. } = forces;
+        self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
+            elements.linearize(moduli, &state.displacement, &state.rotations, force, magnitude, matrix);
+        });
+    }
+
+    /// [`Self::linearize`] with the discrete gradient of the elastic energy between two states; see
+    /// [`Elements::linearize_between`].
+    pub(crate) fn linearize_between(
+        &self,
+        states: [&State; 2],
+        forces: &mut Forces,
+        tangent: Option<(Tangent, &mut Matrix)>,
+    ) {
+        let states = states.map(|state| (&*state.displacement, &*state.rotations));
+        self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
+            elements.linearize_between(moduli, states, force, magnitude, matrix);
+        });
+    }
+
+    fn sweep(
+        &self,
+        Forces { internal, magnitude, .. }: &mut Forces,
+        tangent: Option<(Tangent, &mut Matrix)>,
+        work: impl FnOnce(&dyn Elements, Lame, &mut [Vector2<f64>], &mut [Vector2<f64>], Option<MatrixSum<'_>>),
+    ) {
         internal.fill(Vector2::zeros());
         magnitude.fill(Vector2::zeros());
         let matrix = tangent.map(|(tangent, matrix)| {
             matrix.clear();
             MatrixSum { tangent, slots: self.system.slots(), values: matrix.slots() }
         });
-        let State { displacement, rotations, .. } = state;
-        self.system.elements().linearize(
-            self.material.membrane(),
-            displacement,
-            rotations,
-            internal,
-            magnitude,
-            matrix,
-        );
+        work(self.system.elements(), self.material.membrane(), internal, magnitude, matrix);
     }
 
-    /// f_ext and the residual force beside the internal force of the last [`Self::linearize`]; returns the relative
-    /// residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ over the free unknowns. Where the elements carry nothing yet it is relative
-    /// to the load.
+    /// Adds to a tangent of the elements, N/m, what loads at this load factor have to do with the displacement of a body
+    /// at rest: a hand's spring where A is in it, moments' own part where it is exact.
+    pub(crate) fn add_load_stiffness(&self, state: &State, tangent: Tangent, load_factor: f64, matrix: &mut Matrix) {
+        if tangent.is_exact() {
+            let factor = load_factor * tangent.geometric;
+            self.loads.add_stiffness(&self.system, &state.displacement, factor, matrix);
+        }
+        if let Some(hand) = self.hand.as_ref().filter(|_| tangent.warped != 0.0) {
+            let (u, v) = (hand.mean(&state.displacement), hand.target_velocity());
+            hand.add_stiffness(u, v, 0.0, load_factor * tangent.warped, matrix);
+        }
+    }
+
+    /// f_ext and the residual force beside the internal force of the last [`Self::linearize`], the body at rest; returns
+    /// the relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ over the free unknowns. Where the elements carry nothing yet it is
+    /// relative to the load.
     pub fn balance(&self, state: &State, kinematics: Kinematics, load_factor: f64, forces: &mut Forces) -> f64 {
         let Forces { internal, magnitude, external, residual } = forces;
         self.loads.force(&self.system, &state.displacement, kinematics, load_factor, external);
+        if let Some(hand) = &self.hand {
+            hand.add_force(hand.force_at_rest(&state.displacement) * load_factor, external);
+        }
         for (residual, (external, internal)) in residual.iter_mut().zip(external.iter().zip(internal)) {
             *residual = *external - *internal;
         }
@@ -198,9 +256,10 @@ impl Problem {
         self.system.elements().energy(self.material.membrane(), &state.displacement, &state.rotations)
     }
 
-    /// Elastic energy and the potential of the loads at this load factor, J: what an equilibrium makes stationary.
+    /// Elastic energy and the potential of loads and hand at this load factor, J: what an equilibrium makes stationary.
     #[must_use]
     pub fn energy(&self, state: &State, load_factor: f64) -> f64 {
-        self.elastic_energy(state) + self.loads.potential(state, load_factor)
+        let hand = self.hand.as_ref().map_or(0.0, |hand| hand.energy(&state.displacement));
+        self.elastic_energy(state) + self.loads.potential(state, load_factor) + load_factor * hand
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::edge::no_such_edge;
 use crate::mesh::Mesh;
-use crate::scene::{Axis, Invalid, Place, Support};
+use crate::scene::{Analysis, Axis, Invalid, Place, Support};
 
 /// The unknowns (2 · node + axis) that supports fix.
 pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bool>, Invalid> {
@@ -29,29 +29,34 @@ pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bo
     if fixed.iter().all(|&f| f) {
         return Err(Invalid::new("support", "expected some node that can move, got supports that fix them all"));
     }
-    if free_rigid_motion(mesh, &fixed) {
-        return Err(Invalid::new(
-            "support",
-            "expected supports that hold the body in both directions and against turning: it can still move freely",
-        ));
-    }
     Ok(fixed)
 }
 
-/// Whether a translation or a small rotation is left by the fixed unknowns: the Gram matrix of the three rigid modes,
-/// restricted to them, is singular.
-fn free_rigid_motion(mesh: &Mesh, fixed: &[bool]) -> bool {
+/// Refuses to look for the equilibrium of a body that is not held; in motion it may be free.
+pub(super) fn check_held(held: bool, analysis: Analysis) -> Result<(), Invalid> {
+    if held || analysis == Analysis::Dynamic {
+        return Ok(());
+    }
+    Err(Invalid::new(
+        "support",
+        "expected supports that hold the body in both directions and against turning: it can still move freely",
+    ))
+}
+
+/// Whether the fixed unknowns leave no translation and no small rotation: the Gram matrix of the three rigid modes,
+/// restricted to them, is regular.
+pub(super) fn is_held(mesh: &Mesh, fixed: &[bool]) -> bool {
     const SINGULAR: f64 = 1e-12;
     let nodes = || mesh.nodes().iter().zip(fixed.chunks_exact(2)).filter(|(_, fixed)| fixed.contains(&true));
     // Seen from the fixed nodes themselves: a clamp stays a clamp however long the body.
     let count = nodes().count();
     if count == 0 {
-        return true;
+        return false;
     }
     let centre = nodes().map(|(x, _)| x).sum::<Vector2<f64>>() / count as f64;
     let size = nodes().map(|(x, _)| (x - centre).norm()).fold(0.0, f64::max);
     if size == 0.0 {
-        return true;
+        return false;
     }
     let mut gram = Matrix3::zeros();
     for (node, fixed) in nodes() {
@@ -63,5 +68,5 @@ fn free_rigid_motion(mesh: &Mesh, fixed: &[bool]) -> bool {
         }
     }
     let eigenvalues = gram.symmetric_eigenvalues();
-    eigenvalues.min() <= SINGULAR * eigenvalues.max()
+    eigenvalues.min() > SINGULAR * eigenvalues.max()
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::edge::no_such_edge;
-use super::supports::fixed_unknowns;
+use super::supports::{check_held, fixed_unknowns, is_held};
 use super::{Edge, Pattern};
 use crate::element::Elements;
 use crate::mesh::Mesh;
@@ -87,6 +87,8 @@ impl Body {
 pub struct System {
     body: Arc<Body>,
     supports: Vec<Support>,
+    /// Whether the supports leave no rigid motion.
+    held: bool,
     /// Numbers of the edges whose nodes are coupled, for moments.
     coupled: Vec<usize>,
     pattern: Pattern,
@@ -146,6 +148,7 @@ impl System {
         }
         let couples = || self.moment_edges(scene).iter().all(|edge| self.coupled.contains(edge));
         if scene.supports == self.supports && couples() {
+            check_held(self.held, scene.analysis)?;
             return Ok(self.clone());
         }
         Ok(Arc::new(Self::of_body(self.body.clone(), scene)?))
@@ -153,6 +156,8 @@ impl System {
 
     fn of_body(body: Arc<Body>, scene: &Scene) -> Result<Self, SystemError> {
         let fixed = fixed_unknowns(&scene.supports, &body.mesh)?;
+        let held = is_held(&body.mesh, &fixed);
+        check_held(held, scene.analysis)?;
         let coupled = moment_edges(&body.edges, scene);
         let groups: Vec<Vec<u32>> =
             coupled.iter().map(|&edge| body.edges[edge].weights().iter().map(|&(node, _)| node).collect()).collect();
@@ -160,7 +165,7 @@ impl System {
         let slots = body.mesh.elements().flat_map(|nodes| pattern.block_slots(nodes)).collect();
         let symbolic = Symbolic::new(pattern.column_starts(), pattern.row_indices())
             .map_err(|_| SystemError::TooLarge { unknowns: pattern.dofs() })?;
-        Ok(Self { body, supports: scene.supports.clone(), coupled, pattern, slots, symbolic })
+        Ok(Self { body, supports: scene.supports.clone(), held, coupled, pattern, slots, symbolic })
     }
 
     fn moment_edges(&self, scene: &Scene) -> Vec<usize> {

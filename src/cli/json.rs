@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use serde_json::{Value, json};
 
 use crate::scene::Scene;
-use crate::simulation::{ProbeResult, Solution};
+use crate::simulation::{MotionResult, ProbeResult, Solution};
 use crate::study::{ProbeTruth, Reference};
 
 /// A result.
@@ -34,8 +34,8 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
             "elastic": number(solution.energy.elastic),
             "external": number(solution.energy.external),
             // A body at rest has neither.
-            "kinetic": null,
-            "dissipated": null,
+            "kinetic": solution.motion.map(|m| number(m.ledger.kinetic)),
+            "dissipated": solution.motion.map(|m| number(m.ledger.dissipated)),
         },
         "reaction": { "force": pair(solution.reaction.force), "moment": number(solution.reaction.moment) },
         "time_us": {
@@ -55,7 +55,26 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
             "factorizations": auto.factorizations,
         });
     }
+    if let Some(motion) = &solution.motion {
+        add_motion(&mut object, scene, motion);
+    }
     format!("{object:#}\n")
+}
+
+/// What the object of a body in motion has beside.
+fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
+    let MotionResult { time, counts, ledger, momentum, critical_step, .. } = motion;
+    object["integrator"] = json!(scene.dynamics.integrator.id());
+    object["time"] = number(*time);
+    object["steps"] = json!(counts.steps);
+    object["halvings"] = json!(counts.halvings);
+    object["critical_step"] = critical_step.map_or(Value::Null, number);
+    object["energy_drift"] = number(ledger.drift());
+    object["momentum"] = json!({ "linear": pair(momentum.linear), "angular": number(momentum.angular) });
+    let energy = &mut object["energy"];
+    energy["integrator"] = number(ledger.integrator);
+    energy["pulses"] = number(ledger.pulses);
+    energy["hands"] = number(ledger.hands);
 }
 
 fn probe(result: &ProbeResult, truth: Option<&ProbeTruth>) -> Value {

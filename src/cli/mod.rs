@@ -103,5 +103,5 @@ fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
 }
 
 fn exit_code(status: &Status) -> ExitCode {
-    if *status == Status::Converged { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) }
+    if status.is_success() { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) }
 }

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 
 use crate::method::{Certificate, rho_words};
-use crate::scene::{Scene, registry};
-use crate::simulation::{Solution, Status};
+use crate::scene::{Analysis, MethodKind, Scene, registry};
+use crate::simulation::{MotionResult, Solution, Status};
 use crate::study::{LoadCurve, Reference};
 use crate::words::count;
 
@@ -31,19 +31,28 @@ pub(super) fn scenes() -> String {
 /// A result.
 pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>) -> String {
     let mut text = format!(
-        "{}: element {}, method {}, {} unknowns\n",
+        "{}: element {}, {}, {} unknowns\n",
         scene.name,
         scene.element().id(),
-        scene.solver.method.id(),
+        solver_words(scene),
         solution.dofs
     );
-    let word = solution.status.id().replace('_', " ");
-    let _ = writeln!(
-        text,
-        "{word} after {}, relative residual {:.2e}",
-        count(solution.iterations, "iteration"),
-        solution.residual
-    );
+    let word = solution.status.word();
+    let _ = match &solution.motion {
+        Some(MotionResult { time, counts, .. }) => writeln!(
+            text,
+            "{word} at {time:.6} s after {} of {:.6} s and {}",
+            count(counts.steps, "step"),
+            scene.dynamics.time_step,
+            count(counts.solves, "solve"),
+        ),
+        None => writeln!(
+            text,
+            "{word} after {}, relative residual {:.2e}",
+            count(solution.iterations, "iteration"),
+            solution.residual
+        ),
+    };
     if let Some(reason) = solution.status.failure() {
         let _ = writeln!(text, "  {reason}");
     }
@@ -96,6 +105,9 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         "elastic energy {:.6} J, work of the loads {:.6} J",
         solution.energy.elastic, solution.energy.external
     );
+    if let Some(motion) = &solution.motion {
+        text.push_str(&books(motion));
+    }
     let time = &solution.time;
     let us = |time: std::time::Duration| time.as_secs_f64() * 1e6;
     let _ = writeln!(
@@ -107,6 +119,43 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         us(time.factorize),
         us(time.solve)
     );
+    text
+}
+
+/// What finds the state: a method, or an integrator with its theory where that is not the corotational one.
+fn solver_words(scene: &Scene) -> String {
+    match scene.analysis {
+        Analysis::Static => format!("method {}", scene.solver.method.id()),
+        Analysis::Dynamic if scene.solver.method == MethodKind::Linear => {
+            format!("integrator {}, linear theory", scene.dynamics.integrator.id())
+        }
+        Analysis::Dynamic => format!("integrator {}", scene.dynamics.integrator.id()),
+    }
+}
+
+/// Where the energy of a motion went, and its momentum.
+fn books(motion: &MotionResult) -> String {
+    let MotionResult { counts, ledger, momentum, critical_step, .. } = motion;
+    let mut text = format!(
+        "kinetic energy {:.6} J, potential of the loads {:.6} J, dissipated {:.6} J, put in by pulses {:.6} J\n\
+         lost by the integrator {:.6} J: energy drift {:.2e} of the largest kinetic energy\n\
+         momentum ({:.6}, {:.6}) kg m/s, angular momentum about the origin {:.6} kg m²/s\n",
+        ledger.kinetic,
+        ledger.potential,
+        ledger.dissipated,
+        ledger.pulses,
+        ledger.integrator,
+        ledger.drift(),
+        momentum.linear.x,
+        momentum.linear.y,
+        momentum.angular
+    );
+    if counts.halvings > 0 {
+        let _ = writeln!(text, "{} of a step that did not converge", count(counts.halvings, "halving"));
+    }
+    if let Some(critical) = critical_step {
+        let _ = writeln!(text, "the longest stable step about rest is {critical:.3e} s");
+    }
     text
 }
 
@@ -142,7 +191,7 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     }
     text.push('\n');
     for point in &curve.methods {
-        let word = point.status.id().replace('_', " ");
+        let word = point.status.word();
         let _ =
             writeln!(text, "{:<7} at full load: ({:.4}, {:.4}) m, {word}", point.method.id(), point.tip.x, point.tip.y);
     }

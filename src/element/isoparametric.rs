@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{ElementType, Elements, MatrixSum, StrainVisitor, Tangent, warped_strain};
+use super::{DiscreteGradient, ElementType, Elements, MatrixSum, StrainRate, StrainVisitor, Tangent, warped_strain};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
@@ -82,12 +82,8 @@ impl<const N: usize> QuadraturePoint<N> {
         let Lame { lambda, mu } = moduli;
         let stretch_trace = (2.0 + strain.trace()).max(SMALLEST_STRETCH_TRACE);
         let ratio = (mu + lambda) * strain.trace() / stretch_trace;
-        let (lambda, mu, s) = match tangent {
-            Tangent::Warped => (lambda, mu, 0.0),
-            Tangent::Exact => (lambda, mu, ratio),
-            Tangent::Definite => (lambda, mu, ratio.max(0.0)),
-            Tangent::Geometric => (0.0, 0.0, ratio),
-        };
+        let ratio = if tangent.definite { ratio.max(0.0) } else { ratio };
+        let (lambda, mu, s) = (tangent.warped * lambda, tangent.warped * mu, tangent.geometric * ratio);
         let [axial, lambda, plus, minus] = [lambda + 2.0 * mu, lambda, mu + s, mu - s].map(|v| self.area * v);
         let g = self.gradients.map(|g| r.apply(g));
         for a in 0..N {
@@ -145,21 +141,17 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
         self.elements().zip(r.chunks_exact(Q)).map(|((nodes, points), r)| (gather(nodes, u), points, r))
     }
 
+    /// One sweep: `stress` gives every element's first Piola–Kirchhoff stresses times area, and `tangent` its matrix.
+    #[inline]
     fn sweep(
         &self,
-        moduli: Lame,
-        u: &[Vector2<f64>],
-        r: &[Rotation],
+        mut stress: impl FnMut(usize, &[u32; N], &[QuadraturePoint<N>; Q]) -> [Matrix2<f64>; Q],
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
-        mut tangent: impl FnMut(&[QuadraturePoint<N>; Q], &[Rotation], &[Matrix2<f64>; Q]),
     ) {
-        for ((u, points, r), nodes) in self.turned(u, r).zip(&self.nodes) {
+        for (e, (nodes, points)) in self.elements().enumerate() {
             let mut sum = [Vector2::zeros(); N];
-            let mut strains = [Matrix2::zeros(); Q];
-            for ((point, &r), strain) in points.iter().zip(r).zip(&mut strains) {
-                *strain = warped_strain(r, &point.displacement_gradient(&u));
-                let stress = point.weighted_stress(moduli, r, strain);
+            for (point, stress) in points.iter().zip(stress(e, nodes, points)) {
                 for (sum, g) in sum.iter_mut().zip(&point.gradients) {
                     *sum += stress * g;
                 }
@@ -168,8 +160,32 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
                 force[node as usize] += f;
                 magnitude[node as usize] += f.abs();
             }
-            tangent(points, r, &strains);
         }
+    }
+}
+
+/// Scatters the tangents of elements one after the other.
+struct Scatter<'a, const N: usize> {
+    tangent: Tangent,
+    slots: std::slice::ChunksExact<'a, u32>,
+    values: &'a mut [f64],
+}
+
+impl<'a, const N: usize> Scatter<'a, N> {
+    fn new(MatrixSum { tangent, slots, values }: MatrixSum<'a>) -> Self {
+        Self { tangent, slots: slots.chunks_exact(N * (2 * N + 1)), values }
+    }
+
+    /// Adds the next element's: `seen` are the rotation and the strain of every point.
+    #[inline]
+    fn add(&mut self, points: &[QuadraturePoint<N>], moduli: Lame, seen: &[(Rotation, Matrix2<f64>)]) {
+        let mut sum = [[[0.0; 4]; N]; N];
+        for (point, (r, strain)) in points.iter().zip(seen) {
+            point.tangent_blocks(moduli, *r, strain, self.tangent, |a, b, k| {
+                sum[a][b].iter_mut().zip(k).for_each(|(sum, k)| *sum += k);
+            });
+        }
+        scatter(&sum, self.slots.next().unwrap_or_default(), self.values);
     }
 }
 
@@ -233,19 +249,104 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
     ) {
-        let Some(MatrixSum { tangent, slots, values }) = matrix else {
-            return self.sweep(moduli, u, r, force, magnitude, |_, _, _| {});
-        };
-        let mut slots = slots.chunks_exact(N * (2 * N + 1));
-        self.sweep(moduli, u, r, force, magnitude, |points, r, strains| {
-            let mut sum = [[[0.0; 4]; N]; N];
-            for ((point, &r), strain) in points.iter().zip(r).zip(strains) {
-                point.tangent_blocks(moduli, r, strain, tangent, |a, b, k| {
-                    sum[a][b].iter_mut().zip(k).for_each(|(sum, k)| *sum += k);
-                });
+        let mut scatter = matrix.map(Scatter::<N>::new);
+        let mut r = r.chunks_exact(Q);
+        let stress = |_, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
+            let (u, r) = (gather(nodes, u), r.next().unwrap_or_default());
+            let mut seen = [(Rotation::IDENTITY, Matrix2::zeros()); Q];
+            let mut stresses = [Matrix2::zeros(); Q];
+            for (((point, &r), seen), stress) in points.iter().zip(r).zip(&mut seen).zip(&mut stresses) {
+                *seen = (r, warped_strain(r, &point.displacement_gradient(&u)));
+                *stress = point.weighted_stress(moduli, r, &seen.1);
             }
-            scatter(&sum, slots.next().unwrap_or_default(), values);
-        });
+            if let Some(scatter) = &mut scatter {
+                scatter.add(points, moduli, &seen);
+            }
+            stresses
+        };
+        self.sweep(stress, force, magnitude);
+    }
+
+    /// ψ = μ ‖S − I‖² + λ/2 tr²(S − I) depends on ‖F‖² and r = tr S only, and r² is quadratic in F. So with
+    /// F̄ = (F₀ + F₁)/2, R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁) and t̄ = (r₀ + r₁)/2 − 2 the stress P = 2μ (F̄ − R̄) + λ t̄ R̄ has
+    /// P : (F₁ − F₀) = ψ₁ − ψ₀ exactly, and P F̄ᵀ is symmetric (the idea of Simo and Tarnow 1992 and Gonzalez 2000, in
+    /// closed form for this energy). A is taken at R̄/|R̄|, G at t̄.
+    fn linearize_between(
+        &self,
+        moduli: Lame,
+        [(u0, r0), (u1, r1)]: [(&[Vector2<f64>], &[Rotation]); 2],
+        force: &mut [Vector2<f64>],
+        magnitude: &mut [Vector2<f64>],
+        matrix: Option<MatrixSum<'_>>,
+    ) {
+        let mut scatter = matrix.map(Scatter::<N>::new);
+        let stress = |e: usize, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
+            let (u0, u1) = (gather(nodes, u0), gather(nodes, u1));
+            let mut seen = [(Rotation::IDENTITY, Matrix2::zeros()); Q];
+            let mut stresses = [Matrix2::zeros(); Q];
+            for (q, point) in points.iter().enumerate() {
+                let h = [&u0, &u1].map(|u| point.displacement_gradient(u));
+                let between = DiscreteGradient::new(h, [r0[e * Q + q], r1[e * Q + q]]);
+                seen[q] = (between.rotation, Matrix2::identity() * (0.5 * between.trace));
+                stresses[q] = between.stress(moduli) * point.area;
+            }
+            if let Some(scatter) = &mut scatter {
+                scatter.add(points, moduli, &seen);
+            }
+            stresses
+        };
+        self.sweep(stress, force, magnitude);
+    }
+
+    fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {
+        for (nodes, points) in self.elements() {
+            let own = gather(nodes, u);
+            for point in points {
+                let f = Matrix2::identity() + point.displacement_gradient(&own);
+                let rate = match rate {
+                    StrainRate::Difference(terms) => {
+                        let mut sum = Matrix2::zeros();
+                        for (factor, u) in terms {
+                            let h = point.displacement_gradient(&gather(nodes, u));
+                            sum += (h + h.transpose() + h.transpose() * h) * (0.5 * factor);
+                        }
+                        sum
+                    }
+                    StrainRate::Velocity(v) => {
+                        let rate = f.transpose() * point.displacement_gradient(&gather(nodes, v));
+                        (rate + rate.transpose()) * 0.5
+                    }
+                };
+                let stress = f * moduli.stress(&rate) * point.area;
+                for (&node, g) in nodes.iter().zip(&point.gradients) {
+                    force[node as usize] += stress * g;
+                }
+            }
+        }
+    }
+
+    fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]) {
+        let Lame { lambda, mu } = moduli;
+        for ((nodes, points), slots) in self.elements().zip(slots.chunks_exact(N * (2 * N + 1))) {
+            let own = gather(nodes, u);
+            let mut sum = [[[0.0; 4]; N]; N];
+            for point in points {
+                let f = Matrix2::identity() + point.displacement_gradient(&own);
+                let left = f * f.transpose();
+                // With g = F ∇Nₐ and h = F ∇N_b the block is λ g hᵀ + μ h gᵀ + μ (∇Nₐ·∇N_b) F Fᵀ.
+                let turned = point.gradients.map(|g| f * g);
+                for a in 0..N {
+                    for b in 0..=a {
+                        let (g, h) = (turned[a], turned[b]);
+                        let product = mu * point.gradients[a].dot(&point.gradients[b]);
+                        let block = g * h.transpose() * lambda + h * g.transpose() * mu + left * product;
+                        let rows = [block.m11, block.m12, block.m21, block.m22];
+                        sum[a][b].iter_mut().zip(rows).for_each(|(sum, k)| *sum += k * point.area);
+                    }
+                }
+            }
+            scatter(&sum, slots, values);
+        }
     }
 
     fn energy(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation]) -> f64 {

@@ -9,12 +9,14 @@ use crate::rotation::Rotation;
 use crate::scene::ElementKind;
 
 pub mod cell;
+mod discrete_gradient;
 mod isoparametric;
 mod side;
 mod t3;
 mod t6;
 
 pub use cell::{Cell, Lattice};
+pub use discrete_gradient::DiscreteGradient;
 pub use isoparametric::{Isoparametric, QuadraturePoint};
 pub use side::side_weights;
 
@@ -139,17 +141,32 @@ impl ElementType {
     }
 }
 
-/// Which matrix a sweep adds up beside the force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tangent {
-    /// A = Σ R Ke Rᵀ, the article's matrix: the derivative of the force at fixed rotations.
-    Warped,
+/// Which matrix a sweep adds up beside the force: a sum of A = Σ R Ke Rᵀ and G.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangent {
+    /// Factor of A.
+    pub warped: f64,
+    /// Factor of G.
+    pub geometric: f64,
+    /// Whether G is taken only where it is positive.
+    pub definite: bool,
+}
+
+impl Tangent {
+    /// A, the article's matrix: the derivative of the force at fixed rotations.
+    pub const WARPED: Self = Self { warped: 1.0, geometric: 0.0, definite: false };
     /// A + G: the exact Hessian of the corotated energy.
-    Exact,
+    pub const EXACT: Self = Self { geometric: 1.0, ..Self::WARPED };
     /// A + max(G, 0): positive definite, and its steps descend.
-    Definite,
+    pub const DEFINITE: Self = Self { definite: true, ..Self::EXACT };
     /// G alone.
-    Geometric,
+    pub const GEOMETRIC: Self = Self { warped: 0.0, ..Self::EXACT };
+
+    /// Whether all of G is in it: it belongs together with the loads' own tangent then.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.geometric != 0.0 && !self.definite
+    }
 }
 
 /// Where a sweep adds a matrix.
@@ -162,6 +179,15 @@ pub struct MatrixSum<'a> {
     pub slots: &'a [u32],
     /// The values.
     pub values: &'a mut [f64],
+}
+
+/// How fast Green's strain E = ½ (FᵀF − I) changes, 1/s.
+#[derive(Clone, Copy, Debug)]
+pub enum StrainRate<'a> {
+    /// Σ cᵢ E(uᵢ): the factors (1/s) and displacements (m) of a difference quotient in time.
+    Difference(&'a [(f64, &'a [Vector2<f64>])]),
+    /// sym(Fᵀ ∇v) of a velocity field, m/s.
+    Velocity(&'a [Vector2<f64>]),
 }
 
 /// Receives a quadrature point's number, its displacement gradient H and its strain sym(RᵀF) − I.
@@ -199,6 +225,26 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
     );
+
+    /// One sweep between two states, as [`Self::linearize`]: the discrete gradient of the elastic energy, a force whose
+    /// work from one to the other is exactly the difference of their energies, and that turns no body; and A and G at
+    /// the mean rotation and strain. Half of A + G is about the derivative with respect to the second state.
+    fn linearize_between(
+        &self,
+        moduli: Lame,
+        states: [(&[Vector2<f64>], &[Rotation]); 2],
+        force: &mut [Vector2<f64>],
+        magnitude: &mut [Vector2<f64>],
+        matrix: Option<MatrixSum<'_>>,
+    );
+
+    /// Adds the viscous force Σ ∫ F ℂ[Ė] ∇N dA to `force`, N: `moduli` (N s/m) times a rate Ė of Green's strain, in a
+    /// configuration F that belongs to the displacement `u`. A rigid motion has no such rate.
+    fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]);
+
+    /// Adds to a matrix, with the slots and values of [`MatrixSum`], the derivative of the viscous force with respect to
+    /// the velocities, N s/m: Σ ∫ F ℂ[sym(Fᵀ ∇v)] ∇N dA, positive semidefinite.
+    fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]);
 
     /// Elastic energy Σ ψ dA, J.
     fn energy(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation]) -> f64;

@@ -1,13 +1,12 @@
 //! What an iteration works with, and the step all methods share.
 
-use std::time::{Duration, Instant};
-
 use thiserror::Error;
 
 use crate::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use crate::element::Tangent;
 use crate::solver::{Factor, SolverError};
 use crate::state::State;
+use crate::timings::{Timings, timed};
 
 /// Why an iteration produced no new state.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -19,43 +18,6 @@ pub enum IterationError {
     /// The solution is not finite.
     #[error("the solution is not a finite number")]
     NotFinite,
-}
-
-/// Time spent in each stage of an iteration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Timings {
-    /// Deformation gradients and polar decompositions.
-    pub rotate: Duration,
-    /// Stiffness, forces, residual.
-    pub assemble: Duration,
-    /// Numeric factorization.
-    pub factorize: Duration,
-    /// Forward and back substitution, update.
-    pub solve: Duration,
-}
-
-impl Timings {
-    /// All stages together.
-    #[must_use]
-    pub fn total(&self) -> Duration {
-        self.rotate + self.assemble + self.factorize + self.solve
-    }
-
-    /// Adds other timings, stage by stage.
-    pub fn add(&mut self, other: &Self) {
-        self.rotate += other.rotate;
-        self.assemble += other.assemble;
-        self.factorize += other.factorize;
-        self.solve += other.solve;
-    }
-}
-
-/// Runs `work` and adds the time it took to `stage`.
-pub(crate) fn timed<T>(stage: &mut Duration, work: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
-    let result = work();
-    *stage += start.elapsed();
-    result
 }
 
 /// Memory an iteration works in, made once for a system.
@@ -124,7 +86,7 @@ impl Iteration<'_> {
     }
 
     /// Sees to it that the workspace's matrix is this tangent of the present state at this load factor, the loads' own
-    /// part included where it is exact.
+    /// part included.
     pub(super) fn assemble(&mut self, tangent: Tangent, load_factor: f64) {
         if self.workspace.tangent == Some(tangent) {
             return;
@@ -184,7 +146,7 @@ impl Iteration<'_> {
     }
 }
 
-/// Rotations and forces of a state, and a tangent where one is wanted: the loads' own part included where it is exact.
+/// Forces of a state and a tangent, the loads' own part included.
 pub(crate) fn assemble(
     problem: &Problem,
     state: &State,
@@ -194,9 +156,7 @@ pub(crate) fn assemble(
     load_factor: f64,
 ) {
     problem.linearize(state, forces, Some((tangent, &mut workspace.matrix)));
-    if matches!(tangent, Tangent::Exact | Tangent::Geometric) {
-        problem.loads().add_stiffness(problem.system(), &state.displacement, load_factor, &mut workspace.matrix);
-    }
+    problem.add_load_stiffness(state, tangent, load_factor, &mut workspace.matrix);
     workspace.tangent = Some(tangent);
 }
 

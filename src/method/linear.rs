@@ -37,12 +37,14 @@ impl Method for Linear {
     }
 
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        if !self.factorized {
-            it.assemble(Tangent::Warped, 1.0);
+        let held = it.problem.hand().is_some();
+        if !self.factorized || held {
+            it.assemble(Tangent::WARPED, 1.0);
             it.factorize()?;
-            self.factorized = true;
+            // A hand's tangent is not constant.
+            self.factorized = !held;
         }
-        if !self.solved {
+        if !self.solved && !held {
             // The answer does not depend on where the body was; a large displacement would only round it.
             it.state.displacement.fill(Vector2::zeros());
             it.forces.residual.copy_from_slice(&it.forces.external);

@@ -20,10 +20,10 @@ mod warped;
 
 pub use auto::{AutoReport, Decision};
 pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_words};
-pub use iteration::{Iteration, IterationError, Timings, Tolerances, Workspace};
-pub(crate) use iteration::{measure, timed};
+pub(crate) use iteration::measure;
+pub use iteration::{Iteration, IterationError, Tolerances, Workspace};
+pub use status::Reason;
 pub(crate) use status::is_useful_start;
-pub use status::{Reason, Status};
 
 /// An entry of the registry.
 #[derive(Clone, Copy, Debug)]

@@ -106,9 +106,9 @@ impl Newton {
     /// A step that lowers the energy: on A + G where that is positive definite, else on A + max(G, 0), halved until the
     /// energy falls.
     fn descend(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        it.assemble(Tangent::Exact, self.target);
+        it.assemble(Tangent::EXACT, self.target);
         if it.factorize().is_err() {
-            it.assemble(Tangent::Definite, self.target);
+            it.assemble(Tangent::DEFINITE, self.target);
             it.factorize()?;
         }
         it.solve_for_step()?;
@@ -141,7 +141,7 @@ impl Method for Newton {
     }
 
     fn tangent(&self) -> Option<Tangent> {
-        Some(Tangent::Exact)
+        Some(Tangent::EXACT)
     }
 
     fn load_factor(&self) -> f64 {
@@ -160,7 +160,7 @@ impl Method for Newton {
         if self.descends {
             return self.descend(it);
         }
-        it.assemble(Tangent::Exact, self.target);
+        it.assemble(Tangent::EXACT, self.target);
         it.factorize_symmetric();
         self.last_step = it.step()?;
         Ok(())
@@ -174,7 +174,7 @@ impl Method for Newton {
         }
         let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
         if residual <= enough {
-            it.assemble(Tangent::Exact, self.target);
+            it.assemble(Tangent::EXACT, self.target);
             let stable = it.factorize().is_ok();
             if self.target == 1.0 && (stable || self.descends) {
                 return Verdict::Converged;

@@ -5,43 +5,6 @@ use crate::assembly::System;
 use crate::state::{State, largest};
 use crate::words::count;
 
-/// Where a simulation stands.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub enum Status {
-    /// Not there yet.
-    #[default]
-    Running,
-    /// The residual is below the tolerance.
-    Converged,
-    /// It stopped while still improving, or at the limit of rounding.
-    NotConverged(Reason),
-    /// The iteration does not lead to an equilibrium; the state shown is its last finite one.
-    Diverged(Reason),
-}
-
-impl Status {
-    /// The word in JSON.
-    #[must_use]
-    pub fn id(&self) -> &'static str {
-        match self {
-            Self::Running => "running",
-            Self::Converged => "converged",
-            Self::NotConverged(_) => "not_converged",
-            Self::Diverged(_) => "diverged",
-        }
-    }
-
-    /// Whether it has ended without converging, and why.
-    #[must_use]
-    pub fn failure(&self) -> Option<&Reason> {
-        match self {
-            Self::NotConverged(reason) | Self::Diverged(reason) => Some(reason),
-            Self::Running | Self::Converged => None,
-        }
-    }
-}
-
 /// Why an iteration stopped before it converged.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -61,12 +24,12 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// The status it leads to.
+    /// Whether the iteration leads nowhere; if not it stopped while still improving, or at the limit of rounding.
     #[must_use]
-    pub fn status(self) -> Status {
+    pub fn is_divergence(&self) -> bool {
         match self {
-            Self::IterationLimit(_) | Self::RoundingFloor(_) | Self::NoDescent => Status::NotConverged(self),
-            Self::Stalled(_) | Self::RanAway(_) | Self::Iteration(_) => Status::Diverged(self),
+            Self::IterationLimit(_) | Self::RoundingFloor(_) | Self::NoDescent => false,
+            Self::Stalled(_) | Self::RanAway(_) | Self::Iteration(_) => true,
         }
     }
 }

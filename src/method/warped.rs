@@ -26,7 +26,7 @@ impl Method for Warped {
     }
 
     fn tangent(&self) -> Option<Tangent> {
-        Some(Tangent::Warped)
+        Some(Tangent::WARPED)
     }
 
     fn step_ratio(&self) -> Option<f64> {
@@ -34,7 +34,7 @@ impl Method for Warped {
     }
 
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        it.assemble(Tangent::Warped, 1.0);
+        it.assemble(Tangent::WARPED, 1.0);
         it.factorize()?;
         it.step().map(|step| self.0.steps.stepped(step))
     }

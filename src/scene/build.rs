@@ -1,8 +1,8 @@
 //! Scenes in code: builders and setters with numbers, checked where they are simulated.
 
 use super::{
-    Axis, Beam, Diagonals, ElementKind, Invalid, Load, Material, MethodKind, Place, Plane, Probe, Scene,
-    SolverSettings, Support,
+    Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
+    MethodKind, Place, Plane, Probe, Pulse, Scene, SolverSettings, Start, Support,
 };
 
 impl Scene {
@@ -12,7 +12,7 @@ impl Scene {
         Self {
             name: name.into(),
             about: String::new(),
-            analysis: super::Analysis::default(),
+            analysis: Analysis::default(),
             beam: None,
             mesh: None,
             material: Material::default(),
@@ -20,6 +20,8 @@ impl Scene {
             loads: Vec::new(),
             probes: Vec::new(),
             solver: SolverSettings::default(),
+            dynamics: DynamicsSettings::default(),
+            start: Start::default(),
         }
     }
 
@@ -91,21 +93,60 @@ impl Scene {
     /// Pulled here by a dead force, N.
     #[must_use]
     pub fn force(mut self, place: impl Into<Place>, force: [f64; 2]) -> Self {
-        self.loads.push(Load::Force { place: place.into(), force });
+        self.loads.push(Load::force(place, force));
         self
     }
 
     /// Turned here by a moment, N m, counter-clockwise, that turns with its edge.
     #[must_use]
     pub fn moment(mut self, edge: &str, moment: f64) -> Self {
-        self.loads.push(Load::Moment { edge: edge.to_owned(), moment });
+        self.loads.push(Load::moment(edge, moment));
         self
     }
 
     /// With its weight under this acceleration, m/s².
     #[must_use]
     pub fn gravity(mut self, acceleration: [f64; 2]) -> Self {
-        self.loads.push(Load::Gravity { acceleration });
+        self.loads.push(Load::gravity(acceleration));
+        self
+    }
+
+    /// With the last load as a pulse: times sin²(π (t − start)/duration) within, 0 outside.
+    #[must_use]
+    pub fn pulse(mut self, start: f64, duration: f64) -> Self {
+        match self.loads.last_mut() {
+            Some(Load::Force { pulse, .. } | Load::Moment { pulse, .. } | Load::Gravity { pulse, .. }) => {
+                *pulse = Some(Pulse { start, duration });
+            }
+            None => {}
+        }
+        self
+    }
+
+    /// In motion, with this integrator and time step, s.
+    ///
+    /// ```
+    /// use warpbeam::{IntegratorKind, Scene, Simulation};
+    ///
+    /// let scene = Scene::beam(1.0, 0.1).clamp("left").gravity([0.0, -9.81]).probe("tip", "right");
+    /// let mut swing = Simulation::new(&scene.moving(IntegratorKind::TrBdf2, 1.0 / 60.0))?;
+    /// for _ in 0..30 {
+    ///     swing.step(); // one time step
+    /// }
+    /// assert!(swing.probe("tip").is_some_and(|u| u.y < -0.3));
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
+    #[must_use]
+    pub fn moving(mut self, integrator: IntegratorKind, time_step: f64) -> Self {
+        self.analysis = Analysis::Dynamic;
+        (self.dynamics.integrator, self.dynamics.time_step) = (integrator, time_step);
+        self
+    }
+
+    /// Starting with this velocity, m/s, and angular velocity about the centre of mass, rad/s.
+    #[must_use]
+    pub fn starting(mut self, velocity: [f64; 2], spin: f64) -> Self {
+        self.start = Start { velocity, spin };
         self
     }
 
@@ -146,7 +187,7 @@ impl Scene {
     /// As [`Self::set_force`].
     pub fn set_gravity(&mut self, load: usize, new: [f64; 2]) -> Result<(), Invalid> {
         match self.loads.get_mut(load) {
-            Some(Load::Gravity { acceleration }) => *acceleration = new,
+            Some(Load::Gravity { acceleration, .. }) => *acceleration = new,
             other => return Err(no_such_load(load, "gravity", other.as_deref())),
         }
         Ok(())
@@ -156,7 +197,7 @@ impl Scene {
     pub fn scale_loads(&mut self, factor: f64) {
         for load in &mut self.loads {
             match load {
-                Load::Force { force: v, .. } | Load::Gravity { acceleration: v } => *v = v.map(|v| v * factor),
+                Load::Force { force: v, .. } | Load::Gravity { acceleration: v, .. } => *v = v.map(|v| v * factor),
                 Load::Moment { moment, .. } => *moment *= factor,
             }
         }

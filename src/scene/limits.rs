@@ -81,3 +81,21 @@ pub const MAX_ITERATIONS: Limit = Limit::new("", 1.0, 100_000.0);
 pub const MAX_ERROR_PERCENT: Limit = Limit::new("%", 1e-6, 100.0);
 /// Time a solve may be given.
 pub const BUDGET_MS: Limit = Limit::new("ms", 1e-6, 1e6);
+/// Time step of a dynamic scene.
+pub const TIME_STEP: Limit = Limit::new("s", 1e-9, 1e3);
+/// Duration of a headless run.
+pub const DURATION: Limit = Limit::new("s", 1e-9, 1e6);
+/// Solves a step.
+pub const STEP_ITERATIONS: Limit = Limit::new("", 0.0, 100.0);
+/// Factor of the mass in Rayleigh damping.
+pub const MASS_DAMPING: Limit = Limit::new("1/s", 0.0, 1e6);
+/// Factor of the stiffness in Rayleigh damping.
+pub const STIFFNESS_DAMPING: Limit = Limit::new("s", 0.0, 1e6);
+/// A speed.
+pub const SPEED: Limit = Limit::new("m/s", 0.0, 1e6);
+/// An angular velocity.
+pub const SPIN: Limit = Limit::new("rad/s", -1e6, 1e6);
+/// When a pulse begins.
+pub const PULSE_START: Limit = Limit::new("s", -1e6, 1e6);
+/// How long a pulse lasts.
+pub const PULSE_DURATION: Limit = Limit::new("s", 1e-9, 1e6);

@@ -8,12 +8,14 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 mod build;
+mod dynamics;
 mod error;
 pub mod limits;
 mod open;
 mod place;
 pub mod registry;
 
+pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
 pub use error::{Invalid, SceneError};
 pub use limits::OutOfRange;
 pub use open::{Source, open};
@@ -54,6 +56,12 @@ pub struct Scene {
     /// How the equilibrium is found.
     #[serde(default)]
     pub solver: SolverSettings,
+    /// How time goes on, in dynamic scenes.
+    #[serde(default, skip_serializing_if = "DynamicsSettings::is_default")]
+    pub dynamics: DynamicsSettings,
+    /// How a dynamic scene starts.
+    #[serde(default, skip_serializing_if = "Start::is_rest")]
+    pub start: Start,
 }
 
 /// What is computed.
@@ -64,6 +72,8 @@ pub enum Analysis {
     /// An equilibrium.
     #[default]
     Static,
+    /// A motion.
+    Dynamic,
 }
 
 /// A structured mesh of the rectangle [0, length] × [−height/2, height/2].
@@ -132,7 +142,7 @@ pub struct Material {
     pub young: f64,
     /// Poisson ratio ν.
     pub poisson: f64,
-    /// Density ρ, kg/m³; only gravity reads it.
+    /// Density ρ, kg/m³; gravity and motion read it.
     #[serde(default = "default_density")]
     pub density: f64,
     /// Thickness t out of the plane, m.
@@ -231,8 +241,12 @@ impl Scene {
         check("material.poisson", self.material.plane.poisson_limit(), self.material.poisson)?;
         check("material.density", limits::DENSITY, self.material.density)?;
         check("material.thickness", limits::THICKNESS, self.material.thickness)?;
-        if self.supports.is_empty() {
+        let dynamic = self.analysis == Analysis::Dynamic;
+        if self.supports.is_empty() && !dynamic {
             return Err(Invalid::new("support", "expected at least one [[support]], got none"));
+        }
+        if dynamic && self.material.density == 0.0 {
+            return Err(Invalid::new("material.density", "expected a density above 0: without mass nothing moves"));
         }
         for (i, support) in self.supports.iter().enumerate() {
             let key = format!("support.{i}");
@@ -242,14 +256,29 @@ impl Scene {
             }
         }
         for (i, load) in self.loads.iter().enumerate() {
-            load.validate(&format!("load.{i}"))?;
+            let key = format!("load.{i}");
+            load.validate(&key)?;
+            if load.pulse().is_some() && !dynamic {
+                return Err(Invalid::new(
+                    format!("{key}.pulse"),
+                    "expected analysis = \"dynamic\" beside a pulse in time",
+                ));
+            }
         }
         for (i, probe) in self.probes.iter().enumerate() {
             probe.place.validate(&format!("probe.{i}"))?;
         }
         check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
         check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;
-        check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)
+        check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)?;
+        self.dynamics.validate()?;
+        self.start.validate()?;
+        let given = |key, is_default: bool| {
+            let message = "expected analysis = \"dynamic\" beside it";
+            if dynamic || is_default { Ok(()) } else { Err(Invalid::new(key, message)) }
+        };
+        given("dynamics", self.dynamics.is_default())?;
+        given("start", self.start.is_rest())
     }
 }
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::dynamics::Pulse;
 use super::error::Invalid;
 use super::limits;
 
@@ -120,6 +121,8 @@ pub enum Load {
         place: Place,
         /// Its components, N.
         force: [f64; 2],
+        /// When it pulls; always where there is none.
+        pulse: Option<Pulse>,
     },
     /// A moment, N m, positive counter-clockwise, on a straight edge; it turns with the edge.
     Moment {
@@ -127,26 +130,65 @@ pub enum Load {
         edge: String,
         /// N m.
         moment: f64,
+        /// When it turns; always where there is none.
+        pulse: Option<Pulse>,
     },
     /// The weight of the body under this acceleration, m/s².
     Gravity {
         /// Its components, m/s².
         acceleration: [f64; 2],
+        /// When it acts; always where there is none.
+        pulse: Option<Pulse>,
     },
 }
 
 impl Load {
+    /// A dead force, N, at a place.
+    #[must_use]
+    pub fn force(place: impl Into<Place>, force: [f64; 2]) -> Self {
+        Self::Force { place: place.into(), force, pulse: None }
+    }
+
+    /// A moment, N m, on an edge.
+    #[must_use]
+    pub fn moment(edge: &str, moment: f64) -> Self {
+        Self::Moment { edge: edge.to_owned(), moment, pulse: None }
+    }
+
+    /// The weight of the body under an acceleration, m/s².
+    #[must_use]
+    pub fn gravity(acceleration: [f64; 2]) -> Self {
+        Self::Gravity { acceleration, pulse: None }
+    }
+
+    /// When it acts; always where there is none.
+    #[must_use]
+    pub fn pulse(&self) -> Option<Pulse> {
+        match self {
+            Self::Force { pulse, .. } | Self::Moment { pulse, .. } | Self::Gravity { pulse, .. } => *pulse,
+        }
+    }
+
+    /// Whether it is a moment.
+    #[must_use]
+    pub fn is_moment(&self) -> bool {
+        matches!(self, Self::Moment { .. })
+    }
+
     pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
+        if let Some(pulse) = self.pulse() {
+            pulse.validate(key)?;
+        }
         let check = |name: &str, limit: limits::Limit, value: f64| {
             limit.check(value).map_err(|e| Invalid::new(format!("{key}.{name}"), e.to_string()))
         };
         match self {
-            Self::Force { place, force } => {
+            Self::Force { place, force, .. } => {
                 place.validate(key)?;
                 check("force", limits::FORCE, force[0].hypot(force[1]))
             }
             Self::Moment { moment, .. } => check("moment", limits::MOMENT, *moment),
-            Self::Gravity { acceleration } => {
+            Self::Gravity { acceleration, .. } => {
                 check("acceleration", limits::ACCELERATION, acceleration[0].hypot(acceleration[1]))
             }
         }
@@ -219,6 +261,8 @@ struct LoadTable {
     acceleration: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     moment: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pulse: Option<Pulse>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -233,16 +277,18 @@ impl TryFrom<LoadTable> for Load {
     type Error = TableError;
 
     fn try_from(table: LoadTable) -> Result<Self, TableError> {
-        let LoadTable { kind, edge, at, force, acceleration, moment } = table;
+        let LoadTable { kind, edge, at, force, acceleration, moment, pulse } = table;
         match (kind, force, acceleration, moment) {
-            (LoadKind::Force, Some(force), None, None) => Ok(Self::Force { place: Place::new(edge, at)?, force }),
+            (LoadKind::Force, Some(force), None, None) => {
+                Ok(Self::Force { place: Place::new(edge, at)?, force, pulse })
+            }
             (LoadKind::Force, ..) => Err(TableError::Force),
             (LoadKind::Gravity, None, Some(acceleration), None) if edge.is_none() && at.is_none() => {
-                Ok(Self::Gravity { acceleration })
+                Ok(Self::Gravity { acceleration, pulse })
             }
             (LoadKind::Gravity, ..) => Err(TableError::Gravity),
             (LoadKind::Moment, None, None, Some(moment)) if at.is_none() => {
-                Ok(Self::Moment { edge: edge.ok_or(TableError::Moment)?, moment })
+                Ok(Self::Moment { edge: edge.ok_or(TableError::Moment)?, moment, pulse })
             }
             (LoadKind::Moment, ..) => Err(TableError::Moment),
         }
@@ -251,14 +297,17 @@ impl TryFrom<LoadTable> for Load {
 
 impl From<Load> for LoadTable {
     fn from(load: Load) -> Self {
-        let empty = |kind| Self { kind, edge: None, at: None, force: None, acceleration: None, moment: None };
+        let pulse = load.pulse();
+        let empty = |kind| Self { kind, edge: None, at: None, force: None, acceleration: None, moment: None, pulse };
         match load {
-            Load::Force { place, force } => {
+            Load::Force { place, force, .. } => {
                 let (edge, at) = place.keys();
                 Self { edge, at, force: Some(force), ..empty(LoadKind::Force) }
             }
-            Load::Moment { edge, moment } => Self { edge: Some(edge), moment: Some(moment), ..empty(LoadKind::Moment) },
-            Load::Gravity { acceleration } => Self { acceleration: Some(acceleration), ..empty(LoadKind::Gravity) },
+            Load::Moment { edge, moment, .. } => {
+                Self { edge: Some(edge), moment: Some(moment), ..empty(LoadKind::Moment) }
+            }
+            Load::Gravity { acceleration, .. } => Self { acceleration: Some(acceleration), ..empty(LoadKind::Gravity) },
         }
     }
 }

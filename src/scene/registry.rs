@@ -30,6 +30,12 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
     "column",
     "cook",
     "bracket",
+    "jelly",
+    "swing",
+    "flick",
+    "spin",
+    "sway",
+    "chime",
 ];
 
 /// The mesh files of built-in scenes, as the scenes name them.

@@ -1,27 +1,33 @@
-//! A scene in search of its equilibrium, one [`Simulation::step`] an iteration, and what is known of the result.
+//! A scene at work, one [`Simulation::step`] an iteration on the way to its equilibrium, or a step in time; and what is
+//! known of the result.
 
 use std::sync::Arc;
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
-use crate::assembly::{Change, Forces, Kinematics, Problem, System, SystemError};
+use self::motion::start_of;
+use self::search::Search;
+use crate::assembly::{Change, Forces, Hand, Kinematics, Mass, Matrix, NodalProbe, Problem, System, SystemError};
+use crate::dynamics::{Counts, Ledger, Momentum};
 use crate::element::Tangent;
-use crate::mesh::Mesh;
-use crate::method::{
-    AutoReport, Certificate, Iteration, IterationError, Method, Restart, Timings, Tolerances, Verdict, Workspace,
-    fixed_point_rho, is_stable, is_useful_start, measure, timed,
-};
-use crate::scene::{Invalid, Material, MethodKind, Scene, SolverSettings};
-use crate::solver::SolverError;
-use crate::state::{State, StateError};
+use crate::mesh::{MaterialPoint, Mesh};
+use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
+use crate::scene::{Analysis, Invalid, Material, MethodKind, Scene};
+use crate::solver::{Factor, SolverError};
+use crate::state::{State, StateError, is_finite};
+use crate::timings::Timings;
 
 mod field;
+mod motion;
 mod results;
+mod search;
+mod status;
 
-pub use crate::method::{Reason, Status};
+pub use self::motion::Motion;
 pub use field::Field;
 pub use results::{Deformation, Energy, ProbeResult, Reaction, energy, probe_results, reaction};
+pub use status::Status;
 
 /// Why a scene cannot be simulated.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -69,9 +75,27 @@ pub struct Solution {
     pub time: Timings,
     /// What `auto` skipped; `None` for other methods.
     pub auto: Option<AutoReport>,
+    /// What there is beside of a body in motion.
+    pub motion: Option<MotionResult>,
 }
 
-/// A scene on its way to equilibrium.
+/// The numbers of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MotionResult {
+    /// Time since the start, s.
+    pub time: f64,
+    /// Steps and solves.
+    pub counts: Counts,
+    /// Where the energy has gone.
+    pub ledger: Ledger,
+    /// Momentum, linear and angular.
+    pub momentum: Momentum,
+    /// The longest stable step, s, of an integrator that has one.
+    pub critical_step: Option<f64>,
+}
+
+/// A scene at work: on its way to equilibrium, or in motion.
 ///
 /// ```
 /// use warpbeam::{Scene, Simulation, Status};
@@ -85,28 +109,54 @@ pub struct Solution {
 /// ```
 #[derive(Debug)]
 pub struct Simulation {
+    body: Body,
+    process: Process,
+    status: Status,
+}
+
+/// A scene, its equations, and where the body is.
+#[derive(Debug)]
+struct Body {
     scene: Scene,
     problem: Problem,
-    method: Box<dyn Method>,
     state: State,
-    /// Displacement and turns before the present iteration.
-    previous: (Vec<Vector2<f64>>, Vec<f64>),
-    forces: Forces,
-    workspace: Workspace,
-    residual: f64,
-    iterations: u32,
-    status: Status,
-    certificate: Option<Certificate>,
-    timings: Timings,
-    last_iteration: Timings,
 }
 
-fn tolerances(settings: &SolverSettings) -> Tolerances {
-    Tolerances { residual: settings.tolerance, error: 0.01 * settings.max_error_percent }
+impl Body {
+    /// Whether a solve that starts where the body is has a chance.
+    fn is_useful_start(&self) -> bool {
+        let system = self.problem.system();
+        is_useful_start(system, &self.state) && system.pattern().are_fixed_at_rest(&self.state.displacement)
+    }
 }
+
+/// What a step does.
+#[derive(Debug)]
+enum Process {
+    /// An iteration.
+    Search(Box<Search>),
+    /// A time step.
+    Motion(Box<Motion>),
+}
+
+impl Process {
+    fn new(body: &mut Body) -> Result<Self, SolverError> {
+        Ok(match body.scene.analysis {
+            Analysis::Static => Self::Search(Box::new(Search::new(body)?)),
+            Analysis::Dynamic => Self::Motion(Box::new(Motion::new(body)?)),
+        })
+    }
+}
+
+/// Frequency of a body's mass on the spring of a hand, Hz: firm, and still a spring.
+const HAND_FREQUENCY: f64 = 5.0;
+/// Damping ratio of that vibration.
+const HAND_DAMPING: f64 = 0.7;
+/// Stiffness of a hand's spring over that of the body where it is held: the body follows the pointer.
+const HAND_FIRMNESS: f64 = 10.0;
 
 impl Simulation {
-    /// The scene at rest.
+    /// The scene at its start.
     ///
     /// # Errors
     /// What is wrong with the scene, or that its mesh is too large.
@@ -123,8 +173,8 @@ impl Simulation {
         Self::with_system(scene, Arc::new(System::with_mesh(scene, mesh)?))
     }
 
-    /// The scene at rest on equations made before: shared as they are where they are the scene's, adapted where they
-    /// are not.
+    /// The scene at its start on equations made before: shared as they are where they are the scene's, adapted where
+    /// they are not.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -133,43 +183,43 @@ impl Simulation {
     }
 
     fn with_problem(scene: Scene, problem: Problem) -> Result<Self, SimulationError> {
-        let workspace = Workspace::new(problem.system())?;
-        let state = problem.system().at_rest();
-        let mut simulation = Self {
-            method: (scene.solver.method.entry().start)(),
-            scene,
-            previous: (state.displacement.clone(), state.turns.clone()),
-            forces: Forces::new(state.displacement.len()),
-            state,
-            workspace,
-            residual: 0.0,
-            iterations: 0,
-            status: Status::Running,
-            certificate: None,
-            timings: Timings::default(),
-            last_iteration: Timings::default(),
-            problem,
-        };
-        simulation.restart(Restart::AtRest);
+        let state = start_of(&scene, &problem);
+        let mut body = Body { scene, problem, state };
+        let process = Process::new(&mut body)?;
+        let mut simulation = Self { body, process, status: Status::Running };
+        simulation.judge();
         Ok(simulation)
     }
 
-    /// Back to rest, with nothing iterated.
-    pub fn reset(&mut self) {
-        self.state.reset();
-        self.restart(Restart::AtRest);
+    fn judge(&mut self) {
+        self.status = match &self.process {
+            Process::Search(search) => search.status().clone(),
+            Process::Motion(motion) => motion.status(&self.body.scene, &self.body.state),
+        };
     }
 
-    /// Starts over from this displacement, m, one vector a node of the mesh; what supports fix does not move.
+    /// Back to the start of the scene: at rest, or with the velocity that it gives the body.
+    pub fn reset(&mut self) {
+        match &mut self.process {
+            Process::Search(search) => {
+                self.body.state.reset();
+                search.restart(&mut self.body, Restart::AtRest);
+            }
+            Process::Motion(motion) => motion.reset(&mut self.body),
+        }
+        self.judge();
+    }
+
+    /// Starts over from this displacement, m, one vector a node of the mesh, at rest; what supports fix does not move.
     ///
     /// # Errors
     /// [`StateError`] where there are not as many vectors as nodes, or one is not finite. Nothing is changed then.
     pub fn start_from(&mut self, u: &[Vector2<f64>]) -> Result<(), StateError> {
-        let mut state = self.problem.system().at_rest().with_displacement(u.to_vec())?;
-        let mask = self.problem.system().pattern().mask();
-        state.displacement.iter_mut().zip(mask).for_each(|(u, mask)| u.component_mul_assign(mask));
-        self.state = state;
-        self.restart(Restart::AtRest);
+        let system = self.body.problem.system();
+        let mut state = system.at_rest().with_displacement(u.to_vec())?;
+        system.pattern().stop_fixed(&mut state.displacement);
+        self.body.state = state;
+        self.begin();
         Ok(())
     }
 
@@ -178,53 +228,52 @@ impl Simulation {
     /// # Errors
     /// [`StateError`] where it is another body's state. Nothing is changed then.
     pub fn restore(&mut self, state: &State) -> Result<(), StateError> {
-        self.state.accept(state)?;
-        self.state.copy_from(state);
-        self.restart(Restart::AtRest);
+        self.body.state.accept(state)?;
+        self.body.state.copy_from(state);
+        self.begin();
         Ok(())
     }
 
-    /// Takes another scene on, at the price of what has changed. The state is kept where the mesh is, so that an edited
-    /// load is followed from where the body is; after a divergence, for another method, and where the state is of no
-    /// use as a start (not finite, absurdly far away, crushed, away from a new support) the body starts at rest.
+    /// Forgets what was, and goes on from where the body is.
+    fn begin(&mut self) {
+        match &mut self.process {
+            Process::Search(search) => search.restart(&mut self.body, Restart::AtRest),
+            Process::Motion(motion) => motion.begin(&mut self.body),
+        }
+        self.judge();
+    }
+
+    /// Takes another scene on, at the price of what has changed. The state is kept where the mesh is: an edited load is
+    /// followed from where the body is, and in mid-motion it keeps its velocity. A search starts at rest after a
+    /// divergence, for another method, and where the state is of no use as a start (not finite, absurdly far away,
+    /// crushed); either does where a new support holds what has moved away. Another `analysis` goes on from where the
+    /// body is, without velocity.
     ///
     /// # Errors
     /// As [`Self::new`]; the simulation is unchanged then.
     pub fn change_scene(&mut self, scene: &Scene) -> Result<(), SimulationError> {
-        let moments = |problem: &Problem| problem.loads().moments().next().is_some();
-        let had_moments = moments(&self.problem);
-        let change = self.problem.update(scene)?;
-        let why = match change {
-            Change::Mesh => {
-                *self = Self::with_problem(scene.clone(), self.problem.clone())?;
-                return Ok(());
-            }
-            Change::Unknowns => {
-                self.workspace = Workspace::new(self.problem.system())?;
-                Restart::NewUnknowns
-            }
-            Change::Stiffness => Restart::NewStiffness,
-            Change::Loads => Restart::NewLoads,
-        };
-        if had_moments || moments(&self.problem) {
-            // The exact tangent has the moments in it.
-            self.workspace.tangent = None;
+        let Self { body, process, .. } = self;
+        let change = body.problem.update(scene)?;
+        if change == Change::Mesh {
+            *self = Self::with_problem(scene.clone(), body.problem.clone())?;
+            return Ok(());
         }
-        let same_method = scene.solver.method == self.scene.solver.method;
-        let keeps_state = same_method
-            && !matches!(self.status, Status::Diverged(_))
-            && is_useful_start(self.problem.system(), &self.state)
-            && self.problem.system().pattern().are_fixed_at_rest(&self.state.displacement);
-        self.scene.clone_from(scene);
-        if !same_method {
-            self.method = (scene.solver.method.entry().start)();
-        }
-        self.method.restart(why);
-        if keeps_state {
-            self.restart(why);
+        let before = std::mem::replace(&mut body.scene, scene.clone());
+        if scene.analysis != before.analysis {
+            body.problem.set_time(0.0);
+            let useful = body.is_useful_start();
+            body.state.stop();
+            if !useful {
+                body.state = start_of(scene, &body.problem);
+            }
+            *process = Process::new(body)?;
         } else {
-            self.reset();
+            match process {
+                Process::Search(search) => search.edit(body, &before, change)?,
+                Process::Motion(motion) => motion.edit(body, &before, change)?,
+            }
         }
+        self.judge();
         Ok(())
     }
 
@@ -265,70 +314,92 @@ impl Simulation {
 
     /// Takes on the scene that `change` makes of the present one.
     fn edit(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), Invalid>) -> Result<(), SimulationError> {
-        let mut scene = self.scene.clone();
+        let mut scene = self.body.scene.clone();
         change(&mut scene)?;
         self.change_scene(&scene)
     }
 
-    /// Forgets iterations and times, and measures the state it starts from.
-    fn restart(&mut self, why: Restart) {
-        self.iterations = 0;
-        self.status = Status::Running;
-        self.certificate = None;
-        self.timings = Timings::default();
-        self.last_iteration = Timings::default();
-        let mut unmeasured = Timings::default();
-        if why == Restart::NewLoads {
-            // Forces within the body are what they were.
-            self.residual = self.problem.balance(
-                &self.state,
-                self.method.kinematics(),
-                self.method.load_factor(),
-                &mut self.forces,
-            );
-        } else {
-            if why == Restart::AtRest {
-                self.method.restart(why);
-                self.follow_displacement(&mut unmeasured);
-            }
-            self.measure_forces(self.method.tangent(), self.method.load_factor(), &mut unmeasured);
+    /// Takes hold of a material point with a damped spring, which holds it where it is until [`Self::pull_to`] says
+    /// where to. Returns whether there is such a point.
+    ///
+    /// The spring makes the body's mass vibrate at 5 Hz, or is ten times as stiff as the body is there, whichever is
+    /// stiffer; it pulls no harder than stretched by a quarter of the body's size.
+    pub fn grab(&mut self, point: MaterialPoint) -> bool {
+        let Body { scene, problem, state } = &mut self.body;
+        let mass = Mass::new(problem.system(), scene.material.area_density()).total();
+        let omega = std::f64::consts::TAU * HAND_FREQUENCY;
+        let mut stiffness = mass * omega * omega;
+        if let Some(compliance) = compliance(problem, state, point) {
+            stiffness = stiffness.max(HAND_FIRMNESS / compliance);
         }
-        let verdict = self.with_method(&mut unmeasured, |method, it| method.judge(it));
-        self.follow(verdict, &mut unmeasured);
+        let delay = 2.0 * HAND_DAMPING * (mass / stiffness).sqrt();
+        let Some(mut hand) = Hand::new(problem.system(), point, stiffness, delay) else { return false };
+        hand.lead(hand.position(&state.displacement), state.time, 0.0);
+        *problem.hand_mut() = Some(hand);
+        self.pulled(false);
+        true
     }
 
-    /// One iteration: assemble, factorize, solve, and the rotations and residual of the new state. Does nothing once the
-    /// status is no longer [`Status::Running`].
+    /// Pulls the point that is held to a position, m, within the next time step. Nothing happens where none is held.
+    ///
+    /// # Errors
+    /// [`StateError::NotFinite`]; the pull is unchanged then.
+    pub fn pull_to(&mut self, position: Vector2<f64>) -> Result<(), StateError> {
+        if !is_finite(&[position]) {
+            return Err(StateError::NotFinite { what: "position of the pointer" });
+        }
+        let within = match self.process {
+            Process::Search(_) => 0.0,
+            Process::Motion(_) => self.body.scene.dynamics.time_step,
+        };
+        let now = self.body.state.time;
+        if let Some(hand) = self.body.problem.hand_mut() {
+            hand.lead(position, now, within);
+            self.pulled(true);
+        }
+        Ok(())
+    }
+
+    /// Lets go.
+    pub fn release(&mut self) {
+        if self.body.problem.hand_mut().take().is_some() {
+            self.pulled(false);
+        }
+    }
+
+    /// The hand that holds the body, and its force on the body, N.
+    #[must_use]
+    pub fn hand(&self) -> Option<(&Hand, Vector2<f64>)> {
+        let State { displacement, velocity, .. } = &self.body.state;
+        let hand = self.body.problem.hand()?;
+        let force = match self.process {
+            Process::Search(_) => hand.force_at_rest(displacement),
+            Process::Motion(_) => hand.force(hand.mean(displacement), hand.mean(velocity)),
+        };
+        Some((hand, force))
+    }
+
+    fn pulled(&mut self, moved_only: bool) {
+        match &mut self.process {
+            Process::Search(search) => search.pulled(&mut self.body, moved_only),
+            Process::Motion(motion) => motion.pulled(),
+        }
+        self.judge();
+    }
+
+    /// One iteration (assemble, factorize, solve, and the rotations and residual of the new state), or one time step. A
+    /// search does nothing once its status is no longer [`Status::Running`]; a motion goes on until it is
+    /// [`Status::Stopped`].
     pub fn step(&mut self) -> &Status {
-        if self.status != Status::Running {
-            return &self.status;
+        match &mut self.process {
+            Process::Search(search) => search.step(&mut self.body),
+            Process::Motion(motion) => motion.step(&mut self.body),
         }
-        let mut timings = Timings::default();
-        let State { displacement, turns, .. } = &self.state;
-        self.previous.0.copy_from_slice(displacement);
-        self.previous.1.copy_from_slice(turns);
-        let iterated = self.with_method(&mut timings, |method, it| method.iterate(it));
-        self.iterations += 1;
-        let measured = iterated.and_then(|()| {
-            self.measure(&mut timings);
-            if self.residual.is_finite() { Ok(()) } else { Err(IterationError::NotFinite) }
-        });
-        if measured.is_err() {
-            self.state.displacement.copy_from_slice(&self.previous.0);
-            self.state.turns.copy_from_slice(&self.previous.1);
-            self.measure(&mut timings);
-        }
-        let verdict = self.with_method(&mut timings, |method, it| match measured {
-            Ok(()) => method.judge(it),
-            Err(error) => method.recover(it, error),
-        });
-        self.follow(verdict, &mut timings);
-        self.timings.add(&timings);
-        self.last_iteration = timings;
+        self.judge();
         &self.status
     }
 
-    /// Steps until the status is final.
+    /// Steps until the status is final: to the equilibrium, or to the end of the scene's duration.
     pub fn solve(&mut self) -> &Status {
         while self.status == Status::Running {
             self.step();
@@ -336,180 +407,158 @@ impl Simulation {
         &self.status
     }
 
-    /// Lets the method work on the current state.
-    fn with_method<T>(
-        &mut self,
-        timings: &mut Timings,
-        work: impl FnOnce(&mut dyn Method, &mut Iteration<'_>) -> T,
-    ) -> T {
-        let mut iteration = Iteration {
-            problem: &self.problem,
-            forces: &mut self.forces,
-            residual: self.residual,
-            tolerances: tolerances(&self.scene.solver),
-            state: &mut self.state,
-            workspace: &mut self.workspace,
-            timings,
-        };
-        work(self.method.as_mut(), &mut iteration)
-    }
-
-    /// Does what the method's verdict asks for.
-    fn follow(&mut self, verdict: Verdict, timings: &mut Timings) {
-        match verdict {
-            Verdict::Continue => {}
-            Verdict::Changed => self.measure(timings),
-            Verdict::Converged => self.status = Status::Converged,
-            Verdict::Stop(reason) => self.status = reason.status(),
-        }
-        let most = self.scene.solver.max_iterations;
-        if self.status == Status::Running && self.iterations >= most {
-            self.status = Reason::IterationLimit(most).status();
-            self.method.stop(&mut self.state);
-            // What is missing to the whole load.
-            self.follow_displacement(timings);
-            self.measure_forces(None, 1.0, timings);
-        }
-    }
-
-    /// Rotations, forces and residual of the current state under the load that is on the body at present, and the
-    /// tangent that the next iteration needs.
-    fn measure(&mut self, timings: &mut Timings) {
-        self.follow_displacement(timings);
-        self.measure_forces(self.method.tangent(), self.method.load_factor(), timings);
-    }
-
-    fn follow_displacement(&mut self, timings: &mut Timings) {
-        let (system, kinematics) = (self.problem.system(), self.method.kinematics());
-        timed(&mut timings.rotate, || system.follow(&mut self.state, kinematics));
-    }
-
-    fn measure_forces(&mut self, tangent: Option<Tangent>, load_factor: f64, timings: &mut Timings) {
-        self.residual = measure(
-            &self.problem,
-            &self.state,
-            self.method.kinematics(),
-            (tangent, load_factor),
-            &mut self.forces,
-            &mut self.workspace,
-            timings,
-        );
-    }
-
     /// Finds out what is known of the final state whatever method found it, at the price of some solves; remembered
-    /// until the next change. Nothing is known of linear theory's results, and before the end.
+    /// until the next change. Nothing is known of linear theory's results, before the end, and in motion.
     pub fn certify(&mut self) -> Certificate {
-        if let Some(certificate) = self.certificate {
-            return certificate;
+        match &mut self.process {
+            Process::Search(search) => search.certify(&self.body.problem, &self.body.state),
+            Process::Motion(_) => Certificate::default(),
         }
-        if self.status == Status::Running || self.is_linear() {
-            return Certificate::default();
-        }
-        let Self { problem, state, forces, workspace, method, .. } = self;
-        let load_factor = method.load_factor();
-        let certificate = Certificate {
-            fixed_point_rho: fixed_point_rho(problem, state, load_factor, forces, workspace),
-            stable: Some(is_stable(problem, state, load_factor, forces, workspace)),
-        };
-        *self.certificate.insert(certificate)
     }
 
     /// What [`Self::certify`] has found, if it has been asked since the last change.
     #[must_use]
     pub fn certificate(&self) -> Option<Certificate> {
-        self.certificate
+        self.search().and_then(Search::certificate)
     }
 
     /// The numbers of the current state.
     #[must_use]
     pub fn solution(&self) -> Solution {
-        let Self { problem, state, .. } = self;
+        let Body { problem, state, .. } = &self.body;
+        let (load_factor, load_steps) = self.load_stepping();
         Solution {
             dofs: problem.system().dofs(),
             status: self.status.clone(),
-            iterations: self.iterations,
-            load_steps: self.method.load_steps(),
-            residual: self.residual,
-            certificate: self.certificate,
+            iterations: self.iterations(),
+            load_steps,
+            residual: self.residual(),
+            certificate: self.certificate(),
             deformation: Deformation::of(problem, state),
             probes: probe_results(problem, state),
-            energy: energy(problem, state, self.method.load_factor()),
-            reaction: reaction(problem, state, &self.forces),
-            time: self.timings,
-            auto: self.method.report(),
+            energy: energy(problem, state, load_factor),
+            reaction: reaction(problem, state, self.forces()),
+            time: *self.timings(),
+            auto: self.auto_report(),
+            motion: self.motion().map(|motion| MotionResult {
+                time: state.time,
+                counts: motion.counts(),
+                ledger: *motion.ledger(),
+                momentum: motion.momentum(&self.body),
+                critical_step: motion.critical_step(),
+            }),
         }
     }
 
     /// A field's value at every quadrature point; see [`Field::values`].
     pub fn field(&self, field: Field, values: &mut Vec<Option<f64>>) {
-        field.values(&self.problem, &self.state, values);
+        field.values(&self.body.problem, &self.body.state, values);
     }
 
     /// Displacement of a probe, m, the mean over its edge; `None` where there is no such probe.
     #[must_use]
     pub fn probe(&self, name: &str) -> Option<Vector2<f64>> {
-        let probe = self.problem.probes().iter().find(|p| p.name == name)?;
-        Some(probe.mean(&self.state.displacement))
+        self.nodal_probe(name).map(|probe| probe.mean(&self.body.state.displacement))
+    }
+
+    /// Velocity of a probe, m/s; `None` where there is no such probe.
+    #[must_use]
+    pub fn probe_velocity(&self, name: &str) -> Option<Vector2<f64>> {
+        self.nodal_probe(name).map(|probe| probe.mean(&self.body.state.velocity))
+    }
+
+    fn nodal_probe(&self, name: &str) -> Option<&NodalProbe> {
+        self.body.problem.probes().iter().find(|p| p.name == name)
     }
 
     /// The scene as it stands.
     #[must_use]
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.body.scene
     }
 
     /// The equations of the scene, with their numbers.
     #[must_use]
     pub fn problem(&self) -> &Problem {
-        &self.problem
+        &self.body.problem
     }
 
     /// The equations without their numbers: mesh, elements, sparsity.
     #[must_use]
     pub fn system(&self) -> &Arc<System> {
-        self.problem.system()
+        self.body.problem.system()
     }
 
     /// The method that steps.
     #[must_use]
     pub fn method(&self) -> MethodKind {
-        self.scene.solver.method
+        self.body.scene.solver.method
+    }
+
+    fn search(&self) -> Option<&Search> {
+        match &self.process {
+            Process::Search(search) => Some(search),
+            Process::Motion(_) => None,
+        }
+    }
+
+    /// What is known of the motion; `None` of a search for an equilibrium.
+    #[must_use]
+    pub fn motion(&self) -> Option<&Motion> {
+        match &self.process {
+            Process::Search(_) => None,
+            Process::Motion(motion) => Some(motion),
+        }
+    }
+
+    /// Keeps the energy ledger of a motion, which costs two more sweeps over the elements a step, or not. It is kept
+    /// unless told otherwise; taken up again it starts anew.
+    pub fn keep_ledger(&mut self, keep: bool) {
+        if let Process::Motion(motion) = &mut self.process {
+            motion.keep_ledger(keep, &self.body);
+        }
     }
 
     /// Where the body is; a clone can be given back to [`Self::restore`].
     #[must_use]
     pub fn state(&self) -> &State {
-        &self.state
+        &self.body.state
     }
 
     /// Displacement x − X of every node, m.
     #[must_use]
     pub fn displacement(&self) -> &[Vector2<f64>] {
-        &self.state.displacement
+        &self.body.state.displacement
     }
 
-    /// Forces of the current state.
+    /// Forces of the current state; of a motion, those of its last stage.
     #[must_use]
     pub fn forces(&self) -> &Forces {
-        &self.forces
+        match &self.process {
+            Process::Search(search) => search.forces(),
+            Process::Motion(motion) => motion.forces(),
+        }
     }
 
     /// Fraction of the load that is on the body, and load steps taken so far.
     #[must_use]
     pub fn load_stepping(&self) -> (f64, u32) {
-        (self.method.load_factor(), self.method.load_steps())
+        self.search().map_or((1.0, 1), Search::load_stepping)
     }
 
     /// Whether the state is linear theory's; if not, its elements are turned back before their strain is measured.
     #[must_use]
     pub fn is_linear(&self) -> bool {
-        self.method.kinematics() == Kinematics::Linear
+        match &self.process {
+            Process::Search(search) => search.kinematics() == Kinematics::Linear,
+            Process::Motion(motion) => motion.is_linear(&self.body.scene),
+        }
     }
 
     /// What was skipped because the scene does not need it; `None` for methods that do not decide.
     #[must_use]
     pub fn auto_report(&self) -> Option<AutoReport> {
-        self.method.report()
+        self.search().and_then(Search::auto_report)
     }
 
     /// Where it stands.
@@ -518,33 +567,71 @@ impl Simulation {
         &self.status
     }
 
-    /// Solves since the last edit.
+    /// Solves since the last edit, or since the motion began.
     #[must_use]
     pub fn iterations(&self) -> u32 {
-        self.iterations
+        match &self.process {
+            Process::Search(search) => search.iterations(),
+            Process::Motion(motion) => u32::try_from(motion.counts().solves).unwrap_or(u32::MAX),
+        }
     }
 
-    /// ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ of the current state.
+    /// ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ of the current state; of a motion what the last stage has left unsolved, over the
+    /// largest of its forces.
     #[must_use]
     pub fn residual(&self) -> f64 {
-        self.residual
+        match &self.process {
+            Process::Search(search) => search.residual(),
+            Process::Motion(motion) => motion.residual(),
+        }
     }
 
     /// Length of the last step over that of the one before: below 1 the iteration contracts.
     #[must_use]
     pub fn step_ratio(&self) -> Option<f64> {
-        self.method.step_ratio()
+        self.search().and_then(Search::step_ratio)
     }
 
-    /// Time of the last iteration, by stage.
+    /// Time of the last iteration or time step, by stage.
     #[must_use]
     pub fn last_iteration(&self) -> &Timings {
-        &self.last_iteration
+        match &self.process {
+            Process::Search(search) => search.last_iteration(),
+            Process::Motion(motion) => motion.last_step(),
+        }
     }
 
-    /// Time of all iterations since the last edit, by stage.
+    /// Time of all iterations since the last edit, or of all time steps, by stage.
     #[must_use]
     pub fn timings(&self) -> &Timings {
-        &self.timings
+        match &self.process {
+            Process::Search(search) => search.timings(),
+            Process::Motion(motion) => motion.timings(),
+        }
     }
+}
+
+/// The largest displacement that a unit force on a point makes of it, m/N; `None` for a body that is not held.
+fn compliance(problem: &Problem, state: &State, point: MaterialPoint) -> Option<f64> {
+    let system = problem.system();
+    let weights = system.mesh().weights(point)?;
+    let mut matrix = Matrix::new(system.pattern());
+    let mut forces = Forces::new(state.displacement.len());
+    problem.linearize(state, &mut forces, Some((Tangent::WARPED, &mut matrix)));
+    let mut factor = Factor::new(system.symbolic()).ok()?;
+    factor.factorize(matrix.values()).ok()?;
+    let mut compliance = Matrix2::zeros();
+    let (mut nodal, mut free) = (vec![Vector2::zeros(); state.displacement.len()], vec![0.0; system.dofs()]);
+    for axis in 0..2 {
+        nodal.fill(Vector2::zeros());
+        weights.iter().for_each(|&(node, w)| nodal[node as usize][axis] += w);
+        system.pattern().restrict(&nodal, &mut free);
+        factor.solve_in_place(&mut free);
+        nodal.fill(Vector2::zeros());
+        system.pattern().add_free(&free, 1.0, &mut nodal);
+        let moved: Vector2<f64> = weights.iter().map(|&(node, w)| nodal[node as usize] * w).sum();
+        compliance.set_column(axis, &moved);
+    }
+    let largest = compliance.symmetric_eigenvalues().max();
+    (largest.is_finite() && largest > 0.0).then_some(largest)
 }

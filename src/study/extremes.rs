@@ -7,10 +7,10 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use super::Extent;
-use crate::method::METHODS;
+use crate::method::{METHODS, Reason};
 use crate::rotation::Rotation;
 use crate::scene::{ElementKind, Material, MethodKind, Plane, Scene};
-use crate::simulation::{Reason, Simulation, SimulationError, Status};
+use crate::simulation::{Simulation, SimulationError, Status};
 use crate::words::number;
 
 /// The state a solve starts from; what supports fix stays at rest.

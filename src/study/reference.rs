@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::StudyError;
 use crate::assembly::System;
 use crate::mesh::Mesh;
-use crate::scene::{ElementKind, MethodKind, Place, Scene};
+use crate::scene::{Analysis, ElementKind, MethodKind, Place, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
 use crate::truth::{BeamTruth, error_percent};
 
@@ -95,10 +95,13 @@ impl Reference {
     /// Finds it.
     ///
     /// # Errors
-    /// [`StudyError`]: there is nothing to see, the fine solution was not found, or the scene's mesh is so fine already
+    /// [`StudyError`]: the body is in motion, there is nothing to see, the fine solution was not found, or the scene's mesh is so fine already
     /// that refining it would take too long.
     pub fn of(scene: &Scene) -> Result<Self, StudyError> {
         scene.validate().map_err(SimulationError::from)?;
+        if scene.analysis == Analysis::Dynamic {
+            return Err(StudyError::InMotion);
+        }
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use crate::method::Timings;
 use crate::simulation::{Simulation, Status};
+use crate::timings::Timings;
 
 /// Repetitions that only warm up caches, branch predictors and clocks.
 const WARM_UP: usize = 2;

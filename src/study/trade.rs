@@ -7,9 +7,10 @@ use std::ops::ControlFlow;
 
 use super::reference::{Reference, end, first_probe, system_of};
 use super::timing::times_from_rest;
-use crate::method::{METHODS, Timings};
+use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
+use crate::timings::Timings;
 use crate::words::count;
 
 /// What is varied.
@@ -129,6 +130,9 @@ pub enum StudyError {
     /// The scene does not set up.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A body in motion has no equilibrium to compare with.
+    #[error("expected a scene with analysis = \"static\": errors are measured against its equilibrium")]
+    InMotion,
     /// Nothing to compare.
     #[error("expected a scene with a probe that moves; errors are measured there")]
     NoProbe,

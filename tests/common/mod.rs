@@ -2,13 +2,14 @@
 #![allow(dead_code, reason = "each test uses its part")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+pub mod motion;
 #[cfg(feature = "app")]
 pub mod pictures;
 
 use std::path::Path;
 use std::process::{Command, Output};
 
-use warpbeam::scene::{Scene, Source, open, registry};
+use warpbeam::scene::{Analysis, Scene, Source, open, registry};
 use warpbeam::simulation::{Simulation, Status};
 
 /// A built-in scene.
@@ -24,6 +25,11 @@ pub fn scene_with(id: &str, set: &[&str]) -> Scene {
 /// The names of all built-in scenes.
 pub fn scene_ids() -> Vec<&'static str> {
     registry::BUILT_IN.iter().map(|b| b.id).collect()
+}
+
+/// The names of the built-in scenes that are analysed in this way.
+pub fn ids_of(analysis: Analysis) -> Vec<&'static str> {
+    scene_ids().into_iter().filter(|id| scene(id).analysis == analysis).collect()
 }
 
 /// A scene that must converge, solved.

@@ -8,13 +8,21 @@ use std::path::Path;
 use warpbeam::Simulation;
 use warpbeam::app::Lab;
 use warpbeam::picture::Picture;
-use warpbeam::scene::Source;
+use warpbeam::scene::{Analysis, Source};
 
-use super::scene;
+use super::{scene, scene_with};
+
+/// How a scene is changed for its picture: a body in motion is drawn half a second after its start.
+pub fn for_picture(id: &str) -> &'static [&'static str] {
+    match scene(id).analysis {
+        Analysis::Dynamic => &["dynamics.duration=0.5"],
+        _ => &[],
+    }
+}
 
 /// A scene in a lab.
 pub fn lab(id: &str) -> Lab {
-    let scene = scene(id);
+    let scene = scene_with(id, for_picture(id));
     let simulation = Simulation::new(&scene).unwrap();
     Lab::new(Source { name: id.to_owned(), assignments: Vec::new() }, scene, simulation)
 }

@@ -230,7 +230,7 @@ fn dense(problem: &Problem, state: &State, tangent: Tangent, load_factor: f64) -
     let system = problem.system();
     let mut matrix = Matrix::new(system.pattern());
     problem.linearize(state, &mut Forces::new(nodes(problem).len()), Some((tangent, &mut matrix)));
-    if tangent == Tangent::Exact {
+    if tangent == Tangent::EXACT {
         problem.loads().add_stiffness(system, state.displacement(), load_factor, &mut matrix);
     }
     let n = system.dofs();
@@ -409,13 +409,13 @@ fn the_tangent_is_the_derivative_of_the_force(kind: ElementKind) {
         u[node][axis] = at;
         numeric.set_column(column, &((below - above) / (2.0 * STEP)));
     }
-    let exact = dense(&problem, &start, Tangent::Exact, FACTOR);
+    let exact = dense(&problem, &start, Tangent::EXACT, FACTOR);
     let error = (&numeric - &exact).norm() / exact.norm();
     assert!(error < 1e-8, "{error:e}");
     // G is what A lacks, and its positive part alone leaves a positive definite matrix.
-    let parts = dense(&problem, &start, Tangent::Warped, 0.0) + dense(&problem, &start, Tangent::Geometric, 0.0);
-    assert!((parts - dense(&problem, &start, Tangent::Exact, 0.0)).norm() < 1e-12 * exact.norm());
-    let definite = dense(&problem, &start, Tangent::Definite, 0.0);
+    let parts = dense(&problem, &start, Tangent::WARPED, 0.0) + dense(&problem, &start, Tangent::GEOMETRIC, 0.0);
+    assert!((parts - dense(&problem, &start, Tangent::EXACT, 0.0)).norm() < 1e-12 * exact.norm());
+    let definite = dense(&problem, &start, Tangent::DEFINITE, 0.0);
     assert!(definite.symmetric_eigenvalues().min() > 0.0);
 }
 
@@ -423,7 +423,7 @@ fn the_tangent_is_the_derivative_of_the_force(kind: ElementKind) {
 fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Stress), kind);
     let start = state(&problem, |x| Rotation::from_angle(0.4 * x.x).apply(x));
-    let a = dense(&problem, &start, Tangent::Warped, 0.0);
+    let a = dense(&problem, &start, Tangent::WARPED, 0.0);
     let with_rotations_of_start = |u: Vec<Vector2<f64>>| {
         let state = start.with_displacement(u).unwrap();
         forces(&problem, &state).internal().to_vec()
@@ -531,7 +531,7 @@ fn energy_norm_error(kind: ElementKind, n: u32) -> f64 {
     }
     let system = problem.system();
     let mut matrix = Matrix::new(system.pattern());
-    problem.linearize(&system.at_rest(), &mut Forces::new(force.len()), Some((Tangent::Warped, &mut matrix)));
+    problem.linearize(&system.at_rest(), &mut Forces::new(force.len()), Some((Tangent::WARPED, &mut matrix)));
     let mut factor = Factor::new(system.symbolic()).unwrap();
     factor.factorize(matrix.values()).unwrap();
     let load = restrict(&problem, &force);

@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod elements;
+mod integrators;
 mod methods;
 #[cfg(feature = "app")]
 mod pictures;
@@ -18,6 +19,7 @@ fn main() -> ExitCode {
     let args = Arguments::from_args();
     let suites = [
         elements::trials(),
+        integrators::trials(),
         methods::trials(),
         scenes::trials(),
         #[cfg(feature = "app")]

@@ -11,7 +11,7 @@ use warpbeam::app::picture;
 use warpbeam::render::{Camera, Gpu, colormap};
 use warpbeam::scene::registry;
 
-use crate::common::pictures::{difference, distance, lab, pixel, read_png};
+use crate::common::pictures::{difference, distance, for_picture, lab, pixel, read_png};
 use crate::common::{stderr, warpbeam};
 use crate::{Test, suite};
 
@@ -31,7 +31,9 @@ fn it_is_the_golden_one(id: &'static str, theme: &str) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("shot.png");
     let to = path.to_str().unwrap();
-    let output = warpbeam(&["shot", id, "-o", to, "--size", "640x400", "--no-panel", "--theme", theme]);
+    let mut args = vec!["shot", id, "-o", to, "--size", "640x400", "--no-panel", "--theme", theme];
+    args.extend(for_picture(id).iter().flat_map(|set| ["--set", set]));
+    let output = warpbeam(&args);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let golden = PathBuf::from(format!("tests/golden/{id}-{theme}.png"));
     if std::env::var_os("UPDATE_GOLDEN").is_some() {

@@ -2,26 +2,77 @@
 
 use libtest_mimic::Trial;
 use nalgebra::Vector2;
+use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
-use warpbeam::scene::registry;
-use warpbeam::simulation::{Reason, Simulation};
-use warpbeam::{MethodKind, Scene, Status};
+use warpbeam::method::Reason;
+use warpbeam::scene::{Analysis, registry};
+use warpbeam::simulation::Simulation;
+use warpbeam::{IntegratorKind, MethodKind, Scene, Status};
 
-use crate::common::scene;
+use crate::common::{ids_of, scene, scene_ids};
 use crate::{Test, suite};
 
 const TESTS: &[Test<&'static str>] = &[
     ("its_file_is_what_is_built_in", its_file_is_what_is_built_in),
     ("it_survives_the_way_through_toml", it_survives_the_way_through_toml),
+];
+
+const STATIC: &[Test<&'static str>] = &[
     ("reactions_balance_the_loads", reactions_balance_the_loads),
     ("linear_theory_obeys_clapeyron", linear_theory_obeys_clapeyron),
     ("every_element_converges", every_element_converges),
     ("warped_ends_where_newton_does", warped_ends_where_newton_does),
 ];
 
+const DYNAMIC: &[Test<&'static str>] = &[
+    ("it_runs_to_its_end", it_runs_to_its_end),
+    ("every_integrator_and_element_moves_it", every_integrator_and_element_moves_it),
+];
+
 pub fn trials() -> Vec<Trial> {
-    suite("scene", registry::BUILT_IN.iter().map(|b| (b.id.to_owned(), b.id)), TESTS)
+    let named = |ids: Vec<&'static str>| ids.into_iter().map(|id| (id.to_owned(), id));
+    let mut trials = suite("scene", named(scene_ids()), TESTS);
+    trials.extend(suite("scene", named(ids_of(Analysis::Static)), STATIC));
+    trials.extend(suite("scene", named(ids_of(Analysis::Dynamic)), DYNAMIC));
+    trials
+}
+
+/// Every integrator that is not explicit takes a dynamic scene to its end, and the books are right.
+fn it_runs_to_its_end(id: &'static str) {
+    for integrator in INTEGRATORS.iter().filter(|i| !i.is_explicit()) {
+        let mut scene = scene(id);
+        scene.dynamics.integrator = integrator.kind;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(*simulation.solve(), Status::Finished, "{}", integrator.id);
+        let solution = simulation.solution();
+        assert_eq!(solution.deformation.inverted_elements, 0, "{}", integrator.id);
+        let ledger = solution.motion.unwrap().ledger;
+        assert!(ledger.imbalance().abs() < 1e-11 * ledger.throughput, "{}: {ledger:?}", integrator.id);
+        // By differences the rounding of the time step in the work of pulses and damping counts as the integrator's.
+        let allowed = if integrator.kind == IntegratorKind::EnergyMomentum { 1e-6 } else { 1e-3 };
+        assert!(ledger.drift() < allowed, "{} gains energy: {ledger:?}", integrator.id);
+    }
+}
+
+/// A few steps of every integrator, the explicit one within its critical step, on every element.
+fn every_integrator_and_element_moves_it(id: &'static str) {
+    for (integrator, element) in INTEGRATORS.iter().flat_map(|i| ELEMENTS.iter().map(move |e| (i, e))) {
+        let mut scene = scene(id);
+        scene.dynamics.integrator = integrator.kind;
+        scene.set_element(element.kind);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        if let Some(critical) = simulation.motion().unwrap().critical_step() {
+            scene.dynamics.time_step = 0.9 * critical;
+            simulation = Simulation::new(&scene).unwrap();
+        }
+        for _ in 0..20 {
+            simulation.step();
+        }
+        assert_eq!(*simulation.status(), Status::Running, "{} {}", integrator.id, element.id);
+        assert!(simulation.state().is_finite());
+        assert!(simulation.state().velocity().iter().any(|v| v.norm() > 0.0), "{} {}", integrator.id, element.id);
+    }
 }
 
 fn its_file_is_what_is_built_in(id: &'static str) {

@@ -38,7 +38,7 @@ pub(super) fn force_and_gravity(
         _ => None,
     });
     let gravity = scene.loads.iter().find_map(|l| match l {
-        Load::Gravity { acceleration } => Some(*acceleration),
+        Load::Gravity { acceleration, .. } => Some(*acceleration),
         _ => None,
     });
     let (magnitude, direction) = polar_form(force.unwrap_or_default());
@@ -117,7 +117,7 @@ pub(super) fn moment(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState
         });
         match first {
             Some(moment) => *moment = new,
-            None => scene.loads.push(Load::Moment { edge: "right".to_owned(), moment: new }),
+            None => scene.loads.push(Load::moment("right", new)),
         }
         actions.push(Action::Edit("Moment", scene));
     }
@@ -137,7 +137,7 @@ fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
     });
     match first {
         Some(force) => *force = new,
-        None => scene.loads.push(Load::Force { place: "right".into(), force: new }),
+        None => scene.loads.push(Load::force("right", new)),
     }
     scene
 }
@@ -145,12 +145,12 @@ fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
 fn with_gravity(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
     let mut scene = Box::new(scene.clone());
     let first = scene.loads.iter_mut().find_map(|l| match l {
-        Load::Gravity { acceleration } => Some(acceleration),
+        Load::Gravity { acceleration, .. } => Some(acceleration),
         _ => None,
     });
     match first {
         Some(acceleration) => *acceleration = new,
-        None => scene.loads.push(Load::Gravity { acceleration: new }),
+        None => scene.loads.push(Load::gravity(new)),
     }
     scene
 }

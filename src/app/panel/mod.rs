@@ -4,10 +4,10 @@ use egui::{Button, ComboBox, RichText, ScrollArea, Ui};
 
 use super::action::{Action, ViewOptions};
 use super::field::Messages;
-use crate::method::Timings;
 use crate::scene::{Scene, registry};
 use crate::simulation::{Simulation, Status};
 use crate::study::Reference;
+use crate::timings::Timings;
 
 mod body;
 mod loads;

@@ -14,8 +14,12 @@ pub(in crate::app) fn status_words(status: &Status, running: bool) -> (String, b
         Status::Running if running => ("Iterating".to_owned(), false),
         Status::Running => ("Paused".to_owned(), false),
         Status::Converged => ("Converged".to_owned(), false),
+        // The duration is for runs without a window: here a motion goes on.
+        Status::Finished if running => ("Running".to_owned(), false),
+        Status::Finished => ("Paused".to_owned(), false),
         Status::NotConverged(reason) => (format!("Not converged: {reason}."), true),
         Status::Diverged(reason) => (format!("Diverged: {reason}. Shown is the last finite state."), true),
+        Status::Stopped(reason) => (format!("Stopped: {reason}. Shown is the last finite state."), true),
     }
 }
 

@@ -16,9 +16,9 @@ use nalgebra::Vector2;
 use rapier::{Rapier, RapierSolver, Swing};
 use warpbeam::assembly::{Problem, System};
 use warpbeam::export::{ExportError, write_text};
-use warpbeam::method::Timings;
 use warpbeam::scene::{Source, open};
 use warpbeam::study::{Reference, StudyError, times_from_rest};
+use warpbeam::timings::Timings;
 use warpbeam::{ElementKind, MethodKind, Scene, SceneError, Simulation, SimulationError, Status};
 
 mod rapier;

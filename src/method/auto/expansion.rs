@@ -6,10 +6,10 @@ use super::AutoReport;
 use crate::assembly::{Forces, Kinematics, Matrix, Problem};
 use crate::element::Tangent;
 use crate::method::certificate::is_stable;
-use crate::method::iteration::timed;
 use crate::method::{Iteration, IterationError};
 use crate::solver::Factor;
 use crate::state::{State, largest};
+use crate::timings::timed;
 
 /// Size of the displacement gradient at which the parts of g are measured: smaller loses digits to rounding, larger lets
 /// higher parts in.
@@ -78,7 +78,7 @@ impl Expansion {
             None => {
                 let mut matrix = Matrix::new(system.pattern());
                 timed(&mut it.timings.assemble, || {
-                    problem.linearize(rest, forces, Some((Tangent::Warped, &mut matrix)));
+                    problem.linearize(rest, forces, Some((Tangent::WARPED, &mut matrix)));
                 });
                 let mut new = Factor::new(system.symbolic())?;
                 timed(&mut it.timings.factorize, || new.factorize(matrix.values()))?;

@@ -12,7 +12,6 @@
 use nalgebra::Vector2;
 
 use self::expansion::{Expansion, relative_size, solve_nodal};
-use super::iteration::timed;
 use super::newton::Newton;
 use super::status::{LONGEST_STEP, StepLengths, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
@@ -22,6 +21,7 @@ use crate::rotation::Rotation;
 use crate::scene::MethodKind;
 use crate::solver::Factor;
 use crate::state::{State, largest};
+use crate::timings::timed;
 
 mod expansion;
 mod report;
@@ -96,6 +96,11 @@ impl Auto {
     /// Tries linear theory. Where the state is at rest, or linear theory's, its solution is also the first of Newton's
     /// steps, and taken; returns whether a step was made.
     fn try_linear(&mut self, it: &mut Iteration<'_>) -> Result<bool, IterationError> {
+        if it.problem.hand().is_some() {
+            // The expansion knows dead loads and moments only.
+            self.linear = false;
+            return Ok(false);
+        }
         let turned = largest_rotation(&it.state.rotations);
         let tries = self.linear || turned <= LARGEST_LINEAR_ROTATION.min(self.refused.unwrap_or(f64::INFINITY));
         if !tries {
@@ -134,7 +139,7 @@ impl Auto {
                 return Ok(());
             }
         }
-        it.assemble(Tangent::Exact, 1.0);
+        it.assemble(Tangent::EXACT, 1.0);
         let mut factor = match self.tangent.take() {
             Some(tangent) => tangent.factor,
             None => Factor::new(it.system().symbolic())?,

@@ -1,0 +1,119 @@
+//! The mass matrix: consistent, and lumped on the nodes.
+
+use nalgebra::Vector2;
+
+use super::{Matrix, System};
+
+/// Mass of a body on its nodes, kg.
+#[derive(Clone, Debug)]
+pub struct Mass {
+    /// Σ ∫ ρ t NₐN_b dA of nodes b ≤ a that share an element, sorted.
+    entries: Vec<Entry>,
+    /// A mass a node: the consistent diagonal of every element, scaled to its whole mass (Hinton, Rock and Zienkiewicz
+    /// 1976). Unlike row sums it is positive for every element.
+    lumped: Vec<f64>,
+    total: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    nodes: [u32; 2],
+    mass: f64,
+    /// Where the x and y entries of the pair go in the stiffness matrix.
+    slots: [u32; 2],
+}
+
+impl Mass {
+    /// The mass of a system's body at this mass per area, kg/m².
+    #[must_use]
+    pub fn new(system: &System, area_density: f64) -> Self {
+        let mesh = system.mesh();
+        let entry = mesh.entry();
+        let n = entry.nodes.len();
+        let shapes: Vec<Vec<f64>> = entry.mass_points.iter().map(|p| (entry.shape)(p.at)).collect();
+        let mut entries = Vec::with_capacity(mesh.element_count() * n * (n + 1) / 2);
+        let mut lumped = vec![0.0; mesh.nodes().len()];
+        let mut total = 0.0;
+        for nodes in mesh.elements() {
+            let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.node(n)).collect();
+            let mut own = vec![vec![0.0; n]; n];
+            let mut whole = 0.0;
+            for (point, shape) in entry.mass_points.iter().zip(&shapes) {
+                let mass = area_density * point.weight * entry.jacobian(&rest, point.at).determinant();
+                whole += mass;
+                for (a, row) in own.iter_mut().enumerate() {
+                    for (b, m) in row.iter_mut().enumerate() {
+                        *m += mass * shape[a] * shape[b];
+                    }
+                }
+            }
+            let diagonal: f64 = (0..n).map(|a| own[a][a]).sum();
+            for (a, &node) in nodes.iter().enumerate() {
+                lumped[node as usize] += own[a][a] * whole / diagonal;
+                for (b, &other) in nodes[..=a].iter().enumerate() {
+                    let pair = [node.max(other), node.min(other)];
+                    entries.push(Entry { nodes: pair, mass: own[a][b], slots: [0; 2] });
+                }
+            }
+            total += whole;
+        }
+        entries.sort_by_key(|e| e.nodes);
+        entries.dedup_by(|next, kept| {
+            let same = next.nodes == kept.nodes;
+            if same {
+                kept.mass += next.mass;
+            }
+            same
+        });
+        let pattern = system.pattern();
+        for entry in &mut entries {
+            let [a, b] = entry.nodes;
+            entry.slots = [0, 1].map(|axis| pattern.slot(2 * a + axis, 2 * b + axis));
+        }
+        Self { entries, lumped, total }
+    }
+
+    /// Mass of the whole body, kg.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.total
+    }
+
+    /// The lumped mass of every node, kg.
+    #[must_use]
+    pub fn lumped(&self) -> &[f64] {
+        &self.lumped
+    }
+
+    /// result = M v over the nodes.
+    pub fn multiply(&self, v: &[Vector2<f64>], result: &mut [Vector2<f64>]) {
+        result.fill(Vector2::zeros());
+        for Entry { nodes: [a, b], mass, .. } in &self.entries {
+            let (a, b) = (*a as usize, *b as usize);
+            result[a] += v[b] * *mass;
+            if a != b {
+                result[b] += v[a] * *mass;
+            }
+        }
+    }
+
+    /// v M v.
+    #[must_use]
+    pub fn energy_product(&self, v: &[Vector2<f64>]) -> f64 {
+        let term = |Entry { nodes: [a, b], mass, .. }: &Entry| {
+            let product = v[*a as usize].dot(&v[*b as usize]) * mass;
+            if a == b { product } else { 2.0 * product }
+        };
+        self.entries.iter().map(term).sum()
+    }
+
+    /// Adds `factor` times M to a matrix over the free unknowns.
+    pub(crate) fn add_to(&self, factor: f64, matrix: &mut Matrix) {
+        let values = matrix.slots();
+        for Entry { mass, slots, .. } in &self.entries {
+            for &slot in slots {
+                values[slot as usize] += factor * mass;
+            }
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Energy–momentum: M (v₁ − v₀)/h = f̄, (x₁ − x₀)/h = (v₀ + v₁)/2, with f̄ the discrete gradient of the energy.
+//!
+//! Simo and Tarnow 1992, *The discrete energy–momentum method*; Gonzalez 2000, *Exact energy and momentum conserving
+//! algorithms for general models in nonlinear elasticity*. For the corotated energy the discrete gradient has a closed
+//! form: [`crate::element::Elements::linearize_between`]. Energy, momentum and angular momentum are kept as exactly as
+//! the step is solved; each half of a step that is halved keeps them too.
+
+use super::stage::Stage;
+use super::step::{Booking, Solves, Step, StepError, combine};
+use super::{Inertia, IntegratorEntry};
+use crate::element::Tangent;
+use crate::scene::IntegratorKind;
+
+pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
+    kind: IntegratorKind::EnergyMomentum,
+    id: "energy-momentum",
+    about: "Energy–momentum: second order, keeps energy, momentum and angular momentum; iterates to the tolerance always.",
+    colors: [[0, 100, 180], [90, 200, 250]],
+    order: 2,
+    stages: 1,
+    inertia: Inertia::Consistent,
+    step,
+};
+
+fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
+    let Step { solver, h, start, state, books, .. } = step;
+    let h = *h;
+    // What counted solves leave would be added to the energy, and grow.
+    if let Solves::Times(_) = solver.solves {
+        solver.solves = Solves::Tolerance(solver.tolerance);
+    }
+    let hand_at_start = solver.hand_force(start);
+    solver.problem.set_time(start.time + 0.5 * h);
+    combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
+    state.displacement.copy_from_slice(&solver.memory.free_flight);
+    solver.follow(state);
+    let stage = Stage {
+        inertia: 2.0 / (h * h),
+        start_force: None,
+        between: true,
+        // Half of A + G at the mean rotation is about the derivative with respect to the end.
+        tangent: Tangent { warped: 0.5, geometric: 0.5, definite: false },
+        rate: 1.0 / h,
+        others: &[(-1.0 / h, &start.displacement)],
+        damps_half_way: true,
+        damping: 1.0,
+    };
+    solver.solve(&stage, start, state)?;
+    combine(
+        &mut state.velocity,
+        [(2.0 / h, &state.displacement), (-2.0 / h, &start.displacement), (-1.0, &start.velocity)],
+    );
+    state.time = start.time + h;
+    Ok(if *books { solver.book(&stage, start, state, hand_at_start) } else { Booking::default() })
+}

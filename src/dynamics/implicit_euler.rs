@@ -1,0 +1,65 @@
+//! Implicit Euler: v₁ = (x₁ − x₀)/h, M (v₁ − v₀)/h = f(x₁).
+//!
+//! One solve with A(R₀), from where the body is: the article's way, and that of games. Solved to a tolerance it loses
+//! even more energy, most of it where there is nothing to be lost: the first mode of a beam at 60 steps a second keeps
+//! 72 % of its energy a period.
+
+use super::stage::Stage;
+use super::step::{Booking, Solves, Step, StepError, combine, work};
+use super::{Inertia, IntegratorEntry};
+use crate::element::Tangent;
+use crate::scene::IntegratorKind;
+
+pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
+    kind: IntegratorKind::ImplicitEuler,
+    id: "implicit-euler",
+    about: "Implicit Euler, the article's and the games' way: never unstable, one solve a step, but motion dies away.",
+    colors: [[190, 20, 30], [255, 105, 97]],
+    order: 1,
+    stages: 1,
+    inertia: Inertia::Consistent,
+    step,
+};
+
+fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
+    let Step { solver, h, start, state, books, .. } = step;
+    let h = *h;
+    let hand_at_start = solver.hand_force(start);
+    solver.problem.set_time(start.time + h);
+    combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
+    // One solve loses least from where the body is, with A alone; an iteration begins nearer to where it leads.
+    let tangent = if solver.solves == Solves::Times(1) {
+        Tangent::WARPED
+    } else {
+        state.displacement.copy_from_slice(&solver.memory.free_flight);
+        solver.follow(state);
+        solver.solves.tangent()
+    };
+    let stage = Stage {
+        inertia: 1.0 / (h * h),
+        start_force: None,
+        between: false,
+        tangent,
+        rate: 1.0 / h,
+        others: &[(-1.0 / h, &start.displacement)],
+        damps_half_way: true,
+        damping: 1.0,
+    };
+    solver.solve(&stage, start, state)?;
+    combine(&mut state.velocity, [(1.0 / h, &state.displacement), (-1.0 / h, &start.displacement)]);
+    state.time = start.time + h;
+    if !*books {
+        return Ok(Booking::default());
+    }
+    let mut booking = solver.book(&stage, start, state, hand_at_start);
+    // ½ |Δv|² in the norm of M is what the scheme takes from any motion that is not uniform.
+    let [change, momentum] = &mut solver.memory.scratch;
+    combine(change, [(1.0, &state.velocity), (-1.0, &start.velocity)]);
+    solver.mass.multiply(change, momentum);
+    let jolt = 0.5 * super::step::dot(change, momentum);
+    let elastic = solver.problem.elastic_energy(state) - solver.problem.elastic_energy(start);
+    let forces = &solver.memory.forces;
+    let internal = work(&forces.internal, start, state) - elastic;
+    booking.lost = Some(booking.lost.unwrap_or(0.0) + jolt + internal);
+    Ok(booking)
+}

@@ -1,0 +1,128 @@
+//! Where the energy goes.
+
+use nalgebra::Vector2;
+
+use super::Inertia;
+use super::step::Booking;
+use crate::assembly::{Mass, Problem};
+use crate::state::State;
+
+/// The energies of a motion, J, and what has been added and taken since its start. They sum to what was there at the
+/// start: [`Self::imbalance`] is what rounding leaves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Ledger {
+    /// ½ v M v.
+    pub kinetic: f64,
+    /// Stored in the body.
+    pub elastic: f64,
+    /// Potential of the loads that act always, relative to rest.
+    pub potential: f64,
+    /// Taken by damping.
+    pub dissipated: f64,
+    /// Taken by the integrator; negative where it has added energy.
+    pub integrator: f64,
+    /// Work of loads in time.
+    pub pulses: f64,
+    /// Work of hands.
+    pub hands: f64,
+    /// Put in by edits of the scene in mid-motion.
+    pub edits: f64,
+    /// Kinetic, elastic and potential energy at the start.
+    pub start: f64,
+    /// The largest kinetic energy so far.
+    pub largest_kinetic: f64,
+    /// All that was ever turned from one kind into another.
+    pub throughput: f64,
+}
+
+impl Ledger {
+    /// That of a state at the start of a motion.
+    pub(crate) fn open(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
+        let mut ledger = Self::default();
+        ledger.measure(problem, mass, inertia, state);
+        ledger.start = ledger.total();
+        ledger
+    }
+
+    fn measure(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
+        self.kinetic = kinetic_energy(mass, inertia, state);
+        self.elastic = problem.elastic_energy(state);
+        self.potential = problem.loads().potential(state, 1.0);
+        self.largest_kinetic = self.largest_kinetic.max(self.kinetic);
+    }
+
+    /// Books a step that has led to `state`.
+    pub(crate) fn book(&mut self, booking: &Booking, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
+        let before = *self;
+        self.measure(problem, mass, inertia, state);
+        self.dissipated += booking.dissipated;
+        self.pulses += booking.pulses;
+        self.hands += booking.hand;
+        let changes = [self.kinetic - before.kinetic, self.elastic - before.elastic, self.potential - before.potential];
+        let lost = booking
+            .lost
+            .unwrap_or_else(|| booking.pulses + booking.hand - booking.dissipated - changes.iter().sum::<f64>());
+        self.integrator += lost;
+        let booked = [booking.dissipated, booking.pulses, booking.hand, lost];
+        self.throughput += changes.iter().chain(&booked).map(|v| v.abs()).sum::<f64>();
+    }
+
+    /// Books an edit that leaves the state where it is.
+    pub(crate) fn edit(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
+        let before = self.total();
+        self.measure(problem, mass, inertia, state);
+        self.edits += self.total() - before;
+        self.throughput += (self.total() - before).abs();
+    }
+
+    /// Kinetic, elastic and potential energy, J.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.elastic + self.potential
+    }
+
+    /// What the sum of all entries lacks, J: rounding, where every entry is right.
+    #[must_use]
+    pub fn imbalance(&self) -> f64 {
+        self.total() - self.start + self.dissipated + self.integrator - self.pulses - self.hands - self.edits
+    }
+
+    /// The energy that the integrator has added, over the largest kinetic energy; 0 where nothing has moved.
+    #[must_use]
+    pub fn drift(&self) -> f64 {
+        let drift = -self.integrator / self.largest_kinetic;
+        if drift.is_finite() { drift } else { 0.0 }
+    }
+}
+
+/// ½ v M v, J.
+fn kinetic_energy(mass: &Mass, inertia: Inertia, state: &State) -> f64 {
+    0.5 * match inertia {
+        Inertia::Consistent => mass.energy_product(&state.velocity),
+        Inertia::Lumped => state.velocity.iter().zip(mass.lumped()).map(|(v, m)| m * v.norm_squared()).sum(),
+    }
+}
+
+/// Momentum of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Momentum {
+    /// Σ M v, kg m/s.
+    pub linear: Vector2<f64>,
+    /// Σ x × M v about the origin, kg m²/s, counter-clockwise.
+    pub angular: f64,
+}
+
+impl Momentum {
+    /// Of a state.
+    #[must_use]
+    pub fn of(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
+        let mut nodal = state.velocity.clone();
+        match inertia {
+            Inertia::Consistent => mass.multiply(&state.velocity, &mut nodal),
+            Inertia::Lumped => nodal.iter_mut().zip(mass.lumped()).for_each(|(p, m)| *p *= *m),
+        }
+        let positions = problem.system().mesh().nodes().iter().zip(&state.displacement).map(|(x, u)| x + u);
+        Self { linear: nodal.iter().sum(), angular: positions.zip(&nodal).map(|(x, p)| x.perp(p)).sum() }
+    }
+}

@@ -1,0 +1,402 @@
+//! One implicit stage of a time step.
+
+use nalgebra::Vector2;
+
+use super::correction::Constant;
+use super::step::{Booking, Counts, Memory, Solves, StepError, combine, work};
+use crate::assembly::{Hand, Kinematics, Mass, Problem};
+use crate::element::{StrainRate, Tangent};
+use crate::scene::{Damping, MethodKind};
+use crate::solver::SolverError;
+use crate::state::State;
+use crate::timings::{Timings, timed};
+
+/// The equations f_ext + s − f_int − f_d − α M (u − û) = 0 for the displacement u at the end of a stage; û is in the
+/// memory.
+///
+/// The velocity that damps is the difference quotient v = β u + Σ cᵢ uᵢ, and f_d = m (a M v + b ∫ F ℂ[Ė] ∇N dA) with the
+/// same quotient Ė of Green's strain, so that no turning of the body is damped (Rayleigh damping with factors a and b).
+#[derive(Debug)]
+pub(super) struct Stage<'a> {
+    /// α, 1/s².
+    pub inertia: f64,
+    /// s, N.
+    pub start_force: Option<&'a [Vector2<f64>]>,
+    /// Whether forces are those between the start of the step and the end of the stage; else those at its end.
+    pub between: bool,
+    /// Which matrix of the elements, beside α M.
+    pub tangent: Tangent,
+    /// β, 1/s.
+    pub rate: f64,
+    /// cᵢ (1/s) and uᵢ (m).
+    pub others: &'a [(f64, &'a [Vector2<f64>])],
+    /// Whether damping acts on the body half way between the start of the step and the end of the stage; else at the end.
+    pub damps_half_way: bool,
+    /// m.
+    pub damping: f64,
+}
+
+/// Most terms of a difference quotient.
+const TERMS: usize = 3;
+/// Solves after which the iteration of a stage counts as failed: two to eight do.
+const MOST_SOLVES: u32 = 30;
+/// Rounding of K u over its size: residuals are not smaller.
+const ROUNDING: f64 = 4e-16;
+
+/// The residual of a stage over the free unknowns, N.
+struct Residual {
+    norm: f64,
+    /// What it is to be compared with: the largest of the forces that make it up.
+    scale: f64,
+}
+
+/// Solves stages.
+#[derive(Debug)]
+pub(crate) struct StageSolver<'a> {
+    pub problem: &'a mut Problem,
+    pub mass: &'a Mass,
+    pub damping: Damping,
+    pub method: MethodKind,
+    pub kinematics: Kinematics,
+    pub solves: Solves,
+    /// The solver's, for integrators that must iterate.
+    pub tolerance: f64,
+    pub memory: &'a mut Memory,
+    pub counts: &'a mut Counts,
+    pub timings: &'a mut Timings,
+}
+
+impl StageSolver<'_> {
+    /// Solves a stage from where `state` is, whose rotations are those of its displacement.
+    ///
+    /// # Errors
+    /// [`StepError`]; the state is of no use then.
+    pub(super) fn solve(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) -> Result<(), StepError> {
+        let (most, tolerance) = match self.solves {
+            Solves::Times(most) => (most, None),
+            Solves::Tolerance(tolerance) => (MOST_SOLVES, Some(tolerance)),
+        };
+        for solves in 0..=most {
+            if solves == most && tolerance.is_none() {
+                break;
+            }
+            let tangent = self.tangent(stage);
+            let residual = self.assemble(stage, tangent, start, state);
+            if !residual.norm.is_finite() {
+                return Err(StepError::NotFinite);
+            }
+            let floor = self.rounding(state);
+            if solves > 0 && residual.norm <= (tolerance.unwrap_or(0.0) * residual.scale).max(floor) {
+                break;
+            }
+            if solves == most {
+                return Err(StepError::NotConverged(most));
+            }
+            if let Some(tangent) = tangent {
+                self.factorize(stage, tangent, start, state)?;
+            }
+            self.correct(state)?;
+            self.follow(state);
+        }
+        Ok(())
+    }
+
+    /// Rotations and turns of edges of the displacement.
+    pub fn follow(&mut self, state: &mut State) {
+        let (system, kinematics) = (self.problem.system(), self.kinematics);
+        timed(&mut self.timings.rotate, || system.follow(state, kinematics));
+    }
+
+    /// Which matrix of the elements the next solve needs; `None` where it has one that is constant.
+    fn tangent(&self, stage: &Stage<'_>) -> Option<Tangent> {
+        let constant = self.constant(stage);
+        if constant.is_some() && constant == self.memory.corrector.constant {
+            return None;
+        }
+        let Tangent { warped, geometric, definite } = stage.tangent;
+        let turns = self.kinematics == Kinematics::Corotated && self.method != MethodKind::Warped;
+        Some(Tangent { warped, geometric: if turns { geometric } else { 0.0 }, definite })
+    }
+
+    /// What the matrix depends on where it is constant: under linear theory, unless a hand pulls.
+    fn constant(&self, stage: &Stage<'_>) -> Option<Constant> {
+        let is_constant = self.kinematics == Kinematics::Linear && self.problem.hand().is_none();
+        is_constant.then_some(Constant {
+            inertia: stage.inertia + stage.damping * self.damping.mass * stage.rate,
+            stiffness: stage.tangent.warped + stage.damping * self.damping.stiffness * stage.rate,
+        })
+    }
+
+    /// The residual force of a state, and a matrix where one is wanted.
+    fn assemble(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
+        let mut timings = std::mem::take(self.timings);
+        let residual = timed(&mut timings.assemble, || {
+            let forces = self.residual(stage, tangent, start, state);
+            if let Some(tangent) = tangent {
+                self.complete_matrix(stage, tangent, start, state);
+            }
+            forces
+        });
+        *self.timings = timings;
+        residual
+    }
+
+    /// The residual force of a state into the memory's forces, and the elements' matrix where one is wanted. Damping
+    /// and what the hand pulls are in the residual only.
+    fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
+        let Memory { corrector, forces, free_flight, scratch: [way, momentum], .. } = &mut *self.memory;
+        let (problem, system) = (&*self.problem, self.problem.system());
+        let matrix = tangent.map(|tangent| (tangent, &mut corrector.matrix));
+        if stage.between {
+            problem.linearize_between([start, state], forces, matrix);
+        } else {
+            problem.linearize(state, forces, matrix);
+        }
+        if stage.between && self.kinematics == Kinematics::Corotated {
+            problem.loads().force_between(system, [start, state], &mut forces.external);
+        } else {
+            problem.loads().force(system, &state.displacement, self.kinematics, 1.0, &mut forces.external);
+        }
+        let pattern = system.pattern();
+        let mut scale = pattern.norm(&forces.magnitude).max(pattern.norm(&forces.external));
+        for (i, residual) in forces.residual.iter_mut().enumerate() {
+            *residual = forces.external[i] - forces.internal[i] + stage.start_force.map_or(Vector2::zeros(), |s| s[i]);
+        }
+        combine(way, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
+        self.mass.multiply(way, momentum);
+        scale = scale.max(pattern.norm(momentum));
+        subtract(momentum, &mut forces.residual);
+        if self.damping != Damping::default() {
+            self.damping_force(stage, start, state);
+            let Memory { forces, damping, .. } = &mut *self.memory;
+            scale = scale.max(self.problem.system().pattern().norm(damping));
+            subtract(damping, &mut forces.residual);
+        }
+        let applied = self.applied_hand_force(stage, start, state);
+        let (problem, forces) = (&*self.problem, &mut self.memory.forces);
+        if let Some(hand) = problem.hand() {
+            hand.add_force(applied, &mut forces.residual);
+        }
+        let norm = problem.system().pattern().norm(&forces.residual);
+        self.memory.residual = if scale > 0.0 { norm / scale } else { 0.0 };
+        Residual { norm, scale }
+    }
+
+    /// f_d into the memory.
+    fn damping_force(&mut self, stage: &Stage<'_>, start: &State, state: &State) {
+        let Memory { damping, scratch: [configuration, velocity], .. } = &mut *self.memory;
+        let Damping { mass, stiffness, .. } = self.damping;
+        let terms = terms(stage, state);
+        let terms = &terms[..=stage.others.len()];
+        velocity.fill(Vector2::zeros());
+        for (c, u) in terms {
+            velocity.iter_mut().zip(*u).for_each(|(v, u)| *v += u * *c);
+        }
+        damping.fill(Vector2::zeros());
+        if mass > 0.0 {
+            self.mass.multiply(velocity, damping);
+            damping.iter_mut().for_each(|f| *f *= stage.damping * mass);
+        }
+        if stiffness > 0.0 {
+            damped_configuration(self.kinematics, stage, start, state, configuration);
+            let rate = match self.kinematics {
+                Kinematics::Corotated => StrainRate::Difference(terms),
+                Kinematics::Linear => StrainRate::Velocity(velocity),
+            };
+            let moduli = self.problem.material().membrane().scaled(stage.damping * stiffness);
+            self.problem.system().elements().viscous_force(moduli, configuration, rate, damping);
+        }
+    }
+
+    /// Adds to the elements' matrix what inertia, damping, moments and the hand have of it.
+    fn complete_matrix(&mut self, stage: &Stage<'_>, tangent: Tangent, start: &State, state: &State) {
+        if self.damping.stiffness > 0.0 {
+            let Memory { corrector, scratch: [configuration, _], .. } = &mut *self.memory;
+            damped_configuration(self.kinematics, stage, start, state, configuration);
+            let (system, material) = (self.problem.system(), self.problem.material());
+            let moduli = material.membrane().scaled(stage.damping * self.damping.stiffness * stage.rate);
+            system.elements().viscous_matrix(moduli, configuration, system.slots(), corrector.matrix.slots());
+        }
+        let matrix = &mut self.memory.corrector.matrix;
+        let inertia = stage.inertia + stage.damping * self.damping.mass * stage.rate;
+        self.mass.add_to(inertia, matrix);
+        if tangent.is_exact() {
+            let loads = self.problem.loads();
+            loads.add_stiffness(self.problem.system(), &state.displacement, tangent.geometric, matrix);
+        }
+        if let Some(hand) = self.problem.hand() {
+            let (u, v) = held(stage, hand, start, state);
+            // Half way between, the point moves half as far as at the end.
+            let share = if stage.between { 0.5 } else { 1.0 };
+            hand.add_stiffness(u, v, stage.rate / share, share, matrix);
+        }
+    }
+
+    /// Factorizes the matrix; one that is not positive definite is replaced by one that is.
+    fn factorize(
+        &mut self,
+        stage: &Stage<'_>,
+        tangent: Tangent,
+        start: &State,
+        state: &State,
+    ) -> Result<(), StepError> {
+        let mut made = self.try_factorize();
+        if made.is_err() && tangent.is_exact() {
+            self.assemble(stage, Some(Tangent { definite: true, ..tangent }), start, state);
+            made = self.try_factorize();
+        }
+        self.memory.corrector.constant = if made.is_ok() { self.constant(stage) } else { None };
+        Ok(made?)
+    }
+
+    fn try_factorize(&mut self) -> Result<(), SolverError> {
+        let corrector = &mut self.memory.corrector;
+        self.counts.factorizations += 1;
+        timed(&mut self.timings.factorize, || corrector.factor.factorize(corrector.matrix.values()))
+    }
+
+    /// u ← u + K⁻¹ r.
+    fn correct(&mut self, state: &mut State) -> Result<(), StepError> {
+        let Memory { corrector, forces, .. } = &mut *self.memory;
+        let pattern = self.problem.system().pattern();
+        self.counts.solves += 1;
+        timed(&mut self.timings.solve, || {
+            pattern.restrict(&forces.residual, &mut corrector.free);
+            corrector.factor.solve_in_place(&mut corrector.free);
+            if !corrector.free.iter().all(|v| v.is_finite()) {
+                return Err(StepError::NotFinite);
+            }
+            pattern.add_free(&corrector.free, 1.0, &mut state.displacement);
+            Ok(())
+        })
+    }
+
+    /// The force f_ext − f_int that accelerates a body at the time of its state, but for that of a hand, into
+    /// `result.net_force`.
+    pub fn measure_net_force(&mut self, state: &State, result: &mut State) {
+        self.problem.set_time(state.time);
+        let (problem, forces) = (&*self.problem, &mut self.memory.forces);
+        timed(&mut self.timings.assemble, || {
+            problem.linearize(state, forces, None);
+            problem.loads().force(problem.system(), &state.displacement, self.kinematics, 1.0, &mut forces.external);
+            combine(&mut result.net_force, [(1.0, &forces.external), (-1.0, &forces.internal)]);
+        });
+        result.knows_net_force = true;
+    }
+
+    /// Keeps that force as the stage has left it at its end: α M (u − û) + f_d less the hand's.
+    pub(super) fn keep_net_force(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) {
+        let Memory { free_flight, scratch: [way, _], .. } = &mut *self.memory;
+        combine(way, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
+        self.mass.multiply(way, &mut state.net_force);
+        if self.damping != Damping::default() {
+            self.damping_force(stage, start, state);
+            state.net_force.iter_mut().zip(&self.memory.damping).for_each(|(f, d)| *f += d);
+        }
+        let applied = self.applied_hand_force(stage, start, state);
+        self.add_hand_force(-applied, &mut state.net_force);
+        state.knows_net_force = true;
+    }
+
+    /// The hand's force on a body at the time of its state, N.
+    pub fn hand_force(&mut self, state: &State) -> Vector2<f64> {
+        self.problem.set_time(state.time);
+        let force = |hand: &Hand| hand.force(hand.mean(&state.displacement), hand.mean(&state.velocity));
+        self.problem.hand().map_or_else(Vector2::zeros, force)
+    }
+
+    /// Adds a force of the hand to nodal forces, N.
+    pub(super) fn add_hand_force(&self, hand: Vector2<f64>, forces: &mut [Vector2<f64>]) {
+        if let Some(point) = self.problem.hand() {
+            point.add_force(hand, forces);
+        }
+    }
+
+    /// The hand's force in a stage's equations, N.
+    fn applied_hand_force(&self, stage: &Stage<'_>, start: &State, state: &State) -> Vector2<f64> {
+        self.problem.hand().map_or_else(Vector2::zeros, |hand| {
+            let (u, v) = held(stage, hand, start, state);
+            hand.force(u, v)
+        })
+    }
+
+    /// What a stage adds to the ledger: the residual of its end is left in the memory's forces.
+    ///
+    /// What is lost is what the stage leaves unsolved, and the difference between the work of loads and hand and that of
+    /// the forces it has used. Forces between start and end do the work of the potential; what pulses and hand do beside
+    /// it is what their forces half way do. Forces at the end do not: pulses and hand are booked by the trapezoidal rule.
+    pub(super) fn book(
+        &mut self,
+        stage: &Stage<'_>,
+        start: &State,
+        state: &State,
+        hand_at_start: Vector2<f64>,
+    ) -> Booking {
+        let applied = self.applied_hand_force(stage, start, state);
+        self.residual(stage, None, start, state);
+        let hand_at_end = self.hand_force(state);
+        let loads = self.problem.loads();
+        let moved = |hand: &Hand| hand.mean(&state.displacement) - hand.mean(&start.displacement);
+        let moved = self.problem.hand().map_or_else(Vector2::zeros, moved);
+        let Memory { forces, damping, .. } = &*self.memory;
+        let (used, used_hand) = (work(&forces.external, start, state), applied.dot(&moved));
+        let potential = loads.potential(start, 1.0) - loads.potential(state, 1.0);
+        let (pulses, hand) = if stage.between {
+            (used - potential, used_hand)
+        } else {
+            (loads.pulse_work([start, state]), (hand_at_start + hand_at_end).dot(&moved) * 0.5)
+        };
+        let damps = self.damping != Damping::default();
+        let unsolved = work(&forces.residual, start, state);
+        Booking {
+            dissipated: if damps { work(damping, start, state) } else { 0.0 },
+            lost: Some(unsolved + (potential + pulses - used) + (hand - used_hand)),
+            pulses,
+            hand,
+        }
+    }
+
+    /// The residual that rounding leaves: ε ‖diag(K) |u|‖, N.
+    fn rounding(&mut self, state: &State) -> f64 {
+        let pattern = self.problem.system().pattern();
+        let corrector = &mut self.memory.corrector;
+        pattern.restrict(&state.displacement, &mut corrector.free);
+        let squares = corrector.matrix.diagonal(pattern).zip(&corrector.free).map(|(k, u)| (k * u).powi(2));
+        ROUNDING * squares.sum::<f64>().sqrt()
+    }
+}
+
+/// The displacement at which damping acts: linear theory knows rest only.
+fn damped_configuration(
+    kinematics: Kinematics,
+    stage: &Stage<'_>,
+    start: &State,
+    state: &State,
+    configuration: &mut [Vector2<f64>],
+) {
+    let at_start = if stage.damps_half_way { 0.5 } else { 0.0 };
+    match kinematics {
+        Kinematics::Linear => configuration.fill(Vector2::zeros()),
+        Kinematics::Corotated => {
+            combine(configuration, [(at_start, &start.displacement), (1.0 - at_start, &state.displacement)]);
+        }
+    }
+}
+
+/// The terms of a stage's difference quotient: that of the unknown first, then the others.
+fn terms<'a>(stage: &Stage<'a>, state: &'a State) -> [(f64, &'a [Vector2<f64>]); TERMS] {
+    let mut terms = [(stage.rate, state.displacement.as_slice()); TERMS];
+    terms[1..].iter_mut().zip(stage.others).for_each(|(term, other)| *term = *other);
+    terms
+}
+
+/// Displacement and velocity of the point a hand holds, where the stage's forces are.
+fn held(stage: &Stage<'_>, hand: &Hand, start: &State, state: &State) -> (Vector2<f64>, Vector2<f64>) {
+    let u = hand.mean(&state.displacement);
+    let v = u * stage.rate + stage.others.iter().map(|(c, other)| hand.mean(other) * *c).sum::<Vector2<f64>>();
+    (if stage.between { (u + hand.mean(&start.displacement)) * 0.5 } else { u }, v)
+}
+
+fn subtract(what: &[Vector2<f64>], from: &mut [Vector2<f64>]) {
+    from.iter_mut().zip(what).for_each(|(from, what)| *from -= what);
+}

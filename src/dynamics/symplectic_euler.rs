@@ -1,0 +1,81 @@
+//! Symplectic Euler: v₁ = v₀ + h M⁻¹ f(x₀, v₀), x₁ = x₀ + h v₁, M lumped on the nodes.
+//!
+//! Nothing is solved. Stable below the critical step, which the finest and stiffest element sets
+//! ([`super::critical_step()`]); beyond it the motion explodes.
+
+use nalgebra::Vector2;
+
+use super::step::{Booking, Memory, Step, StepError, combine, work};
+use super::{Inertia, IntegratorEntry};
+use crate::assembly::Hand;
+use crate::element::StrainRate;
+use crate::scene::IntegratorKind;
+use crate::state::is_finite;
+use crate::timings::timed;
+
+pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
+    kind: IntegratorKind::SymplecticEuler,
+    id: "symplectic-euler",
+    about: "Symplectic Euler: explicit, solves nothing, cheap a step, but explodes beyond its critical step.",
+    colors: [[200, 90, 0], [240, 150, 60]],
+    order: 1,
+    stages: 0,
+    inertia: Inertia::Lumped,
+    step,
+};
+
+fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
+    let Step { solver, h, start, state, books, .. } = step;
+    let h = *h;
+    solver.problem.set_time(start.time);
+    let lumped = solver.mass.lumped();
+    let pull = |hand: Option<&Hand>, state: &_| {
+        let force = |hand: &Hand| {
+            let crate::state::State { displacement, velocity, .. } = state;
+            hand.softened_force(hand.mean(displacement), hand.mean(velocity), lumped, h)
+        };
+        hand.map_or_else(Vector2::zeros, force)
+    };
+    let problem = &*solver.problem;
+    let system = problem.system();
+    let Memory { forces, damping, .. } = &mut *solver.memory;
+    let hand_at_start = pull(problem.hand(), start);
+    timed(&mut solver.timings.assemble, || {
+        problem.linearize(start, forces, None);
+        problem.loads().force(system, &start.displacement, solver.kinematics, 1.0, &mut forces.external);
+        combine(&mut forces.residual, [(1.0, &forces.external), (-1.0, &forces.internal)]);
+        if let Some(hand) = problem.hand() {
+            hand.add_force(hand_at_start, &mut forces.residual);
+        }
+        for ((d, v), m) in damping.iter_mut().zip(&start.velocity).zip(lumped) {
+            *d = v * (solver.damping.mass * m);
+        }
+        if solver.damping.stiffness > 0.0 {
+            let moduli = problem.material().membrane().scaled(solver.damping.stiffness);
+            let rate = StrainRate::Velocity(&start.velocity);
+            system.elements().viscous_force(moduli, &start.displacement, rate, damping);
+        }
+    });
+    timed(&mut solver.timings.solve, || {
+        let nodes = forces.residual.iter().zip(&*damping).zip(lumped).zip(system.pattern().mask());
+        for (i, (((f, d), m), mask)) in nodes.enumerate() {
+            state.velocity[i] = (start.velocity[i] + (f - d) * (h / m)).component_mul(mask);
+            state.displacement[i] = start.displacement[i] + state.velocity[i] * h;
+        }
+    });
+    if !is_finite(&state.displacement) || !is_finite(&state.velocity) {
+        return Err(StepError::NotFinite);
+    }
+    solver.follow(state);
+    state.time = start.time + h;
+    if !*books {
+        return Ok(Booking::default());
+    }
+    let dissipated = work(&solver.memory.damping, start, state);
+    solver.problem.set_time(state.time);
+    let hand = solver.problem.hand();
+    let moved =
+        hand.map_or_else(Vector2::zeros, |hand| hand.mean(&state.displacement) - hand.mean(&start.displacement));
+    let hand = (hand_at_start + pull(hand, state)).dot(&moved) * 0.5;
+    Ok(Booking { dissipated, lost: None, pulses: solver.problem.loads().pulse_work([start, state]), hand })
+}

@@ -1,0 +1,112 @@
+//! TR-BDF2: a trapezoid to γ h, then the backward difference of second order; γ = 2 − √2.
+//!
+//! Bank, Coughran, Fichtner, Grosse, Rose and Smith 1985, *Transient simulation of silicon devices and circuits*; Hosea
+//! and Shampine 1996, *Analysis and implementation of TR-BDF2*. L-stable: what the step cannot resolve dies away, and
+//! nothing else does much. Both stages have the same matrix up to the state it is taken at.
+
+use super::stage::Stage;
+use super::step::{Booking, Step, StepError, combine};
+use super::{Inertia, IntegratorEntry};
+use crate::scene::IntegratorKind;
+use std::f64::consts::SQRT_2;
+
+pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
+    kind: IntegratorKind::TrBdf2,
+    id: "tr-bdf2",
+    about: "TR-BDF2: second order, damps only what the step cannot resolve; one solve for each of its two stages will do.",
+    colors: [[0, 120, 80], [110, 220, 140]],
+    order: 2,
+    stages: 2,
+    inertia: Inertia::Consistent,
+    step,
+};
+
+/// Where the trapezoid ends, of the step.
+const GAMMA: f64 = 2.0 - SQRT_2;
+
+fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
+    let Step { solver, h, start, state, middle, books } = step;
+    let h = *h;
+    let mut hand = solver.hand_force(start);
+    let mut booking = Booking::default();
+
+    // The trapezoid: x_g = x₀ + γh (v₀ + v_g)/2, M (v_g − v₀) = γh (f₀ + f_g)/2 − γh f_d.
+    let g = GAMMA * h;
+    if !start.knows_net_force {
+        solver.measure_net_force(start, state);
+    }
+    solver.problem.set_time(start.time + g);
+    combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (g, &start.velocity)]);
+    state.displacement.copy_from_slice(&solver.memory.free_flight);
+    solver.follow(state);
+    // The state gets another one at the end of the step.
+    let mut net_force = std::mem::take(&mut state.net_force);
+    solver.add_hand_force(hand, &mut net_force);
+    let trapezoid = Stage {
+        inertia: 4.0 / (g * g),
+        start_force: Some(&net_force),
+        between: false,
+        tangent: solver.solves.tangent(),
+        rate: 1.0 / g,
+        others: &[(-1.0 / g, &start.displacement)],
+        damps_half_way: true,
+        damping: 2.0,
+    };
+    let solved = solver.solve(&trapezoid, start, state);
+    let booked = solved.is_ok() && *books;
+    combine(
+        &mut state.velocity,
+        [(2.0 / g, &state.displacement), (-2.0 / g, &start.displacement), (-1.0, &start.velocity)],
+    );
+    state.time = start.time + g;
+    if booked {
+        let stage = solver.book(&trapezoid, start, state, hand);
+        // The damping force of the stage is twice that of the step: its time is half of the stage's.
+        booking = Booking { dissipated: 0.5 * stage.dissipated, lost: None, ..stage };
+    }
+    state.net_force = net_force;
+    solved?;
+    middle.copy_from(state);
+    hand = solver.hand_force(middle);
+
+    // The backward difference: v₁ = (x₁ − c₁x_g + c₀x₀)/w, M (v₁ − c₁v_g + c₀v₀)/w = f₁ − f_d.
+    let w = h * (1.0 - GAMMA) / (2.0 - GAMMA);
+    let c1 = 1.0 / (GAMMA * (2.0 - GAMMA));
+    let c0 = (1.0 - GAMMA).powi(2) * c1;
+    solver.problem.set_time(start.time + h);
+    combine(
+        &mut solver.memory.free_flight,
+        [
+            (c1, &middle.displacement),
+            (-c0, &start.displacement),
+            (w * c1, &middle.velocity),
+            (-w * c0, &start.velocity),
+        ],
+    );
+    combine(&mut state.displacement, [(1.0, &middle.displacement), (h - g, &middle.velocity)]);
+    solver.follow(state);
+    let backward = Stage {
+        inertia: 1.0 / (w * w),
+        start_force: None,
+        between: false,
+        tangent: solver.solves.tangent(),
+        rate: 1.0 / w,
+        others: &[(-c1 / w, &middle.displacement), (c0 / w, &start.displacement)],
+        damps_half_way: false,
+        damping: 1.0,
+    };
+    solver.solve(&backward, start, state)?;
+    combine(
+        &mut state.velocity,
+        [(1.0 / w, &state.displacement), (-c1 / w, &middle.displacement), (c0 / w, &start.displacement)],
+    );
+    state.time = start.time + h;
+    solver.keep_net_force(&backward, start, state);
+    if *books {
+        let stage = solver.book(&backward, middle, state, hand);
+        booking.dissipated += stage.dissipated;
+        booking.pulses += stage.pulses;
+        booking.hand += stage.hand;
+    }
+    Ok(booking)
+}

@@ -1,0 +1,138 @@
+//! How time goes on in a dynamic scene, and how it starts.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::Invalid;
+use super::limits::{self, Limit};
+
+/// How time goes on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
+pub struct DynamicsSettings {
+    /// Time step h, s.
+    pub time_step: f64,
+    /// Time after which a headless run ends, s.
+    pub duration: f64,
+    /// Solves a step, or a stage of one; 0: as many as the solver's tolerance takes.
+    pub iterations: u32,
+    /// The integrator, by its name in the registry.
+    pub integrator: IntegratorKind,
+    /// Rayleigh damping.
+    pub damping: Damping,
+}
+
+impl Default for DynamicsSettings {
+    fn default() -> Self {
+        Self {
+            time_step: 1.0 / 60.0,
+            duration: 10.0,
+            iterations: 1,
+            integrator: IntegratorKind::default(),
+            damping: Damping::default(),
+        }
+    }
+}
+
+/// Rayleigh damping: a part that resists motion, and one that resists deformation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
+pub struct Damping {
+    /// Factor of the mass, 1/s: a mode of angular frequency ω decays with this over 2.
+    pub mass: f64,
+    /// Factor of the stiffness, s: a mode decays with this times ω²/2. Rigid motion is not damped.
+    pub stiffness: f64,
+}
+
+/// The integrators there are; [`crate::dynamics::INTEGRATORS`] says what each does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum IntegratorKind {
+    /// The article's and the games' way.
+    ImplicitEuler,
+    /// Second order, damps what the step cannot resolve.
+    #[default]
+    TrBdf2,
+    /// Second order, keeps energy, momentum and angular momentum.
+    EnergyMomentum,
+    /// Explicit.
+    SymplecticEuler,
+}
+
+/// How a dynamic scene starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
+pub struct Start {
+    /// Velocity of the body, m/s.
+    pub velocity: [f64; 2],
+    /// Angular velocity about the centre of mass, rad/s, counter-clockwise.
+    pub spin: f64,
+}
+
+/// A load in time: times sin²(π (t − start)/duration) within, 0 outside.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pulse {
+    /// When it begins, s.
+    pub start: f64,
+    /// How long it lasts, s.
+    pub duration: f64,
+}
+
+fn check(key: &str, limit: Limit, value: f64) -> Result<(), Invalid> {
+    limit.check(value).map_err(|e| Invalid::new(key, e.to_string()))
+}
+
+impl DynamicsSettings {
+    pub(super) fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    pub(super) fn validate(&self) -> Result<(), Invalid> {
+        check("dynamics.time_step", limits::TIME_STEP, self.time_step)?;
+        check("dynamics.duration", limits::DURATION, self.duration)?;
+        check("dynamics.iterations", limits::STEP_ITERATIONS, f64::from(self.iterations))?;
+        check("dynamics.damping.mass", limits::MASS_DAMPING, self.damping.mass)?;
+        check("dynamics.damping.stiffness", limits::STIFFNESS_DAMPING, self.damping.stiffness)
+    }
+}
+
+impl Start {
+    pub(super) fn is_rest(&self) -> bool {
+        *self == Self::default()
+    }
+
+    pub(super) fn validate(&self) -> Result<(), Invalid> {
+        check("start.velocity", limits::SPEED, self.velocity[0].hypot(self.velocity[1]))?;
+        check("start.spin", limits::SPIN, self.spin)
+    }
+}
+
+impl Pulse {
+    /// The factor of the load at a time.
+    ///
+    /// ```
+    /// use warpbeam::scene::Pulse;
+    /// let pulse = Pulse { start: 1.0, duration: 0.2 };
+    /// assert_eq!((pulse.factor(0.9), pulse.factor(1.1), pulse.factor(1.3)), (0.0, 1.0, 0.0));
+    /// ```
+    #[must_use]
+    pub fn factor(&self, time: f64) -> f64 {
+        let t = (time - self.start) / self.duration;
+        if (0.0..=1.0).contains(&t) { (std::f64::consts::PI * t).sin().powi(2) } else { 0.0 }
+    }
+
+    /// When it is over, s.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.start + self.duration
+    }
+
+    pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
+        check(&format!("{key}.pulse.start"), limits::PULSE_START, self.start)?;
+        check(&format!("{key}.pulse.duration"), limits::PULSE_DURATION, self.duration)
+    }
+}

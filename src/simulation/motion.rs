@@ -1,0 +1,296 @@
+//! The march in time: one time step a step.
+
+use nalgebra::Vector2;
+
+use super::{Body, Status};
+use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
+use crate::dynamics::{
+    Booking, Counts, Inertia, IntegratorEntry, Ledger, Memory, Momentum, Solves, StageSolver, Step, StepError,
+    StopReason, critical_step,
+};
+use crate::scene::{MethodKind, Scene, Start};
+use crate::solver::SolverError;
+use crate::state::{State, largest};
+use crate::timings::Timings;
+
+/// Halvings of a step before the motion is given up.
+const MOST_HALVINGS: u32 = 10;
+/// Sizes of the body that it may go away: beyond, its strains have lost half of their digits.
+const FARTHEST: f64 = 1e6;
+/// A fraction of a step that is rounding of the time.
+const NO_TIME: f64 = 1e-6;
+
+/// A body in motion.
+#[derive(Debug)]
+pub struct Motion {
+    mass: Mass,
+    memory: Memory,
+    start: State,
+    middle: State,
+    counts: Counts,
+    ledger: Ledger,
+    keeps_ledger: bool,
+    stopped: Option<StopReason>,
+    critical_step: Option<f64>,
+    timings: Timings,
+    last_step: Timings,
+}
+
+impl Motion {
+    /// One that begins where the body is, with the velocity it has.
+    pub(super) fn new(body: &mut Body) -> Result<Self, SolverError> {
+        let Body { scene, problem, state } = body;
+        let mass = Mass::new(problem.system(), scene.material.area_density());
+        let mut motion = Self {
+            memory: Memory::new(problem.system())?,
+            start: state.clone(),
+            middle: state.clone(),
+            counts: Counts::default(),
+            ledger: Ledger::default(),
+            keeps_ledger: true,
+            stopped: None,
+            critical_step: None,
+            timings: Timings::default(),
+            last_step: Timings::default(),
+            mass,
+        };
+        motion.begin(body);
+        Ok(motion)
+    }
+
+    /// Begins where the body is, with the velocity it has.
+    pub(super) fn begin(&mut self, body: &mut Body) {
+        let Body { scene, problem, state } = body;
+        problem.system().follow(state, self.kinematics(scene));
+        problem.set_time(state.time);
+        self.counts = Counts::default();
+        self.stopped = None;
+        self.timings = Timings::default();
+        self.last_step = Timings::default();
+        self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
+        self.find_critical_step(scene, problem);
+    }
+
+    /// Goes on after an edit; `before` is the scene that was. Position and velocity are kept.
+    pub(super) fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SolverError> {
+        let Body { scene, problem, state } = body;
+        let mass_changes = scene.material.area_density() != before.material.area_density();
+        if change == Change::Unknowns {
+            self.memory = Memory::new(problem.system())?;
+        }
+        if change == Change::Unknowns || mass_changes {
+            self.mass = Mass::new(problem.system(), scene.material.area_density());
+        }
+        self.memory.corrector.forget();
+        let fixed_stay = problem.system().pattern().are_fixed_at_rest(&state.displacement);
+        if !(fixed_stay && state.is_finite()) {
+            start(scene, problem, &self.mass, state);
+            self.begin(body);
+            return Ok(());
+        }
+        problem.system().pattern().stop_fixed(&mut state.velocity);
+        problem.system().follow(state, self.kinematics(scene));
+        problem.set_time(state.time);
+        state.knows_net_force = false;
+        self.stopped = None;
+        if inertia(scene) == inertia(before) {
+            self.ledger.edit(problem, &self.mass, inertia(scene), state);
+        } else {
+            self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
+        }
+        if change >= Change::Stiffness || mass_changes || scene.dynamics != before.dynamics {
+            self.find_critical_step(scene, problem);
+        }
+        Ok(())
+    }
+
+    /// Back to the start of the scene.
+    pub(super) fn reset(&mut self, body: &mut Body) {
+        start(&body.scene, &body.problem, &self.mass, &mut body.state);
+        self.begin(body);
+    }
+
+    fn find_critical_step(&mut self, scene: &Scene, problem: &Problem) {
+        self.critical_step =
+            if entry(scene).is_explicit() { critical_step(problem, &self.mass, scene.dynamics.damping) } else { None };
+    }
+
+    /// A time step; one that fails is taken in halves. Nothing once the motion has been given up.
+    pub(super) fn step(&mut self, body: &mut Body) {
+        if self.stopped.is_some() {
+            return;
+        }
+        let end = body.state.time + body.scene.dynamics.time_step;
+        self.last_step = Timings::default();
+        let (mut halvings, mut left) = (0, 1_u32);
+        while left > 0 {
+            self.start.copy_from(&body.state);
+            let part = body.scene.dynamics.time_step / f64::from(1_u32 << halvings);
+            match self.try_step(body, part) {
+                Ok(booking) => {
+                    left -= 1;
+                    if self.keeps_ledger {
+                        let Body { scene, problem, state } = &*body;
+                        self.ledger.book(&booking, problem, &self.mass, inertia(scene), state);
+                    }
+                }
+                Err(error) => {
+                    body.state.copy_from(&self.start);
+                    if halvings == MOST_HALVINGS || entry(&body.scene).is_explicit() {
+                        self.stopped = Some(self.reason(error, part));
+                        break;
+                    }
+                    self.counts.halvings += 1;
+                    halvings += 1;
+                    left *= 2;
+                }
+            }
+        }
+        if left == 0 {
+            // Sums of parts round; the steps' own times do not.
+            body.state.time = end;
+            self.counts.steps += 1;
+            if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
+                self.stopped = Some(StopReason::RanAway(FARTHEST));
+            }
+        }
+        self.timings.add(&self.last_step);
+    }
+
+    fn try_step(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
+        let kinematics = self.kinematics(&body.scene);
+        let Body { scene, problem, state } = body;
+        let settings = &scene.dynamics;
+        let solves = match settings.iterations {
+            0 => Solves::Tolerance(scene.solver.tolerance),
+            n => Solves::Times(n),
+        };
+        let mut step = Step {
+            solver: StageSolver {
+                problem,
+                mass: &self.mass,
+                damping: settings.damping,
+                method: scene.solver.method,
+                kinematics,
+                solves,
+                tolerance: scene.solver.tolerance,
+                memory: &mut self.memory,
+                counts: &mut self.counts,
+                timings: &mut self.last_step,
+            },
+            h,
+            start: &self.start,
+            state,
+            middle: &mut self.middle,
+            books: self.keeps_ledger,
+        };
+        let booking = (settings.integrator.entry().step)(&mut step)?;
+        if state.is_finite() { Ok(booking) } else { Err(StepError::NotFinite) }
+    }
+
+    fn reason(&self, error: StepError, part: f64) -> StopReason {
+        match self.critical_step {
+            Some(critical) => StopReason::Exploded { step: part, critical },
+            None => StopReason::Step { step: part, error },
+        }
+    }
+
+    fn kinematics(&self, scene: &Scene) -> Kinematics {
+        if scene.solver.method == MethodKind::Linear { Kinematics::Linear } else { Kinematics::Corotated }
+    }
+
+    /// Whether strains are those of linear theory.
+    pub(super) fn is_linear(&self, scene: &Scene) -> bool {
+        self.kinematics(scene) == Kinematics::Linear
+    }
+
+    pub(super) fn status(&self, scene: &Scene, state: &State) -> Status {
+        let settings = &scene.dynamics;
+        match &self.stopped {
+            Some(reason) => Status::Stopped(*reason),
+            None if state.time > settings.duration - NO_TIME * settings.time_step => Status::Finished,
+            None => Status::Running,
+        }
+    }
+
+    /// A hand has taken hold, moved or let go.
+    pub(super) fn pulled(&mut self) {
+        self.memory.corrector.forget();
+    }
+
+    /// What the last stage has left unsolved, over the largest of its forces.
+    pub(super) fn residual(&self) -> f64 {
+        self.memory.residual
+    }
+
+    pub(super) fn forces(&self) -> &Forces {
+        &self.memory.forces
+    }
+
+    pub(super) fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
+    pub(super) fn last_step(&self) -> &Timings {
+        &self.last_step
+    }
+
+    pub(super) fn keep_ledger(&mut self, keep: bool, body: &Body) {
+        if keep && !self.keeps_ledger {
+            self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);
+        }
+        self.keeps_ledger = keep;
+    }
+
+    pub(super) fn momentum(&self, body: &Body) -> Momentum {
+        Momentum::of(&body.problem, &self.mass, inertia(&body.scene), &body.state)
+    }
+
+    /// Where the energy has gone since the start.
+    #[must_use]
+    pub fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// Steps and solves since the start.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// The longest stable step about rest, s; `None` for an integrator that has no such limit.
+    #[must_use]
+    pub fn critical_step(&self) -> Option<f64> {
+        self.critical_step
+    }
+}
+
+fn entry(scene: &Scene) -> &'static IntegratorEntry {
+    scene.dynamics.integrator.entry()
+}
+
+fn inertia(scene: &Scene) -> Inertia {
+    entry(scene).inertia
+}
+
+/// Puts a body at rest and gives it the velocity a scene starts with.
+fn start(scene: &Scene, problem: &Problem, mass: &Mass, state: &mut State) {
+    state.reset();
+    let Start { velocity, spin } = scene.start;
+    let nodes = problem.system().mesh().nodes();
+    let centre = nodes.iter().zip(mass.lumped()).map(|(x, m)| x * *m).sum::<Vector2<f64>>() / mass.total();
+    for (v, x) in state.velocity.iter_mut().zip(nodes) {
+        let arm = x - centre;
+        *v = Vector2::from(velocity) + Vector2::new(-arm.y, arm.x) * spin;
+    }
+    problem.system().pattern().stop_fixed(&mut state.velocity);
+}
+
+/// The state a scene starts with.
+pub(super) fn start_of(scene: &Scene, problem: &Problem) -> State {
+    let mut state = problem.system().at_rest();
+    if scene.start != Start::default() {
+        start(scene, problem, &Mass::new(problem.system(), scene.material.area_density()), &mut state);
+    }
+    state
+}

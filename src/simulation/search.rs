@@ -1,0 +1,268 @@
+//! The search for an equilibrium: one iteration a step.
+
+use nalgebra::Vector2;
+
+use super::{Body, Status};
+use crate::assembly::{Change, Forces, Kinematics, Problem};
+use crate::element::Tangent;
+use crate::method::{
+    AutoReport, Certificate, Iteration, IterationError, Method, Reason, Restart, Tolerances, Verdict, Workspace,
+    fixed_point_rho, is_stable, measure,
+};
+use crate::scene::{Scene, SolverSettings};
+use crate::solver::SolverError;
+use crate::state::State;
+use crate::timings::{Timings, timed};
+
+/// A method at work.
+#[derive(Debug)]
+pub(super) struct Search {
+    method: Box<dyn Method>,
+    /// Displacement and turns before the present iteration.
+    previous: (Vec<Vector2<f64>>, Vec<f64>),
+    forces: Forces,
+    workspace: Workspace,
+    residual: f64,
+    iterations: u32,
+    status: Status,
+    certificate: Option<Certificate>,
+    timings: Timings,
+    last_iteration: Timings,
+}
+
+fn tolerances(settings: &SolverSettings) -> Tolerances {
+    Tolerances { residual: settings.tolerance, error: 0.01 * settings.max_error_percent }
+}
+
+impl Search {
+    /// One that starts where the body is.
+    pub fn new(body: &mut Body) -> Result<Self, SolverError> {
+        let mut search = Self {
+            method: (body.scene.solver.method.entry().start)(),
+            previous: (body.state.displacement.clone(), body.state.turns.clone()),
+            forces: Forces::new(body.state.displacement.len()),
+            workspace: Workspace::new(body.problem.system())?,
+            residual: 0.0,
+            iterations: 0,
+            status: Status::Running,
+            certificate: None,
+            timings: Timings::default(),
+            last_iteration: Timings::default(),
+        };
+        search.restart(body, Restart::AtRest);
+        Ok(search)
+    }
+
+    /// Goes on after an edit; `before` is the scene that was. The state is kept unless it is of no use.
+    pub fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SolverError> {
+        let why = match change {
+            Change::Mesh | Change::Unknowns => {
+                self.workspace = Workspace::new(body.problem.system())?;
+                Restart::NewUnknowns
+            }
+            Change::Stiffness => Restart::NewStiffness,
+            Change::Loads => Restart::NewLoads,
+        };
+        let moments = |scene: &Scene| scene.loads.iter().any(|load| load.is_moment());
+        if moments(before) || moments(&body.scene) {
+            // The exact tangent has the moments in it.
+            self.workspace.tangent = None;
+        }
+        let same_method = body.scene.solver.method == before.solver.method;
+        let keeps_state = same_method && !matches!(self.status, Status::Diverged(_)) && body.is_useful_start();
+        if !same_method {
+            self.method = (body.scene.solver.method.entry().start)();
+        }
+        self.method.restart(why);
+        if keeps_state {
+            self.restart(body, why);
+        } else {
+            body.state.reset();
+            self.restart(body, Restart::AtRest);
+        }
+        Ok(())
+    }
+
+    /// Forgets iterations and times, and measures the state it starts from.
+    pub fn restart(&mut self, body: &mut Body, why: Restart) {
+        self.iterations = 0;
+        self.status = Status::Running;
+        self.certificate = None;
+        self.timings = Timings::default();
+        self.last_iteration = Timings::default();
+        let mut unmeasured = Timings::default();
+        if why == Restart::NewLoads {
+            // Forces within the body are what they were.
+            let (kinematics, load_factor) = (self.method.kinematics(), self.method.load_factor());
+            self.residual = body.problem.balance(&body.state, kinematics, load_factor, &mut self.forces);
+        } else {
+            if why == Restart::AtRest {
+                self.method.restart(why);
+                self.follow_displacement(body, &mut unmeasured);
+            }
+            self.measure_forces(body, self.method.tangent(), self.method.load_factor(), &mut unmeasured);
+        }
+        let verdict = self.with_method(body, &mut unmeasured, |method, it| method.judge(it));
+        self.follow(body, verdict, &mut unmeasured);
+    }
+
+    /// A hand has taken hold, moved or let go.
+    pub fn pulled(&mut self, body: &mut Body, moved_only: bool) {
+        let why = if moved_only { Restart::NewLoads } else { Restart::NewStiffness };
+        // The tangent has the hand in it.
+        self.workspace.tangent = None;
+        self.method.restart(why);
+        self.restart(body, why);
+    }
+
+    /// One iteration; nothing once the status is final.
+    pub fn step(&mut self, body: &mut Body) {
+        if self.status != Status::Running {
+            return;
+        }
+        let mut timings = Timings::default();
+        let State { displacement, turns, .. } = &body.state;
+        self.previous.0.copy_from_slice(displacement);
+        self.previous.1.copy_from_slice(turns);
+        let iterated = self.with_method(body, &mut timings, |method, it| method.iterate(it));
+        self.iterations += 1;
+        let measured = iterated.and_then(|()| {
+            self.measure(body, &mut timings);
+            if self.residual.is_finite() { Ok(()) } else { Err(IterationError::NotFinite) }
+        });
+        if measured.is_err() {
+            body.state.displacement.copy_from_slice(&self.previous.0);
+            body.state.turns.copy_from_slice(&self.previous.1);
+            self.measure(body, &mut timings);
+        }
+        let verdict = self.with_method(body, &mut timings, |method, it| match measured {
+            Ok(()) => method.judge(it),
+            Err(error) => method.recover(it, error),
+        });
+        self.follow(body, verdict, &mut timings);
+        self.timings.add(&timings);
+        self.last_iteration = timings;
+    }
+
+    /// Lets the method work on the current state.
+    fn with_method<T>(
+        &mut self,
+        body: &mut Body,
+        timings: &mut Timings,
+        work: impl FnOnce(&mut dyn Method, &mut Iteration<'_>) -> T,
+    ) -> T {
+        let mut iteration = Iteration {
+            problem: &body.problem,
+            forces: &mut self.forces,
+            residual: self.residual,
+            tolerances: tolerances(&body.scene.solver),
+            state: &mut body.state,
+            workspace: &mut self.workspace,
+            timings,
+        };
+        work(self.method.as_mut(), &mut iteration)
+    }
+
+    /// Does what the method's verdict asks for.
+    fn follow(&mut self, body: &mut Body, verdict: Verdict, timings: &mut Timings) {
+        match verdict {
+            Verdict::Continue => {}
+            Verdict::Changed => self.measure(body, timings),
+            Verdict::Converged => self.status = Status::Converged,
+            Verdict::Stop(reason) => self.status = reason.into(),
+        }
+        let most = body.scene.solver.max_iterations;
+        if self.status == Status::Running && self.iterations >= most {
+            self.status = Reason::IterationLimit(most).into();
+            self.method.stop(&mut body.state);
+            // What is missing to the whole load.
+            self.follow_displacement(body, timings);
+            self.measure_forces(body, None, 1.0, timings);
+        }
+    }
+
+    /// Rotations, forces and residual of the current state under the load that is on the body at present, and the
+    /// tangent that the next iteration needs.
+    fn measure(&mut self, body: &mut Body, timings: &mut Timings) {
+        self.follow_displacement(body, timings);
+        self.measure_forces(body, self.method.tangent(), self.method.load_factor(), timings);
+    }
+
+    fn follow_displacement(&mut self, body: &mut Body, timings: &mut Timings) {
+        let kinematics = self.method.kinematics();
+        timed(&mut timings.rotate, || body.problem.system().follow(&mut body.state, kinematics));
+    }
+
+    fn measure_forces(&mut self, body: &Body, tangent: Option<Tangent>, load_factor: f64, timings: &mut Timings) {
+        self.residual = measure(
+            &body.problem,
+            &body.state,
+            self.method.kinematics(),
+            (tangent, load_factor),
+            &mut self.forces,
+            &mut self.workspace,
+            timings,
+        );
+    }
+
+    /// See [`super::Simulation::certify`].
+    pub fn certify(&mut self, problem: &Problem, state: &State) -> Certificate {
+        if let Some(certificate) = self.certificate {
+            return certificate;
+        }
+        if self.status == Status::Running || self.kinematics() == Kinematics::Linear {
+            return Certificate::default();
+        }
+        let Self { forces, workspace, method, .. } = self;
+        let load_factor = method.load_factor();
+        let certificate = Certificate {
+            fixed_point_rho: fixed_point_rho(problem, state, load_factor, forces, workspace),
+            stable: Some(is_stable(problem, state, load_factor, forces, workspace)),
+        };
+        *self.certificate.insert(certificate)
+    }
+
+    pub fn certificate(&self) -> Option<Certificate> {
+        self.certificate
+    }
+
+    pub fn kinematics(&self) -> Kinematics {
+        self.method.kinematics()
+    }
+
+    pub fn forces(&self) -> &Forces {
+        &self.forces
+    }
+
+    pub fn load_stepping(&self) -> (f64, u32) {
+        (self.method.load_factor(), self.method.load_steps())
+    }
+
+    pub fn auto_report(&self) -> Option<AutoReport> {
+        self.method.report()
+    }
+
+    pub fn status(&self) -> &Status {
+        &self.status
+    }
+
+    pub fn iterations(&self) -> u32 {
+        self.iterations
+    }
+
+    pub fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    pub fn step_ratio(&self) -> Option<f64> {
+        self.method.step_ratio()
+    }
+
+    pub fn last_iteration(&self) -> &Timings {
+        &self.last_iteration
+    }
+
+    pub fn timings(&self) -> &Timings {
+        &self.timings
+    }
+}

@@ -1,0 +1,40 @@
+//! Where the time goes.
+
+use std::time::{Duration, Instant};
+
+/// Time spent in each stage of an iteration or a time step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Timings {
+    /// Deformation gradients and polar decompositions.
+    pub rotate: Duration,
+    /// Stiffness, forces, residual.
+    pub assemble: Duration,
+    /// Numeric factorization.
+    pub factorize: Duration,
+    /// Forward and back substitution, update.
+    pub solve: Duration,
+}
+
+impl Timings {
+    /// All stages together.
+    #[must_use]
+    pub fn total(&self) -> Duration {
+        self.rotate + self.assemble + self.factorize + self.solve
+    }
+
+    /// Adds other timings, stage by stage.
+    pub fn add(&mut self, other: &Self) {
+        self.rotate += other.rotate;
+        self.assemble += other.assemble;
+        self.factorize += other.factorize;
+        self.solve += other.solve;
+    }
+}
+
+/// Runs `work` and adds the time it took to `stage`.
+pub(crate) fn timed<T>(stage: &mut Duration, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    *stage += start.elapsed();
+    result
+}

@@ -1,0 +1,76 @@
+//! What tests of bodies in motion need.
+
+use nalgebra::{DMatrix, DVector, Vector2};
+use warpbeam::assembly::{Forces, Mass, Matrix};
+use warpbeam::dynamics::{Inertia, Momentum};
+use warpbeam::element::Tangent;
+use warpbeam::{IntegratorKind, Scene, Simulation, Status};
+
+use super::scene;
+
+/// A built-in scene with another integrator, step, solves a step and duration.
+pub fn with(id: &str, kind: IntegratorKind, time_step: f64, iterations: u32, duration: f64) -> Scene {
+    let mut scene = scene(id);
+    (scene.dynamics.integrator, scene.dynamics.time_step) = (kind, time_step);
+    (scene.dynamics.iterations, scene.dynamics.duration) = (iterations, duration);
+    scene
+}
+
+pub fn run(scene: &Scene) -> Simulation {
+    let mut simulation = Simulation::new(scene).unwrap();
+    assert_eq!(*simulation.solve(), Status::Finished);
+    simulation
+}
+
+pub fn drift(simulation: &Simulation) -> f64 {
+    simulation.motion().unwrap().ledger().drift()
+}
+
+pub fn momentum(simulation: &Simulation) -> Momentum {
+    simulation.solution().motion.unwrap().momentum
+}
+
+/// A small body's first mode, 1 mm long, under linear theory's matrices at rest and the mass its integrator moves.
+pub fn first_mode(simulation: &Simulation) -> Vec<Vector2<f64>> {
+    let system = simulation.system();
+    let (n, nodes) = (system.dofs(), system.mesh().nodes().len());
+    let mut sparse = Matrix::new(system.pattern());
+    let mut forces = Forces::new(nodes);
+    simulation.problem().linearize(&system.at_rest(), &mut forces, Some((Tangent::WARPED, &mut sparse)));
+    let mass = Mass::new(system, simulation.scene().material.area_density());
+    let (mut stiffness, mut inertia) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
+    let (mut column, mut nodal, mut moved) =
+        (vec![0.0; n], vec![Vector2::zeros(); nodes], vec![Vector2::zeros(); nodes]);
+    for i in 0..n {
+        let mut unit = vec![0.0; n];
+        unit[i] = 1.0;
+        sparse.multiply(system.pattern(), &unit, &mut column);
+        stiffness.set_column(i, &DVector::from_column_slice(&column));
+        nodal.fill(Vector2::zeros());
+        system.pattern().add_free(&unit, 1.0, &mut nodal);
+        match simulation.scene().dynamics.integrator.entry().inertia {
+            Inertia::Consistent => mass.multiply(&nodal, &mut moved),
+            Inertia::Lumped => moved = nodal.iter().zip(mass.lumped()).map(|(v, m)| v * *m).collect(),
+        }
+        system.pattern().restrict(&moved, &mut column);
+        inertia.set_column(i, &DVector::from_column_slice(&column));
+    }
+    // Inverse iteration.
+    let cholesky = stiffness.cholesky().unwrap();
+    let mut mode = DVector::from_element(n, 1.0);
+    for _ in 0..60 {
+        mode = cholesky.solve(&(&inertia * mode));
+        mode /= mode.amax();
+    }
+    let mut u = vec![Vector2::zeros(); nodes];
+    system.pattern().add_free(mode.as_slice(), 1e-3, &mut u);
+    u
+}
+
+pub fn beam(cells: u32, slenderness: f64) -> Scene {
+    Scene::beam(1.0, 1.0 / slenderness)
+        .with_cells(cells, 1)
+        .clamp("left")
+        .probe("tip", "right")
+        .moving(IntegratorKind::TrBdf2, 1e-3)
+}

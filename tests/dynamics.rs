@@ -1,0 +1,340 @@
+//! Motion: against an independent trajectory, beam theory, conservation laws, and laws of the integrators themselves.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use std::f64::consts::TAU;
+
+use common::motion::{beam, drift, first_mode, momentum, run, with};
+use common::scene;
+use nalgebra::{Matrix2, Vector2};
+use warpbeam::assembly::Mass;
+use warpbeam::dynamics::lowest_frequency;
+use warpbeam::element::{DiscreteGradient, warped_strain};
+use warpbeam::material::Lame;
+use warpbeam::rotation::{Rotation, polar_or};
+use warpbeam::truth::ClampedBeam;
+use warpbeam::{IntegratorKind, Load, Material, MethodKind, Scene, Simulation, Status};
+
+const EULER: IntegratorKind = IntegratorKind::ImplicitEuler;
+const TR_BDF2: IntegratorKind = IntegratorKind::TrBdf2;
+const ENERGY_MOMENTUM: IntegratorKind = IntegratorKind::EnergyMomentum;
+const SYMPLECTIC: IntegratorKind = IntegratorKind::SymplecticEuler;
+
+/// Tip displacement of the swing at multiples of 1/240 s, computed independently: `tests/data/swing.py`.
+fn swing_truth() -> Vec<Vector2<f64>> {
+    let rows = include_str!("data/swing.csv").lines().filter(|line| !line.starts_with('#')).skip(1);
+    rows.map(|row| {
+        let v: Vec<f64> = row.split(',').map(|v| v.parse().unwrap()).collect();
+        Vector2::new(v[1], v[2])
+    })
+    .collect()
+}
+
+/// The largest distance of the swing's tip from the truth in two seconds, over its length.
+fn swing_error(kind: IntegratorKind, rate: usize, iterations: u32) -> f64 {
+    let mut simulation = Simulation::new(&with("swing", kind, 1.0 / rate as f64, iterations, 2.0)).unwrap();
+    let mut worst: f64 = 0.0;
+    for truth in swing_truth().iter().skip(240 / rate - 1).step_by(240 / rate) {
+        simulation.step();
+        worst = worst.max((simulation.probe("tip").unwrap() - truth).norm());
+    }
+    assert_eq!(*simulation.status(), Status::Finished);
+    worst
+}
+
+#[test]
+fn a_swing_follows_the_truth() {
+    for (kind, bounds) in [(TR_BDF2, [0.025, 0.008, 0.003]), (ENERGY_MOMENTUM, [0.025, 0.009, 0.004])] {
+        for (rate, bound) in [60, 120, 240].into_iter().zip(bounds) {
+            let error = swing_error(kind, rate, 1);
+            assert!(error <= bound, "{} at 1/{rate}: {error}", kind.id());
+        }
+    }
+}
+
+/// What the games' way costs must be seen.
+#[test]
+fn implicit_euler_loses_a_swing() {
+    let error = swing_error(EULER, 60, 1);
+    assert!((0.12..0.25).contains(&error), "{error}");
+}
+
+#[test]
+fn a_swing_keeps_its_energy_as_its_integrator_promises() {
+    let energy_momentum = drift(&run(&with("swing", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 10.0)));
+    assert!(energy_momentum.abs() <= 1e-6, "{energy_momentum}");
+    for (rate, bound) in [(120.0, 0.05), (240.0, 0.005)] {
+        let drift = drift(&run(&with("swing", TR_BDF2, 1.0 / rate, 1, 10.0)));
+        assert!(drift <= 0.0 && drift >= -bound, "1/{rate}: {drift}");
+    }
+}
+
+#[test]
+fn energy_momentum_takes_few_iterations() {
+    for (rate, bound) in [(60.0, 7.5), (120.0, 5.0)] {
+        let counts = run(&with("swing", ENERGY_MOMENTUM, 1.0 / rate, 0, 2.0)).motion().unwrap().counts();
+        let iterations = counts.solves as f64 / counts.steps as f64;
+        assert!(iterations <= bound && counts.halvings == 0, "1/{rate}: {iterations}, {counts:?}");
+    }
+}
+
+/// 10⁴ steps of a free bar.
+#[test]
+fn energy_momentum_keeps_a_spin() {
+    let mut scene = with("spin", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 1e4 / 60.0);
+    scene.solver.tolerance = 1e-11;
+    scene.start.velocity = [0.3, -0.2];
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let before = momentum(&simulation);
+    simulation.solve();
+    let (ledger, after) = (*simulation.motion().unwrap().ledger(), momentum(&simulation));
+    assert_eq!(simulation.motion().unwrap().counts().steps, 10_000);
+    assert!((ledger.total() - ledger.start).abs() < 1e-10 * ledger.start, "{ledger:?}");
+    assert!((after.linear - before.linear).norm() < 1e-10 * before.linear.norm(), "{before:?} {after:?}");
+    assert!((after.angular - before.angular).abs() < 1e-9 * before.angular, "{before:?} {after:?}");
+}
+
+#[test]
+fn a_spin_slows_as_its_integrator_must() {
+    let spin = |kind, iterations| {
+        let mut simulation = Simulation::new(&with("spin", kind, 1.0 / 60.0, iterations, 10.0)).unwrap();
+        let before = momentum(&simulation).angular;
+        simulation.solve();
+        momentum(&simulation).angular / before
+    };
+    let kept = spin(TR_BDF2, 1);
+    assert!((0.99..=1.001).contains(&kept), "{kept}");
+    // A rigid body under implicit Euler turns by chords: dL/dt = −h ω² L, ω proportional to L.
+    let (omega, h, time) = (6.0_f64, 1.0 / 60.0, 10.0);
+    let law = (1.0 + 2.0 * h * omega * omega * time).powf(-0.5);
+    let kept = spin(EULER, 0);
+    assert!((kept / law - 1.0).abs() < 0.01, "{kept} {law}");
+}
+
+#[test]
+fn first_frequencies_are_beam_theorys() {
+    let measured = |scene: &Scene| {
+        let simulation = Simulation::new(scene).unwrap();
+        let mass = Mass::new(simulation.system(), scene.material.area_density());
+        lowest_frequency(simulation.problem(), &mass).unwrap()
+    };
+    let theory = |slenderness: f64, shear: bool| {
+        let (height, young, poisson, density) = (1.0 / slenderness, 1e6, 0.3, 1000.0);
+        let inertia = f64::powi(height, 3) / 12.0;
+        let shear_area = 5.0 / 6.0 * young / (2.0 * (1.0 + poisson)) * height;
+        let beam = ClampedBeam {
+            length: 1.0,
+            bending: young * inertia,
+            stretch_compliance: 0.0,
+            shear_compliance: if shear { 1.0 / shear_area } else { 0.0 },
+            tip_force: Vector2::zeros(),
+            tip_moment: 0.0,
+            weight: Vector2::zeros(),
+        };
+        beam.lowest_frequency(density * height, if shear { density * inertia } else { 0.0 }).unwrap()
+    };
+    // Euler and Bernoulli in closed form.
+    let closed = 1.875_104_068_711_961_f64.powi(2) * (1e6_f64 / 12.0 / 1000.0).sqrt() / 50.0;
+    assert!((theory(50.0, false) / closed - 1.0).abs() < 1e-9);
+    for (slenderness, cells, shear) in [(50.0, 40, false), (100.0, 80, false), (10.0, 20, true)] {
+        let (measured, theory) = (measured(&beam(cells, slenderness)), theory(slenderness, shear));
+        assert!((measured / theory - 1.0).abs() < 0.005, "L/H = {slenderness}: {measured} {theory}");
+    }
+    // Shear and rotary inertia matter at L/H = 10.
+    assert!(theory(10.0, true) < 0.995 * theory(10.0, false));
+    // And the swing's motion, if small, has that frequency: a quarter of its period after it was let go it is at rest's.
+    let mut scene = beam(20, 10.0).moving(ENERGY_MOMENTUM, 1e-3);
+    scene.dynamics.iterations = 0;
+    let omega = measured(&scene);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let mode = first_mode(&simulation);
+    simulation.start_from(&mode).unwrap();
+    let start = simulation.probe("tip").unwrap().y;
+    let steps = (0.25 * TAU / omega / 1e-3).round() as u32;
+    for _ in 0..steps {
+        simulation.step();
+    }
+    assert!((simulation.probe("tip").unwrap().y / start).abs() < 0.01);
+}
+
+/// A linear vibration under implicit Euler keeps 1/(1 + ω²h²) of its energy a step.
+#[test]
+fn implicit_euler_damps_the_first_mode_by_28_percent_a_period() {
+    let mut scene = beam(20, 10.0).moving(EULER, 1.0 / 60.0).with_method(MethodKind::Linear);
+    scene.dynamics.duration = 1e3;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let mass = Mass::new(simulation.system(), scene.material.area_density());
+    let omega = lowest_frequency(simulation.problem(), &mass).unwrap();
+    let mode = first_mode(&simulation);
+    simulation.start_from(&mode).unwrap();
+    let before = simulation.motion().unwrap().ledger().total();
+    let (periods, period) = (5.0, TAU / omega);
+    let steps = (periods * period * 60.0).round();
+    for _ in 0..steps as u32 {
+        simulation.step();
+    }
+    let kept = (simulation.motion().unwrap().ledger().total() / before).powf(period * 60.0 / steps);
+    assert!((period - 1.96).abs() < 0.01, "{period}");
+    assert!((1.0 - kept - 0.284).abs() < 0.005, "{}", 1.0 - kept);
+}
+
+/// P : ΔF = Δψ and P F̄ᵀ symmetric, over random and adversarial pairs.
+#[test]
+fn the_discrete_gradient_is_exact() {
+    let lame = Lame { lambda: 0.6, mu: 0.4 };
+    let mut seed = 1_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
+    };
+    let mut worst = [0.0_f64; 2];
+    for i in 0..1_000_000_u32 {
+        let mut any = |size: f64| Matrix2::new(random(), random(), random(), random()) * size;
+        let f0 = match i % 5 {
+            // Small strains, turned anyhow; inverted ones; anything.
+            0 => Rotation::from_angle(4.0 * any(1.0).m11).matrix() * (Matrix2::identity() + any(1e-3)),
+            1 => Matrix2::new(-1.0, 0.0, 0.0, 1.0) + any(0.5),
+            _ => any(2.0),
+        };
+        let f1 = match i % 7 {
+            // Next to nothing; half a turn; a squeeze through zero; anything.
+            0 => f0 + any(1e-12),
+            1 => f0 + any(1e-5),
+            2 => Rotation::from_angle(std::f64::consts::PI).matrix() * (f0 + any(1e-9)),
+            3 => -f0 + any(1e-3),
+            4 => any(1e-6),
+            _ => any(2.0),
+        };
+        let [h0, h1] = [f0, f1].map(|f| f - Matrix2::identity());
+        let [r0, r1] = [f0, f1].map(|f| polar_or(&f, Rotation::IDENTITY));
+        let stress = DiscreteGradient::new([h0, h1], [r0, r1]).stress(lame);
+        let [w0, w1] = [(r0, h0), (r1, h1)].map(|(r, h)| lame.energy_density(&warped_strain(r, &h)));
+        let scale = 1.0 + w0 + w1;
+        worst[0] = worst[0].max((stress.dot(&(h1 - h0)) - (w1 - w0)).abs() / scale);
+        let turning = stress * ((f0 + f1) * 0.5).transpose();
+        worst[1] = worst[1].max((turning.m12 - turning.m21).abs() / scale);
+    }
+    assert!(worst[0] < 1e-12 && worst[1] < 1e-12, "{worst:?}");
+}
+
+/// Energy–momentum loses nothing: pulses, hands and edits aside, what damping takes is what goes.
+#[test]
+fn energy_momentum_books_only_its_tolerance() {
+    let mut scene = with("swing", ENERGY_MOMENTUM, 1.0 / 120.0, 0, 2.0).moment("right", 20.0);
+    scene.dynamics.damping.stiffness = 2e-3;
+    scene.solver.tolerance = 1e-11;
+    let ledger = *run(&scene).motion().unwrap().ledger();
+    assert!(ledger.dissipated > 0.01 * ledger.largest_kinetic);
+    assert!(ledger.integrator.abs() < 1e-9 * ledger.throughput, "{ledger:?}");
+}
+
+/// Stiffness damping does not resist turning: a body that turns without deforming keeps its angular momentum.
+#[test]
+fn damping_by_stiffness_leaves_turning_alone() {
+    let mut scene = with("spin", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 5.0);
+    scene.material.young = 1e8;
+    scene.dynamics.damping.stiffness = 0.01;
+    scene.solver.tolerance = 1e-12;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let before = momentum(&simulation).angular;
+    simulation.solve();
+    let after = momentum(&simulation).angular;
+    assert!((after / before - 1.0).abs() < 1e-9, "{before} {after}");
+}
+
+/// An explicit integrator is stable just below its critical step, and explodes, honestly, just above it.
+#[test]
+fn the_critical_step_is_critical() {
+    let at = |factor: f64| {
+        let mut scene = with("swing", SYMPLECTIC, 1e-4, 1, 1e3);
+        let critical = Simulation::new(&scene).unwrap().motion().unwrap().critical_step().unwrap();
+        scene.dynamics.time_step = factor * critical;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        for _ in 0..6000 {
+            simulation.step();
+        }
+        assert!(simulation.state().is_finite());
+        (simulation.status().clone(), simulation.motion().unwrap().ledger().drift())
+    };
+    let (status, drift) = at(0.97);
+    assert_eq!(status, Status::Running);
+    assert!(drift.abs() < 0.1, "{drift}");
+    let (status, _) = at(1.05);
+    assert!(matches!(status, Status::Stopped(_)), "{status:?}");
+}
+
+/// Where a step has no solution it is halved, which the counts say, and what is conserved still is.
+#[test]
+fn a_step_that_fails_is_halved() {
+    let mut scene = with("spin", ENERGY_MOMENTUM, 0.4, 0, 8.0);
+    scene.material.young = 2e4;
+    scene.start.spin = 12.0;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let before = momentum(&simulation).angular;
+    assert_eq!(*simulation.solve(), Status::Finished);
+    assert!(simulation.motion().unwrap().counts().halvings > 0);
+    assert_eq!(simulation.motion().unwrap().counts().steps, 20);
+    assert!((simulation.state().time() - 8.0).abs() < 1e-9);
+    assert!((momentum(&simulation).angular / before - 1.0).abs() < 1e-6);
+    assert!(drift(&simulation).abs() < 1e-6, "{}", drift(&simulation));
+}
+
+#[test]
+fn edits_in_mid_motion_keep_position_and_velocity() {
+    let mut simulation = Simulation::new(&scene("swing")).unwrap();
+    for _ in 0..20 {
+        simulation.step();
+    }
+    let before = simulation.state().clone();
+    let mut edited = scene("swing");
+    edited.material = Material::new(3e6, 0.4);
+    edited.loads = vec![Load::gravity([1.0, -5.0]), Load::moment("right", 30.0)];
+    edited.dynamics.integrator = ENERGY_MOMENTUM;
+    edited.dynamics.time_step = 1.0 / 100.0;
+    simulation.change_scene(&edited).unwrap();
+    let after = simulation.state();
+    assert_eq!(
+        (after.displacement(), after.velocity(), after.time()),
+        (before.displacement(), before.velocity(), before.time())
+    );
+    simulation.step();
+    assert!((simulation.state().time() - before.time() - 0.01).abs() < 1e-12);
+    // From motion to equilibrium and back: the body stays where it is, and loses its velocity.
+    let mut at_rest = edited.clone();
+    at_rest.analysis = warpbeam::scene::Analysis::Static;
+    (at_rest.dynamics, at_rest.start) = Default::default();
+    let position = simulation.displacement().to_vec();
+    simulation.change_scene(&at_rest).unwrap();
+    assert_eq!(simulation.displacement(), position);
+    assert_eq!(*simulation.solve(), Status::Converged);
+    let balanced = simulation.displacement().to_vec();
+    simulation.change_scene(&edited).unwrap();
+    assert_eq!(simulation.displacement(), balanced);
+    assert_eq!(simulation.state().time(), 0.0);
+    for _ in 0..50 {
+        simulation.step();
+    }
+    let farthest = simulation.displacement().iter().zip(&balanced).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(farthest < 1e-6, "an equilibrium stays one: {farthest}");
+}
+
+/// One solve a stage stays finite whatever the stiffness and the step.
+#[test]
+fn tr_bdf2_is_finite_everywhere() {
+    for id in ["swing", "flick", "spin", "sway", "chime", "jelly"] {
+        for young in [1e3, 1e6, 1e9, 1e12] {
+            for h in [1.0 / 240.0, 1.0 / 60.0, 0.1] {
+                let mut scene = with(id, TR_BDF2, h, 1, 1e4);
+                scene.material.young = young;
+                let mut simulation = Simulation::new(&scene).unwrap();
+                simulation.keep_ledger(false);
+                for _ in 0..100 {
+                    simulation.step();
+                }
+                assert_eq!(*simulation.status(), Status::Running, "{id} E = {young} h = {h}");
+                assert!(simulation.state().is_finite());
+            }
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! What every integrator must do.
+
+use std::f64::consts::TAU;
+
+use libtest_mimic::Trial;
+use nalgebra::Vector2;
+use warpbeam::assembly::Mass;
+use warpbeam::dynamics::{INTEGRATORS, IntegratorEntry, lowest_frequency};
+use warpbeam::{Material, Simulation, Status};
+
+use crate::common::motion::{beam, first_mode, momentum, run, with};
+use crate::{Test, suite};
+
+type Entry = &'static IntegratorEntry;
+
+const TESTS: &[Test<Entry>] = &[
+    ("its_error_goes_with_the_power_of_the_step_it_says", its_error_goes_with_the_power_of_the_step_it_says),
+    ("a_free_body_falls", a_free_body_falls),
+    ("a_pulse_leaves_its_impulse", a_pulse_leaves_its_impulse),
+    ("the_ledger_closes", the_ledger_closes),
+    ("damping_takes_what_rayleigh_says", damping_takes_what_rayleigh_says),
+    ("motion_is_reproduced_to_the_last_bit", motion_is_reproduced_to_the_last_bit),
+];
+
+pub fn trials() -> Vec<Trial> {
+    suite("integrator", INTEGRATORS.iter().map(|i| (i.id.to_owned(), *i)), TESTS)
+}
+
+/// A step that all take: the explicit one far below its critical step.
+fn step(entry: Entry, implicit: f64) -> f64 {
+    if entry.is_explicit() { 2e-4 } else { implicit }
+}
+
+/// Three steps, each half of the one before: differences of their results fall by 2 to the order.
+fn its_error_goes_with_the_power_of_the_step_it_says(entry: Entry) {
+    // The explicit one is stable at steps this much smaller only.
+    let (coarse, steps): (f64, u32) = if entry.is_explicit() { (1.0 / 7680.0, 3840) } else { (1.0 / 480.0, 240) };
+    let tip = |halvings: u32| {
+        let mut scene = beam(8, 10.0).moving(entry.kind, coarse * 0.5_f64.powi(halvings as i32));
+        scene.dynamics.iterations = 0;
+        scene.solver.tolerance = 1e-12;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        // So small that nothing but the first mode moves: along the beam others do, by the square of the amplitude.
+        let mode: Vec<_> = first_mode(&simulation).into_iter().map(|u| u * 1e-6).collect();
+        simulation.start_from(&mode).unwrap();
+        for _ in 0..steps << halvings {
+            simulation.step();
+        }
+        // Where in its swing the tip is: displacement, and velocity over the frequency.
+        Vector2::new(simulation.probe("tip").unwrap().y, simulation.probe_velocity("tip").unwrap().y / 3.2)
+    };
+    let [a, b, c] = [0, 1, 2].map(tip);
+    let order = ((a - b).norm() / (b - c).norm()).log2();
+    let expected = if entry.order == 1 { 0.9..1.1 } else { 1.8..2.2 };
+    assert!(expected.contains(&order), "{order}: {a} {b} {c}");
+}
+
+/// A free body falls as Galilei says: the second-order integrators exactly, Euler's off by g h t/2.
+fn a_free_body_falls(entry: Entry) {
+    let h = step(entry, 0.01);
+    let mut scene = with("spin", entry.kind, h, 1, 1.0).gravity([0.0, -9.81]);
+    (scene.start.spin, scene.start.velocity) = (0.0, [0.5, 3.0]);
+    let simulation = run(&scene);
+    let late = if entry.order == 1 { 0.5 * 9.81 * h } else { 0.0 };
+    // Lumped masses vibrate a little under nodal weights that are not lumped.
+    let close = if entry.is_explicit() { 1e-4 } else { 1e-9 };
+    let expected = Vector2::new(0.5, 3.0 - 0.5 * 9.81 - late);
+    let fallen = simulation.probe("end").unwrap();
+    assert!((fallen - expected).norm() < close, "{fallen} {expected}");
+    let v = simulation.probe_velocity("end").unwrap();
+    assert!((v - Vector2::new(0.5, 3.0 - 9.81)).norm() < 100.0 * close, "{v}");
+}
+
+/// A pulse on a free body leaves its impulse behind, F · duration/2.
+fn a_pulse_leaves_its_impulse(entry: Entry) {
+    let mut scene = with("spin", entry.kind, step(entry, 2e-3), 1, 0.3).force([0.5, 0.0], [0.0, 40.0]).pulse(0.05, 0.2);
+    scene.start.spin = 0.0;
+    let linear = momentum(&run(&scene)).linear;
+    // Sums over a period of sin² are exact but for where the pulse begins and ends within a step.
+    assert!((linear - Vector2::new(0.0, 4.0)).norm() < 0.01, "{linear}");
+}
+
+/// Every entry of the ledger, at once: weight, pulses of a force and a moment, damping, a hand that pulls and lets go,
+/// an edit.
+fn the_ledger_closes(entry: Entry) {
+    let h = step(entry, 1.0 / 120.0);
+    let mut scene = with("swing", entry.kind, h, 1, 1.0)
+        .force("right", [0.0, 30.0])
+        .pulse(0.1, 0.3)
+        .moment("right", 5.0)
+        .moment("right", 20.0)
+        .pulse(0.0, 0.2);
+    scene.dynamics.damping.mass = 0.3;
+    scene.dynamics.damping.stiffness = if entry.is_explicit() { 1e-5 } else { 1e-3 };
+    scene.solver.tolerance = 1e-10;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let steps = (1.0 / h).round() as u32;
+    for step in 0..steps {
+        if step == steps / 4 {
+            let point = simulation.system().mesh().locate(Vector2::new(0.9, 0.01)).unwrap();
+            assert!(simulation.grab(point));
+        }
+        if (steps / 4..steps / 2).contains(&step) {
+            let t = f64::from(step) * h;
+            simulation.pull_to(Vector2::new(0.8 + 0.2 * (9.0 * t).sin(), -0.3 + 0.3 * (7.0 * t).cos())).unwrap();
+        }
+        if step == steps / 2 {
+            simulation.release();
+            simulation.set_material(Material::new(1.5e6, 0.35)).unwrap();
+        }
+        simulation.step();
+    }
+    assert_eq!(*simulation.status(), Status::Finished);
+    let ledger = *simulation.motion().unwrap().ledger();
+    assert!(ledger.imbalance().abs() < 1e-11 * ledger.throughput, "{ledger:?}");
+    for (what, booked) in [
+        ("dissipated", ledger.dissipated),
+        ("pulses", ledger.pulses.abs()),
+        ("hands", ledger.hands.abs()),
+        ("edits", ledger.edits.abs()),
+    ] {
+        assert!(booked > 1e-3, "{what} {booked}");
+    }
+}
+
+/// Rayleigh's damping: a small first mode keeps exp(−(a + b ω²) t) of its energy in t, whole periods later.
+fn damping_takes_what_rayleigh_says(entry: Entry) {
+    let rate: f64 = if entry.is_explicit() { 7680.0 } else { 960.0 };
+    let kept = |mass: f64, stiffness: f64| {
+        let mut scene = beam(8, 10.0).moving(entry.kind, 1.0 / rate);
+        (scene.dynamics.damping.mass, scene.dynamics.damping.stiffness) = (mass, stiffness);
+        (scene.dynamics.iterations, scene.dynamics.duration) = (0, 3.0);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let m = Mass::new(simulation.system(), scene.material.area_density());
+        let omega = lowest_frequency(simulation.problem(), &m).unwrap();
+        simulation.start_from(&first_mode(&simulation)).unwrap();
+        let before = simulation.motion().unwrap().ledger().total();
+        let steps = (TAU / omega * rate).round();
+        for _ in 0..steps as u32 {
+            simulation.step();
+        }
+        let expected = (-(mass + stiffness * omega * omega) * steps / rate).exp();
+        simulation.motion().unwrap().ledger().total() / before / expected
+    };
+    // Beside what the integrator itself takes.
+    let undamped = kept(0.0, 0.0);
+    for damping in [(0.1, 0.0), (0.0, if entry.is_explicit() { 1e-3 } else { 0.01 })] {
+        let off = kept(damping.0, damping.1) / undamped;
+        assert!((off - 1.0).abs() < 0.003, "{damping:?}: {off}");
+    }
+}
+
+/// The same scene gives bitwise the same motion, with or without a ledger; a snapshot goes on as the original does; and a
+/// reset begins anew.
+fn motion_is_reproduced_to_the_last_bit(entry: Entry) {
+    let scene = if entry.is_explicit() {
+        with("swing", entry.kind, 2e-4, 1, 0.1)
+    } else {
+        with("flick", entry.kind, 1.0 / 120.0, 1, 0.5)
+    };
+    let (mut a, mut b) = (Simulation::new(&scene).unwrap(), Simulation::new(&scene).unwrap());
+    b.keep_ledger(false);
+    for _ in 0..40 {
+        a.step();
+        b.step();
+    }
+    assert_eq!(a.state(), b.state(), "without a ledger");
+    let snapshot = a.state().clone();
+    a.solve();
+    b.reset();
+    b.restore(&snapshot).unwrap();
+    b.solve();
+    assert_eq!(a.state(), b.state(), "from a snapshot");
+    a.reset();
+    a.solve();
+    assert_eq!(a.state(), b.state(), "from the start again");
+}
