@@ -238,7 +238,7 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
         matrix: Option<MatrixSum<'_>>,
     );
 
-    /// Adds the viscous force Σ ∫ F ℂ[Ė] ∇N dA to `force`, N: `moduli` (N s/m) times a rate Ė of Green's strain, in a
+    /// Adds the viscous force Σ ∫ F ℂ : Ė ∇N dA to `force`, N: `moduli` (N s/m) times a rate Ė of Green's strain, in a
     /// configuration F that belongs to the displacement `u`. A rigid motion has no such rate.
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]);
 
