@@ -8,24 +8,31 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use nalgebra::Vector2;
 use warpbeam::app::Lab;
+use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::scene::{Analysis, Load, MethodKind, Plane, Source};
 use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::Demand;
 
 fn harness(id: &str) -> Harness<'static, Lab> {
+    let mut harness = harness_of(id);
+    harness.run();
+    harness
+}
+
+/// One that may not come to rest.
+fn harness_of(id: &str) -> Harness<'static, Lab> {
     let scene = scene(id);
     let simulation = Simulation::new(&scene).unwrap();
     let lab = Lab::new(Source { name: id.to_owned(), assignments: Vec::new() }, scene, simulation);
-    let mut harness = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
+    Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
         |ui, lab: &mut Lab| {
-            lab.advance();
+            lab.advance(ui.input(|i| i.time));
             lab.ui(ui, None);
         },
         lab,
-    );
-    harness.run();
-    harness
+    )
 }
 
 fn force(lab: &Lab) -> [f64; 2] {
@@ -163,7 +170,7 @@ fn every_number_has_a_unit_and_a_tooltip() {
         ("Moment", "N m", "rolls a beam up once"),
         ("Young E", " Pa", "stiffness"),
         ("Poisson ν", "", "thins"),
-        ("Density ρ", "kg/m³", "gravity reads it"),
+        ("Density ρ", "kg/m³", "inertia in motion"),
         ("Thickness t", " m", "out of the plane"),
         ("Cells along", "", "two triangles"),
         ("Cells across", "", "two triangles"),
@@ -506,4 +513,124 @@ fn no_text_has_letters_that_the_fonts_lack() {
     };
     assert_eq!(lacks(egui::FontId::proportional(14.0)), Vec::<char>::new());
     assert_eq!(lacks(egui::FontId::monospace(14.0)), Vec::<char>::new());
+}
+
+/// Every text in the window.
+fn texts(harness: &Harness<'_, Lab>) -> Vec<String> {
+    let labels = harness.get_all_by(|_| true).map(|node| node.accesskit_node());
+    labels.flat_map(|node| [node.label(), node.value()]).flatten().collect()
+}
+
+/// Where a material point of the body is in the window.
+fn on_body(lab: &Lab, at: Vector2<f64>) -> egui::Pos2 {
+    let simulation = lab.simulation();
+    let mesh = simulation.system().mesh();
+    let weights = mesh.weights(mesh.locate(at).unwrap()).unwrap();
+    let u = simulation.displacement();
+    let place: Vector2<f64> = weights.iter().map(|&(n, w)| (mesh.nodes()[n as usize] + u[n as usize]) * w).sum();
+    let [x, y] = lab.camera().to_view(place);
+    lab.view_rect().center() + egui::vec2(x as f32, y as f32)
+}
+
+/// Pressed on the body and pulled, a beam at rest settles where the spring of the hand balances it; let go, it is where
+/// it was.
+#[test]
+fn a_beam_is_pulled_and_springs_back() {
+    let mut harness = harness("article");
+    let before = harness.state().simulation().displacement().to_vec();
+    let camera = harness.state().camera();
+    let grip = on_body(harness.state(), Vector2::new(4.9, 0.1));
+    harness.drag_at(grip);
+    harness.run();
+    let (hand, force) = harness.state().simulation().hand().expect("the body is held");
+    assert!(force.norm() < 1e-6 * hand.largest_force(), "a hand that does not pull pulls with {force} N");
+    let pointer = grip + egui::vec2(30.0, -160.0);
+    harness.hover_at(pointer);
+    harness.run();
+    let lab = harness.state();
+    let (simulation, rect) = (lab.simulation(), lab.view_rect());
+    assert_eq!(*simulation.status(), Status::Converged);
+    let (hand, force) = simulation.hand().unwrap();
+    let held = hand.position(simulation.displacement());
+    let place = lab.camera().to_world([pointer.x - rect.center().x, pointer.y - rect.center().y].map(f64::from));
+    assert!((hand.target() - place).norm() < 1e-6, "the hand is at {}, the pointer at {place}", hand.target());
+    // The spring is firm: the point is near the pointer; and its force is what its stretch says.
+    assert!((held - place).norm() < 0.1 * (place - Vector2::new(4.9, 0.1)).norm(), "{held} is pulled to {place}");
+    assert!((force - (place - held) * hand.stiffness()).norm() < 1e-9 * force.norm());
+    assert_eq!(lab.camera(), camera, "the view moved with the body");
+    harness.drop_at(pointer);
+    harness.run();
+    let simulation = harness.state().simulation();
+    assert!(simulation.hand().is_none());
+    assert_eq!(*simulation.status(), Status::Converged);
+    let away = simulation.displacement().iter().zip(&before).map(|(u, b)| (u - b).norm()).fold(0.0, f64::max);
+    assert!(away < 1e-6, "it came back to within {away} m");
+}
+
+/// A motion runs in real time, can be paused and stepped, is pulled and let go, and goes back to its start or to a mark.
+#[test]
+fn a_motion_is_run_paused_stepped_pulled_and_reset() {
+    let mut harness = harness_of("swing");
+    let time = |harness: &Harness<'_, Lab>| harness.state().simulation().state().time();
+    harness.run_steps(12);
+    let running = time(&harness);
+    assert!(running > 0.5, "12 frames of a quarter of a second made {running} s");
+    harness.get_by_label("Pause").click();
+    harness.run_steps(3);
+    let paused = time(&harness);
+    harness.run_steps(3);
+    assert!((time(&harness) - paused).abs() < 1e-12, "it is paused");
+    harness.get_by_label("Step").click();
+    harness.run_steps(2);
+    assert!((time(&harness) - paused - 1.0 / 60.0).abs() < 1e-9, "one step is one time step");
+    // Marked here, a reset comes back to here.
+    harness.get_by_label("Reset to here").click();
+    harness.run_steps(2);
+    let marked = harness.state().simulation().displacement().to_vec();
+    harness.get_by_label("Run").click();
+    harness.run_steps(5);
+    assert!(time(&harness) > paused + 0.3);
+    // Pulled at the tip while it runs: the hand works.
+    let grip = on_body(harness.state(), Vector2::new(0.98, 0.0));
+    harness.drag_at(grip);
+    harness.run_steps(2);
+    harness.hover_at(grip + egui::vec2(60.0, -80.0));
+    harness.run_steps(4);
+    let force = harness.state().simulation().hand().expect("the tip is held").1;
+    assert!(force.norm() > 0.0);
+    harness.drop_at(grip + egui::vec2(60.0, -80.0));
+    harness.run_steps(2);
+    assert!(harness.state().simulation().hand().is_none());
+    let ledger = *harness.state().simulation().motion().unwrap().ledger();
+    assert!(ledger.hands != 0.0 && ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{ledger:?}");
+    harness.get_by_label("Pause").click();
+    harness.get_by_label("Reset").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().simulation().displacement(), marked);
+    harness.get_by_label("Reset to here").click();
+    harness.run_steps(1);
+    harness.get_by_label("Reset").click();
+    harness.run_steps(2);
+    assert!(time(&harness) == 0.0, "at the start");
+}
+
+/// The panel of every scene in time can be used, with every integrator and every plot, and nothing not finite is shown.
+#[test]
+fn every_motion_is_shown_with_every_integrator_and_plot() {
+    for id in common::ids_of(Analysis::Dynamic) {
+        let mut harness = harness_of(id);
+        harness.key_press(Key::E);
+        harness.run_steps(2);
+        for (integrator, plot) in INTEGRATORS.iter().zip(["Energy", "Tip", "Phase", "Spectrum"]) {
+            let mut scene = harness.state().scene().clone();
+            scene.dynamics.integrator = integrator.kind;
+            harness.state_mut().set_scene(scene).unwrap();
+            INTEGRATORS.iter().for_each(|other| harness.state_mut().compare_with(other.kind));
+            harness.get_by_role_and_label(Role::Button, plot).click();
+            harness.run_steps(2);
+            assert!(harness.state().simulation().state().is_finite(), "{id} {}", integrator.id);
+            let said = texts(&harness);
+            assert!(said.iter().all(|t| !t.contains("NaN") && !t.contains("inf")), "{id} {}: {said:?}", integrator.id);
+        }
+    }
 }

@@ -333,6 +333,34 @@ fn an_idle_window_uses_no_processor() {
     assert_eq!(window.close().0, Some(0));
 }
 
+/// A motion ends at rest, where nothing is drawn any more; pulled with the pointer the body follows, let go it comes to
+/// rest again, and a reset shows the same motion to the same end.
+#[test]
+fn a_body_in_motion_is_pulled_let_go_and_reset() {
+    let Some(desktop) = Desktop::start() else { return };
+    // Damped so much that it rests after some seconds.
+    let window = Window::open(&desktop, &["run", "jelly", "--set", "dynamics.damping.mass=15"]);
+    let before = window.settle();
+    // The middle of the view, where the body is.
+    let (x, y) = (800.0, 330.0);
+    window.point(x, y);
+    desktop.xdotool(&["mousedown", "1"]);
+    wait_for("the pointer to hold the body and to pull it", || {
+        for reach in [40.0, 80.0, 120.0] {
+            window.point(x + reach, y - 0.5 * reach);
+        }
+        (changed(&before, &window.image()) > 20_000).then_some(())
+    });
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(1200.0, 760.0);
+    window.settle();
+    window.key("r");
+    window.wait_for_picture("the same end of the same motion", &before);
+    let (code, said) = window.close();
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+}
+
 /// S writes the picture that the window shows.
 #[test]
 fn s_saves_a_screenshot() {

@@ -1,6 +1,7 @@
 //! What panel, keys and drawers ask of the lab, and how the body is looked at.
 
-use crate::scene::Scene;
+use super::motion_plot::MotionPlot;
+use crate::scene::{IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::Setting;
 
@@ -18,8 +19,14 @@ pub(super) enum Action {
     ToggleRun,
     /// One iteration.
     Step,
-    /// Back to rest.
+    /// Back to rest, or to where the motion starts.
     Reset,
+    /// A reset goes to where the body is now; or to the start again.
+    Mark,
+    /// Simulated seconds a second.
+    Speed(f64),
+    /// Show the same motion under another integrator, or no longer.
+    Compare(IntegratorKind),
     /// So many iterations a displayed frame.
     Iterations(u32),
     /// Show the whole body.
@@ -46,6 +53,7 @@ pub(super) enum Toggle {
     Wireframe,
     RestOutline,
     Ghost,
+    Trail,
     Panel,
     Help,
     Drawer(Drawer),
@@ -56,6 +64,8 @@ pub(super) enum Toggle {
 pub(super) enum Drawer {
     /// Load against deflection.
     Curve,
+    /// Energy, tip, phase and spectrum of a motion.
+    Motion,
     /// Error against time, and the settings within limits.
     Budget,
 }
@@ -69,7 +79,9 @@ pub(super) struct ViewOptions {
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
+    pub trail: bool,
     pub drawer: Option<Drawer>,
+    pub motion_plot: MotionPlot,
     pub panel: bool,
     pub help: bool,
 }
@@ -82,7 +94,9 @@ impl Default for ViewOptions {
             wireframe: true,
             rest_outline: true,
             ghost: true,
+            trail: true,
             drawer: None,
+            motion_plot: MotionPlot::default(),
             panel: true,
             help: false,
         }
@@ -96,6 +110,7 @@ impl ViewOptions {
             Toggle::Wireframe => self.wireframe ^= true,
             Toggle::RestOutline => self.rest_outline ^= true,
             Toggle::Ghost => self.ghost ^= true,
+            Toggle::Trail => self.trail ^= true,
             Toggle::Panel => self.panel ^= true,
             Toggle::Help => self.help ^= true,
             Toggle::Drawer(drawer) => self.drawer = if self.drawer == Some(drawer) { None } else { Some(drawer) },

@@ -4,8 +4,12 @@ use egui::{Align2, Context};
 
 use super::keys::SHORTCUTS;
 
-const MOUSE: &[(&str, &str)] =
-    &[("Drag", "Move the view"), ("Scroll, pinch", "Zoom to the pointer"), ("Double click", "Fit the view")];
+const MOUSE: &[(&str, &str)] = &[
+    ("Drag the body", "Pull it with a spring; let go and it springs back"),
+    ("Drag beside it, two fingers", "Move the view"),
+    ("Scroll, pinch", "Zoom to the pointer"),
+    ("Double click", "Fit the view"),
+];
 
 /// Shows the list over everything; `open` goes off when it is closed.
 pub(super) fn show(ctx: &Context, open: &mut bool) {

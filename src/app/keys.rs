@@ -18,9 +18,10 @@ const fn key(key: Key, does: &'static str, act: fn() -> Action) -> Shortcut {
 
 /// Every key, in the order of the help.
 pub(super) const SHORTCUTS: &[Shortcut] = &[
-    key(Key::Space, "Run or pause the iteration", || Action::ToggleRun),
-    key(Key::N, "One iteration", || Action::Step),
-    key(Key::R, "Reset to rest", || Action::Reset),
+    key(Key::Space, "Run or pause", || Action::ToggleRun),
+    key(Key::N, "One iteration, or one time step", || Action::Step),
+    key(Key::R, "Reset to rest, or to the start of the motion", || Action::Reset),
+    key(Key::H, "In motion: reset to here from now on; again: to the start", || Action::Mark),
     key(Key::F, "Fit the view", || Action::Fit),
     key(Key::W, "Wireframe on or off", || Action::Toggle(Toggle::Wireframe)),
     key(Key::O, "Rest outline on or off", || Action::Toggle(Toggle::RestOutline)),
@@ -30,6 +31,8 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::Num3, "Colour: largest strain", || Action::Color(Field::LargestStrain)),
     key(Key::Num4, "Colour: rotation angle", || Action::Color(Field::RotationAngle)),
     key(Key::L, "Load curve on or off", || Action::Toggle(Toggle::Drawer(Drawer::Curve))),
+    key(Key::E, "Energy, tip and spectrum of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
+    key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
     key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Drawer(Drawer::Budget))),
     key(Key::P, "Panel on or off", || Action::Toggle(Toggle::Panel)),
     key(Key::T, "Light or dark", || Action::ToggleTheme),

@@ -9,13 +9,17 @@ use super::action::{Action, Drawer, MOST_ITERATIONS, ViewOptions};
 use super::budget::{Budget, question};
 use super::drawing::Drawing;
 use super::finder::Finder;
+use super::motion_plot;
 use super::overlay::{self, Overlay};
 use super::panel::{self, PanelInput, PanelState, status_words};
-use super::pointer::{self, Look};
+use super::playback::Playback;
+use super::pointer::{self, Look, Reach};
 use super::{help, keys, plot};
+use crate::assembly::Mass;
+use crate::dynamics::lowest_frequency;
 use crate::render::{Camera, Frame, Margins};
-use crate::scene::{self, Analysis, MethodKind, Scene, SceneError, Source};
-use crate::simulation::{Simulation, SimulationError, Status};
+use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
+use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::study::{LoadCurve, Reference, Study};
 use crate::timings::Timings;
 
@@ -61,6 +65,11 @@ pub struct Lab {
     truth: Finder<Reference>,
     curve: Finder<LoadCurve>,
     budget: Budget,
+    /// The lowest natural frequency, Hz.
+    frequency: Finder<f64>,
+    playback: Playback,
+    /// Of a body in motion: all that it has swept, m.
+    swept: Option<[Vector2<f64>; 2]>,
     /// Iterations a displayed frame.
     iterations: u32,
     /// Time of the last iterations made for one displayed frame.
@@ -84,6 +93,8 @@ struct Shape {
     at_points: Vec<Option<f64>>,
     values: Vec<Option<f64>>,
     range: [f64; 2],
+    /// What the range is of.
+    field: Option<Field>,
     line_color: [u8; 4],
     background: [u8; 3],
     absent_color: [u8; 3],
@@ -112,6 +123,9 @@ impl Lab {
             truth: Finder::new(|scene| Reference::of(scene).ok()),
             curve: Finder::new(LoadCurve::new),
             budget: Budget::default(),
+            frequency: Finder::new(natural_frequency),
+            playback: Playback::default(),
+            swept: None,
             iterations: 1,
             timings: Timings::default(),
         };
@@ -194,15 +208,31 @@ impl Lab {
         format!("{} \u{2013} warpbeam", self.scene.name)
     }
 
-    /// Makes the iterations of one displayed frame if it runs; says whether there are others to make.
-    pub fn advance(&mut self) -> bool {
-        if self.iterates() {
-            self.iterate(self.iterations);
+    /// Makes the iterations of one displayed frame if it runs, or the time steps that are due at `now`, s of any clock
+    /// that goes with the wall's; says whether there are others to make.
+    pub fn advance(&mut self, now: f64) -> bool {
+        match (self.iterates(), self.moves()) {
+            (true, true) => {
+                self.playback.advance(now, &mut self.simulation);
+                self.timings = *self.simulation.last_iteration();
+            }
+            (true, false) => self.iterate(self.iterations),
+            (false, _) => self.playback.pace.rest(),
         }
         self.iterates()
     }
 
+    /// Whether the scene is one in time.
+    fn moves(&self) -> bool {
+        self.scene.analysis == Analysis::Dynamic
+    }
+
     fn iterate(&mut self, iterations: u32) {
+        if self.moves() {
+            self.playback.step(&mut self.simulation);
+            self.timings = *self.simulation.last_iteration();
+            return;
+        }
         self.timings = Timings::default();
         for _ in 0..iterations {
             if *self.simulation.status() == Status::Running {
@@ -215,13 +245,17 @@ impl Lab {
     /// Whether the next frame changes the body.
     #[must_use]
     pub fn iterates(&self) -> bool {
-        self.running && *self.simulation.status() == Status::Running
+        self.running && !(self.simulation.is_at_rest() && !self.playback.companions_move())
     }
 
-    /// Iterates to the end, and finds out what is known of the result.
+    /// Iterates to the end, or steps to the end of the scene's duration, and finds out what is known of the result.
     pub fn solve(&mut self) {
         while *self.simulation.status() == Status::Running {
             self.iterate(1);
+        }
+        if self.moves() {
+            self.frequency.settle(&self.scene);
+            return;
         }
         self.simulation.certify();
         self.truth.settle(&self.scene);
@@ -230,10 +264,32 @@ impl Lab {
         }
     }
 
+    /// Shows the plots of a motion under the body.
+    pub fn show_motion_plots(&mut self) {
+        self.view.drawer = Some(Drawer::Motion);
+    }
+
+    /// Shows the same motion under another integrator as an outline beside the body, or no longer.
+    pub fn compare_with(&mut self, integrator: IntegratorKind) {
+        if self.moves() && integrator != self.scene.dynamics.integrator {
+            self.playback.toggle(integrator, &self.simulation);
+        }
+    }
+
+    /// Sets the speed of a motion, simulated seconds a second: 1/8 to 1.
+    pub fn set_speed(&mut self, speed: f64) {
+        self.playback.pace.set_speed(speed);
+    }
+
     /// Whether something is still being found out of the scene beside the window.
     #[must_use]
     pub fn is_searching(&self) -> bool {
-        self.truth.is_open() || self.view.drawer == Some(Drawer::Curve) && self.curve.is_open()
+        let open = match self.view.drawer {
+            Some(Drawer::Curve) => self.curve.is_open(),
+            Some(Drawer::Motion) => self.frequency.is_open(),
+            _ => false,
+        };
+        open || self.truth.is_open() && !self.moves()
     }
 
     /// What is drawn of the body, as of the last [`Self::ui`].
@@ -261,7 +317,12 @@ impl Lab {
         self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
         self.simulation.field(self.view.field, &mut shape.at_points);
         self.drawing.values(&shape.at_points, &mut shape.values);
-        shape.range = self.view.fixed_range.unwrap_or_else(|| panel::range_of(&shape.at_points));
+        let range = panel::range_of(&shape.at_points);
+        // Colours that jump from frame to frame say nothing of a motion: its range only grows.
+        let before = self.swept.map(|_| shape.range).filter(|_| shape.field == Some(self.view.field));
+        let grown = before.map_or(range, |[low, high]| [low.min(range[0]), high.max(range[1])]);
+        shape.field = Some(self.view.field);
+        shape.range = self.view.fixed_range.unwrap_or(grown);
         shape.background = if visuals.dark_mode { [22, 24, 28] } else { [244, 245, 247] };
         shape.absent_color = if visuals.dark_mode { [90, 90, 96] } else { [170, 170, 176] };
         shape.line_color = if visuals.dark_mode { [0, 0, 0, 110] } else { [0, 0, 0, 90] };
@@ -288,6 +349,7 @@ impl Lab {
                 scene_name: &self.source.name,
                 simulation: &self.simulation,
                 running: self.running,
+                playback: &self.playback,
                 iterations: self.iterations,
                 timings: &self.timings,
                 adapter: &self.adapter,
@@ -311,6 +373,12 @@ impl Lab {
 
     /// Looks for what is known of the scene and of its result, once the body is at rest: a dragged slider need not wait.
     fn find_out(&mut self, ctx: &egui::Context) {
+        if self.moves() {
+            if self.view.drawer == Some(Drawer::Motion) {
+                self.frequency.ask(&self.scene, ctx);
+            }
+            return;
+        }
         if self.iterates() {
             return;
         }
@@ -326,6 +394,11 @@ impl Lab {
         let panel = Panel::bottom("drawer").exact_size(DRAWER_HEIGHT).resizable(false);
         panel.show(ui, |ui| match drawer {
             Drawer::Curve => plot::show(ui, self.curve.get(), !self.curve.is_open()),
+            Drawer::Motion => {
+                let frequency = self.frequency.get().copied();
+                let integrator = self.scene.dynamics.integrator;
+                motion_plot::show(ui, &mut self.view.motion_plot, &self.playback, integrator, frequency);
+            }
             Drawer::Budget => self.budget.show(ui, &self.scene, self.iterations, actions),
         });
     }
@@ -338,11 +411,14 @@ impl Lab {
     }
 
     fn body_view(&mut self, ui: &mut Ui, body: Option<TextureId>) {
-        self.update_shape(ui.visuals());
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         self.view_rect = rect;
+        // What is pressed is what was seen: the last picture.
+        let reach = Reach { camera: self.camera(), positions: &self.shape.nodes, outline: &self.drawing.boundary };
+        let holds = pointer::hold(ui, &response, &reach, &mut self.simulation, &mut self.playback);
+        self.update_shape(ui.visuals());
         self.follow(rect);
-        match pointer::look(ui, &response, self.camera()) {
+        match pointer::look(ui, &response, self.camera(), holds) {
             Look::Same => {}
             Look::At(camera) => self.camera = Some(camera),
             Look::Fit => self.camera = None,
@@ -352,7 +428,7 @@ impl Lab {
             let uv = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             painter.image(texture, rect, uv, egui::Color32::WHITE);
         }
-        let (words, bad) = status_words(self.simulation.status(), true);
+        let (words, bad) = status_words(&self.simulation, true);
         let overlay = Overlay {
             scene: &self.scene,
             system: self.simulation.system(),
@@ -361,6 +437,9 @@ impl Lab {
             camera: self.camera(),
             positions: &self.shape.nodes,
             ghost: self.ghost(),
+            time: self.simulation.state().time(),
+            hand: self.simulation.hand(),
+            playback: &self.playback,
             color_range: self.shape.range,
             warning: bad.then_some(&words),
         };
@@ -370,8 +449,15 @@ impl Lab {
 
     /// Fits the view to the body at rest and now, while nobody has moved it.
     fn follow(&mut self, rect: Rect) {
+        // A view that moved with the body would move the place under a pointer that holds it.
+        if self.simulation.hand().is_some() {
+            return;
+        }
         let mesh = self.simulation.system().mesh();
         let (mut low, mut high) = mesh.bounds();
+        if let (Some([swept_low, swept_high]), true) = (self.swept, self.moves()) {
+            (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
+        }
         let mut include = |positions: &mut dyn Iterator<Item = Vector2<f64>>| {
             for p in positions {
                 low = low.inf(&p);
@@ -379,6 +465,7 @@ impl Lab {
             }
         };
         include(&mut self.shape.points.iter().copied());
+        self.swept = Some([low, high]).filter(|_| self.moves());
         if let Some(linear) = self.ghost() {
             // The linear solution of a large load is absurdly long; the body must not shrink to a dot beside it.
             const LARGEST: f64 = 1.5;
@@ -413,7 +500,14 @@ impl Lab {
                 self.running = false;
                 self.iterate(1);
             }
-            Action::Reset => self.simulation.reset(),
+            Action::Reset => self.reset(),
+            Action::Mark => {
+                self.playback.mark(&self.simulation);
+                let words = if self.playback.is_marked() { "Reset goes to here" } else { "Reset goes to the start" };
+                self.say(ctx, words.to_owned());
+            }
+            Action::Speed(speed) => self.playback.pace.set_speed(speed),
+            Action::Compare(integrator) => self.compare_with(integrator),
             Action::Iterations(iterations) => self.iterations = iterations.clamp(1, MOST_ITERATIONS),
             Action::Fit => self.camera = None,
             Action::Toggle(what) => self.view.toggle(what),
@@ -433,15 +527,27 @@ impl Lab {
         }
     }
 
+    fn reset(&mut self) {
+        self.playback.reset(&mut self.simulation);
+        self.swept = None;
+    }
+
     /// Changes the scene under the body; it goes on from where it is if it can.
     ///
     /// # Errors
     /// What is wrong with the scene. The lab is unchanged then.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         self.simulation.change_scene(&scene)?;
-        if self.scene.beam != scene.beam || self.scene.mesh != scene.mesh {
+        let is_another = self.scene.beam != scene.beam || self.scene.mesh != scene.mesh;
+        if is_another {
             self.drawing = Drawing::new(self.simulation.system().mesh());
         }
+        let is_another = is_another || self.scene.analysis != scene.analysis;
+        if is_another {
+            self.swept = None;
+        }
+        self.playback.follow(&scene, is_another);
+        self.frequency.forget();
         if question(&self.scene) != question(&scene) {
             self.truth.forget();
         }
@@ -457,7 +563,8 @@ impl Lab {
         match opened {
             Ok(()) => {
                 self.source = source;
-                self.simulation.reset();
+                self.playback = Playback::default();
+                self.reset();
                 self.panel.clear();
                 self.budget = Budget::default();
                 self.iterations = 1;
@@ -524,4 +631,12 @@ impl Lab {
         );
         ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));
     }
+}
+
+/// The lowest natural frequency of a scene's body about rest, Hz.
+fn natural_frequency(scene: &Scene) -> Option<f64> {
+    let simulation = Simulation::new(scene).ok()?;
+    let problem = simulation.problem();
+    let mass = Mass::new(problem.system(), scene.material.area_density());
+    Some(lowest_frequency(problem, &mass)? / std::f64::consts::TAU)
 }

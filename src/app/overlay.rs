@@ -6,9 +6,11 @@ use nalgebra::Vector2;
 use super::action::ViewOptions;
 use super::drawing::Drawing;
 use super::format;
-use crate::assembly::System;
+use super::motion_plot::integrator_color;
+use super::playback::Playback;
+use crate::assembly::{Hand, System};
 use crate::render::{Camera, colormap};
-use crate::scene::{Load, Place, Scene};
+use crate::scene::{Analysis, Load, Place, Scene};
 
 /// What is painted over the body.
 pub(super) struct Overlay<'a> {
@@ -21,6 +23,12 @@ pub(super) struct Overlay<'a> {
     pub positions: &'a [Vector2<f64>],
     /// Displacement of the linear solution, m, where its outline is wanted.
     pub ghost: Option<&'a [Vector2<f64>]>,
+    /// Simulated time, s.
+    pub time: f64,
+    /// The hand that pulls, and its force, N.
+    pub hand: Option<(&'a Hand, Vector2<f64>)>,
+    /// The past of a motion, and the same motion under other integrators.
+    pub playback: &'a Playback,
     /// The field's values at the two ends of the colour map.
     pub color_range: [f64; 2],
     /// What is wrong with the state, in words.
@@ -35,6 +43,7 @@ struct Palette {
     outline: Color32,
     support: Color32,
     load: Color32,
+    hand: Color32,
 }
 
 impl Palette {
@@ -47,6 +56,7 @@ impl Palette {
                 outline: Color32::from_gray(235),
                 support: Color32::from_gray(190),
                 load: Color32::from_rgb(255, 105, 97),
+                hand: Color32::from_rgb(120, 220, 130),
             }
         } else {
             Self {
@@ -56,6 +66,7 @@ impl Palette {
                 outline: Color32::from_gray(30),
                 support: Color32::from_gray(70),
                 load: Color32::from_rgb(190, 20, 30),
+                hand: Color32::from_rgb(10, 120, 40),
             }
         }
     }
@@ -141,16 +152,90 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     if let Some(linear) = overlay.ghost {
         draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.ghost));
     }
+    for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
+        let u = companion.simulation.displacement();
+        let color = integrator_color(companion.integrator, visuals.dark_mode);
+        draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
+    }
     draw(&|n| overlay.positions[n as usize], Stroke::new(1.2, palette.outline));
+    if overlay.options.trail {
+        trails(painter, &projection, overlay, &palette, visuals);
+    }
     supports(painter, &projection, overlay, &palette);
     loads(painter, &projection, overlay, &palette, visuals);
     legend(painter, rect, overlay, &palette, visuals);
     key(painter, rect, overlay, &palette, visuals);
     scale_bar(painter, rect, &projection.camera, &palette);
+    if let Some((hand, force)) = overlay.hand {
+        pull(painter, &projection, overlay, hand, force, visuals);
+    }
     if let Some(warning) = overlay.warning {
         let at = rect.center_top() + vec2(0.0, 46.0);
         boxed_text(painter, at, Align2::CENTER_TOP, warning, visuals, visuals.error_fg_color, rect.width() - 48.0);
     }
+}
+
+/// Where the tip has been in the last seconds, fading.
+fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+    /// s.
+    const DURATION: f64 = 2.0;
+    const MOST_PIECES: usize = 400;
+    let playback = overlay.playback;
+    let companions = playback.companions().iter().filter(|c| !c.has_stopped());
+    let others = companions.map(|c| (&c.history, integrator_color(c.integrator, visuals.dark_mode)));
+    for (history, color) in std::iter::once((&playback.history, palette.outline)).chain(others) {
+        let points: Vec<Vector2<f64>> = history.last(DURATION).map(|s| s.position).collect();
+        let stride = points.len().div_ceil(MOST_PIECES).max(1);
+        let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
+        for (i, ends) in kept.windows(2).enumerate() {
+            if let Some(segment) = projection.segment(*ends[0], *ends[1]) {
+                let age = i as f32 / kept.len() as f32;
+                painter.line_segment(segment, Stroke::new(1.5, color.gamma_multiply(0.8 * (1.0 - age))));
+            }
+        }
+    }
+}
+
+/// The spring from the body to the pointer, with its force.
+fn pull(
+    painter: &Painter,
+    projection: &Projection,
+    overlay: &Overlay<'_>,
+    hand: &Hand,
+    force: Vector2<f64>,
+    visuals: &Visuals,
+) {
+    /// Points.
+    const COIL: f32 = 5.0;
+    const PITCH: f32 = 7.0;
+    let palette = Palette::new(visuals);
+    let mesh = overlay.system.mesh();
+    let weights = mesh.weights(hand.point()).unwrap_or_default();
+    let held: Vector2<f64> = weights.iter().map(|&(n, w)| overlay.positions[n as usize] * w).sum();
+    let [from, to] = [held, hand.target()].map(|p| projection.point(p));
+    painter.circle_filled(from, 4.5, palette.hand);
+    painter.circle_stroke(to, 7.0, Stroke::new(2.0, palette.hand));
+    let way = to - from;
+    let length = way.length();
+    let stroke = Stroke::new(1.8, palette.hand);
+    if length > 4.0 * PITCH {
+        // Straight ends and a zigzag between them.
+        let along = way / length;
+        let across = vec2(-along.y, along.x) * COIL;
+        let turns = (((length - 2.0 * PITCH) / PITCH).floor()).min(40.0) as u32;
+        let pitch = (length - 2.0 * PITCH) / turns as f32;
+        let mut points = vec![from, from + along * PITCH];
+        points.extend((0..turns).map(|i| {
+            let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+            from + along * (PITCH + pitch * (i as f32 + 0.5)) + across * side
+        }));
+        points.extend([to - along * PITCH, to]);
+        painter.add(egui::Shape::line(points, stroke));
+    } else {
+        painter.line_segment([from, to], stroke);
+    }
+    let label = format!("{} N", format::short(force.norm()));
+    boxed_text(painter, to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, visuals, palette.hand, 200.0);
 }
 
 /// Fixed edges: hatched where both directions are fixed, rollers where one is. Fixed nodes apart from them: a triangle.
@@ -245,6 +330,11 @@ fn load_point(overlay: &Overlay<'_>, place: &Place) -> Option<Vector2<f64>> {
 fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     let view = projection.rect;
     for load in &overlay.scene.loads {
+        /// Less than this part of a pulse is not drawn.
+        const SEEN: f64 = 0.02;
+        if load.pulse().is_some_and(|pulse| pulse.factor(overlay.time) < SEEN) {
+            continue;
+        }
         let (vector, from, label) = match load {
             Load::Force { place, force, .. } => {
                 let Some(point) = load_point(overlay, place) else {
@@ -337,7 +427,14 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
 
 /// Which line is what.
 fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    let mut lines = vec![(palette.outline, overlay.scene.solver.method.id())];
+    let own = match overlay.scene.analysis {
+        Analysis::Static => overlay.scene.solver.method.id(),
+        Analysis::Dynamic => overlay.scene.dynamics.integrator.id(),
+    };
+    let mut lines = vec![(palette.outline, own)];
+    for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
+        lines.push((integrator_color(companion.integrator, visuals.dark_mode), companion.integrator.id()));
+    }
     if overlay.ghost.is_some() {
         lines.push((palette.ghost, "linear"));
     }

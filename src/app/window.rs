@@ -70,6 +70,7 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Simulatio
         lab: Lab::new(source, scene, simulation),
         ctx: egui::Context::default(),
         open: None,
+        start: Instant::now(),
         wake: None,
         error: None,
     };
@@ -81,6 +82,8 @@ struct App {
     lab: Lab,
     ctx: egui::Context,
     open: Option<OpenWindow>,
+    /// When the window began.
+    start: Instant,
     /// When egui wants its next frame without an event.
     wake: Option<Instant>,
     error: Option<AppError>,
@@ -200,7 +203,7 @@ impl App {
         let Some(texture) = open.acquire()? else {
             return Ok(());
         };
-        self.lab.advance();
+        self.lab.advance(self.start.elapsed().as_secs_f64());
         let input = open.input.take_egui_input(&open.window);
         let mut requests = Vec::new();
         let body = open.stage.body_texture();

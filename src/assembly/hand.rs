@@ -115,11 +115,6 @@ impl Hand {
         self.target
     }
 
-    /// How fast it moves, m/s.
-    pub(crate) fn target_velocity(&self) -> Vector2<f64> {
-        self.target_velocity
-    }
-
     /// p − x + τ (ṗ − ẋ) for a displacement and a velocity of the point.
     fn pull(&self, u: Vector2<f64>, v: Vector2<f64>, delay: f64) -> Vector2<f64> {
         self.target - self.rest - u + (self.target_velocity - v) * delay
@@ -167,6 +162,12 @@ impl Hand {
         for &(node, w) in &self.weights {
             force[node as usize] += on_point * w;
         }
+    }
+
+    /// Adds the spring's stiffness as it is below the cap, N/m, times `factor`. The true one is never larger, so that a
+    /// search with this one never overshoots, however far away the pointer is.
+    pub(super) fn add_largest_stiffness(&self, factor: f64, matrix: &mut Matrix) {
+        matrix.add_blocks(&self.slots, &self.weights, &(Matrix2::identity() * (factor * self.stiffness)));
     }
 
     /// Adds the derivative of minus the force with respect to the displacement, N/m, times `factor`; the velocity

@@ -225,8 +225,7 @@ impl Problem {
             self.loads.add_stiffness(&self.system, &state.displacement, factor, matrix);
         }
         if let Some(hand) = self.hand.as_ref().filter(|_| tangent.warped != 0.0) {
-            let (u, v) = (hand.mean(&state.displacement), hand.target_velocity());
-            hand.add_stiffness(u, v, 0.0, load_factor * tangent.warped, matrix);
+            hand.add_largest_stiffness(load_factor * tangent.warped, matrix);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::Mesh;
+use super::{Mesh, Segment};
 
 /// A point of the body, whatever the body does: an element and a place in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,14 +16,61 @@ pub struct MaterialPoint {
 /// Points on the boundary must not fall out by rounding.
 const SLACK: f64 = 1e-9;
 
+/// Curved sides may leave the box of their nodes by this fraction of its size.
+const BULGE: f64 = 0.25;
+
 impl Mesh {
     /// The material point at a rest position, m; `None` outside the body.
     #[must_use]
     pub fn locate(&self, at: Vector2<f64>) -> Option<MaterialPoint> {
+        self.locate_in(&self.nodes, at)
+    }
+
+    /// The material point that is at a position, m, while the nodes are at `positions`; `None` outside the body, and
+    /// where there are not as many positions as nodes.
+    ///
+    /// One sweep over the boxes of the elements: of a body that moves, an index would have to be made anew for every
+    /// state, which costs more than the sweep.
+    #[must_use]
+    pub fn locate_in(&self, positions: &[Vector2<f64>], at: Vector2<f64>) -> Option<MaterialPoint> {
+        if positions.len() != self.nodes.len() {
+            return None;
+        }
         self.elements().enumerate().find_map(|(element, nodes)| {
-            let place = self.invert(nodes, &self.nodes, at)?;
+            if !is_in_box(nodes, positions, at) {
+                return None;
+            }
+            let place = self.invert(nodes, positions, at)?;
             ((self.entry().cell.depth)(place) >= -SLACK).then_some(MaterialPoint { element, at: place })
         })
+    }
+
+    /// The material point that is nearest to a position, m, and no farther from it than `within`, m, while the nodes are
+    /// at `positions`; `outline` is [`Self::outline`].
+    #[must_use]
+    pub fn pick(
+        &self,
+        positions: &[Vector2<f64>],
+        outline: &[Segment],
+        at: Vector2<f64>,
+        within: f64,
+    ) -> Option<MaterialPoint> {
+        /// A point on the boundary is looked for a little inside, by this part of its side.
+        const INSIDE: f64 = 1e-3;
+        if let Some(point) = self.locate_in(positions, at) {
+            return Some(point);
+        }
+        let sides = outline.iter().filter_map(|side| {
+            let [p, q] = side.ends().map(|n| positions.get(n as usize));
+            let (p, side) = (p?, q? - p?);
+            let t = ((at - p).dot(&side) / side.norm_squared()).clamp(INSIDE, 1.0 - INSIDE);
+            // The outline runs counter-clockwise: inside is on its left.
+            let inside = Vector2::new(-side.y, side.x) * INSIDE;
+            Some((p + side * t, inside))
+        });
+        let nearest = sides.min_by(|(a, _), (b, _)| (a - at).norm().total_cmp(&(b - at).norm()));
+        let (foot, inside) = nearest.filter(|(foot, _)| (foot - at).norm() <= within)?;
+        self.locate_in(positions, foot + inside)
     }
 
     /// The nodes of a material point's element with their shape functions there; the weights sum to 1. `None` where
@@ -57,4 +104,13 @@ impl Mesh {
         }
         Some(place.into())
     }
+}
+
+/// Whether a position is in or near the box around an element's nodes.
+fn is_in_box(nodes: &[u32], positions: &[Vector2<f64>], at: Vector2<f64>) -> bool {
+    let mut own = nodes.iter().map(|&n| positions[n as usize]);
+    let Some(first) = own.next() else { return false };
+    let (low, high) = own.fold((first, first), |(low, high), x| (low.inf(&x), high.sup(&x)));
+    let bulge = BULGE * (high - low).max();
+    at.x >= low.x - bulge && at.x <= high.x + bulge && at.y >= low.y - bulge && at.y <= high.y + bulge
 }

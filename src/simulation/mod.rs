@@ -399,6 +399,19 @@ impl Simulation {
         &self.status
     }
 
+    /// Whether another step would change nothing: a search has ended, or a motion has been given up or come to rest
+    /// (nothing has moved for half a second by more than a millionth of the body's size a second, and no pulse is to
+    /// come).
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        match &self.process {
+            Process::Search(_) => self.status != Status::Running,
+            Process::Motion(motion) => {
+                matches!(self.status, Status::Stopped(_)) || motion.is_at_rest(&self.body.scene, &self.body.state)
+            }
+        }
+    }
+
     /// Steps until the status is final: to the equilibrium, or to the end of the scene's duration.
     pub fn solve(&mut self) -> &Status {
         while self.status == Status::Running {
@@ -408,7 +421,8 @@ impl Simulation {
     }
 
     /// Finds out what is known of the final state whatever method found it, at the price of some solves; remembered
-    /// until the next change. Nothing is known of linear theory's results, before the end, and in motion.
+    /// until the next change. Nothing is known of linear theory's results, before the end, in motion, and while a hand
+    /// pulls.
     pub fn certify(&mut self) -> Certificate {
         match &mut self.process {
             Process::Search(search) => search.certify(&self.body.problem, &self.body.state),

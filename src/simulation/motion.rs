@@ -8,7 +8,7 @@ use crate::dynamics::{
     Booking, Counts, Inertia, IntegratorEntry, Ledger, Memory, Momentum, Solves, StageSolver, Step, StepError,
     StopReason, critical_step,
 };
-use crate::scene::{MethodKind, Scene, Start};
+use crate::scene::{Load, MethodKind, Scene, Start};
 use crate::solver::SolverError;
 use crate::state::{State, largest};
 use crate::timings::Timings;
@@ -19,6 +19,11 @@ const MOST_HALVINGS: u32 = 10;
 const FARTHEST: f64 = 1e6;
 /// A fraction of a step that is rounding of the time.
 const NO_TIME: f64 = 1e-6;
+/// A body whose points all move by less than this fraction of its size a second …
+const UNSEEN: f64 = 1e-6;
+/// … for so long, s, and as many steps, is at rest.
+const QUIET: f64 = 0.5;
+const QUIET_STEPS: u32 = 10;
 
 /// A body in motion.
 #[derive(Debug)]
@@ -31,6 +36,8 @@ pub struct Motion {
     ledger: Ledger,
     keeps_ledger: bool,
     stopped: Option<StopReason>,
+    /// Steps in a row in which nothing has been seen to move.
+    quiet_steps: u32,
     critical_step: Option<f64>,
     timings: Timings,
     last_step: Timings,
@@ -49,6 +56,7 @@ impl Motion {
             ledger: Ledger::default(),
             keeps_ledger: true,
             stopped: None,
+            quiet_steps: 0,
             critical_step: None,
             timings: Timings::default(),
             last_step: Timings::default(),
@@ -65,6 +73,7 @@ impl Motion {
         problem.set_time(state.time);
         self.counts = Counts::default();
         self.stopped = None;
+        self.quiet_steps = 0;
         self.timings = Timings::default();
         self.last_step = Timings::default();
         self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
@@ -93,6 +102,7 @@ impl Motion {
         problem.set_time(state.time);
         state.knows_net_force = false;
         self.stopped = None;
+        self.quiet_steps = 0;
         if inertia(scene) == inertia(before) {
             self.ledger.edit(problem, &self.mass, inertia(scene), state);
         } else {
@@ -150,6 +160,8 @@ impl Motion {
             // Sums of parts round; the steps' own times do not.
             body.state.time = end;
             self.counts.steps += 1;
+            let still = largest(&body.state.velocity) < UNSEEN * body.problem.system().size();
+            self.quiet_steps = if still { self.quiet_steps.saturating_add(1) } else { 0 };
             if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
                 self.stopped = Some(StopReason::RanAway(FARTHEST));
             }
@@ -213,8 +225,16 @@ impl Motion {
         }
     }
 
+    /// Whether nothing has moved for a while, and nothing will unless somebody does something.
+    pub(super) fn is_at_rest(&self, scene: &Scene, state: &State) -> bool {
+        let quiet = f64::from(self.quiet_steps) * scene.dynamics.time_step;
+        let pulses_are_over = scene.loads.iter().filter_map(Load::pulse).all(|p| p.start + p.duration <= state.time);
+        self.quiet_steps >= QUIET_STEPS && quiet >= QUIET && pulses_are_over
+    }
+
     /// A hand has taken hold, moved or let go.
     pub(super) fn pulled(&mut self) {
+        self.quiet_steps = 0;
         self.memory.corrector.forget();
     }
 

@@ -210,7 +210,8 @@ impl Search {
         if let Some(certificate) = self.certificate {
             return certificate;
         }
-        if self.status == Status::Running || self.kinematics() == Kinematics::Linear {
+        let holds = problem.hand().is_some();
+        if holds || self.status == Status::Running || self.kinematics() == Kinematics::Linear {
             return Certificate::default();
         }
         let Self { forces, workspace, method, .. } = self;

@@ -6,7 +6,7 @@ use super::{Action, PanelInput, PanelState};
 use crate::app::action::MOST_ITERATIONS;
 use crate::app::field::{NumberField, show_message};
 use crate::method::METHODS;
-use crate::scene::{ElementKind, Plane, Scene, limits};
+use crate::scene::{Analysis, ElementKind, Plane, Scene, limits};
 
 pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Action>) {
     let mut row = |field: NumberField, value: f64, set: fn(&mut Scene, f64)| {
@@ -44,7 +44,7 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
     row(
         NumberField {
             label: "Density ρ",
-            tooltip: "Density, kg/m³: only gravity reads it.",
+            tooltip: "Density, kg/m³: weight, and inertia in motion.",
             limit: limits::DENSITY,
             slider: 0.0..=20_000.0,
             logarithmic: Some(1.0),
@@ -136,6 +136,9 @@ pub(super) fn mesh_and_method(ui: &mut Ui, input: &PanelInput<'_>, state: &mut P
         }
     });
     show_message(ui, &state.messages, "Element");
+    if scene.analysis == Analysis::Dynamic {
+        return;
+    }
     let field = NumberField {
         label: "Per frame",
         tooltip: "Iterations a displayed frame: more converge in fewer frames, which take longer.",

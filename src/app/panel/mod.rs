@@ -4,13 +4,15 @@ use egui::{Button, ComboBox, RichText, ScrollArea, Ui};
 
 use super::action::{Action, ViewOptions};
 use super::field::Messages;
-use crate::scene::{Scene, registry};
-use crate::simulation::{Simulation, Status};
+use super::playback::Playback;
+use crate::scene::{Analysis, Scene, registry};
+use crate::simulation::Simulation;
 use crate::study::Reference;
 use crate::timings::Timings;
 
 mod body;
 mod loads;
+mod motion;
 mod result;
 mod view;
 
@@ -23,6 +25,7 @@ pub(super) struct PanelInput<'a> {
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
     pub running: bool,
+    pub playback: &'a Playback,
     /// Iterations a displayed frame.
     pub iterations: u32,
     /// Time of the last iterations made for one displayed frame.
@@ -65,6 +68,10 @@ pub(super) fn show(
             ui.add_space(4.0);
             scene_picker(ui, input, actions);
             controls(ui, input, actions);
+            if input.scene.analysis == Analysis::Dynamic {
+                section(ui, "Time");
+                motion::show(ui, input, state, actions);
+            }
             section(ui, "Load");
             loads::force_and_gravity(ui, input, state, actions);
             loads::moment(ui, input, state, actions);
@@ -111,20 +118,16 @@ fn scene_picker(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) 
 fn controls(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {
     ui.add_space(2.0);
     ui.horizontal(|ui| {
-        let (word, tip) = if input.running {
-            ("Pause", "Stop iterating")
-        } else {
-            ("Run", "Iterate, once a displayed frame or more")
-        };
+        let (word, tip) = if input.running { ("Pause", "Stop") } else { ("Run", "Go on") };
         if ui.button(word).on_hover_text(format!("{tip} (Space)")).clicked() {
             actions.push(Action::ToggleRun);
         }
-        let can_step = *input.simulation.status() == Status::Running;
+        let can_step = !input.simulation.is_at_rest();
         let step = ui.add_enabled(can_step, Button::new("Step"));
-        if step.on_hover_text("Pause, and make one iteration (N)").clicked() {
+        if step.on_hover_text("Pause, and make one iteration or time step (N)").clicked() {
             actions.push(Action::Step);
         }
-        if ui.button("Reset").on_hover_text("Back to rest, and iterate again (R)").clicked() {
+        if ui.button("Reset").on_hover_text("Back to rest, or to the start of the motion (R)").clicked() {
             actions.push(Action::Reset);
         }
         if ui.button("Fit").on_hover_text("Show the whole body (F)").clicked() {

@@ -5,7 +5,7 @@ use egui::{ComboBox, Ui};
 use super::{Action, PanelInput, PanelState, ViewOptions};
 use crate::app::action::{Drawer, Toggle};
 use crate::app::field::NumberField;
-use crate::scene::limits;
+use crate::scene::{Analysis, limits};
 use crate::simulation::{Field, Simulation};
 
 pub(super) fn options(
@@ -64,7 +64,11 @@ pub(super) fn options(
     ui.horizontal_wrapped(|ui| {
         ui.checkbox(&mut view.wireframe, "Wireframe").on_hover_text("Element edges (W)");
         ui.checkbox(&mut view.rest_outline, "Rest").on_hover_text("Outline of the body at rest (O)");
-        ui.checkbox(&mut view.ghost, "Linear").on_hover_text("Outline of the linear solution (G)");
+        if input.scene.analysis == Analysis::Dynamic {
+            ui.checkbox(&mut view.trail, "Trail").on_hover_text("Where the tip has been (Y)");
+        } else {
+            ui.checkbox(&mut view.ghost, "Linear").on_hover_text("Outline of the linear solution (G)");
+        }
     });
     ui.horizontal(|ui| {
         if ui.button("Screenshot").on_hover_text("Save this picture as a PNG file here (S)").clicked() {
@@ -82,7 +86,13 @@ pub(super) fn options(
         for (drawer, word, tip) in [
             (Drawer::Curve, "Load curve", "Load against deflection (L)"),
             (Drawer::Budget, "Budget", "Error against time, and the fastest setting within limits (B)"),
+            (Drawer::Motion, "Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),
         ] {
+            // Each for the scenes that have it.
+            let moves = input.scene.analysis == Analysis::Dynamic;
+            if moves != (drawer == Drawer::Motion) {
+                continue;
+            }
             let open = view.drawer == Some(drawer);
             if ui.selectable_label(open, word).on_hover_text(tip).clicked() {
                 actions.push(Action::Toggle(Toggle::Drawer(drawer)));

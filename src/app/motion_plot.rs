@@ -1,0 +1,225 @@
+//! The plots of a motion: energy by kind, the tip over time and its phase, and the spectrum of its motion.
+
+use egui::{Color32, Ui};
+use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, VLine};
+use realfft::RealFftPlanner;
+
+use super::history::{History, Sample};
+use super::playback::Playback;
+use crate::scene::IntegratorKind;
+
+/// What is plotted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum MotionPlot {
+    /// Energy by kind.
+    #[default]
+    Energy,
+    /// Displacement of the first probe.
+    Tip,
+    /// Its velocity against its displacement.
+    Phase,
+    /// The amplitudes of the frequencies in it.
+    Spectrum,
+}
+
+const PLOTS: [(MotionPlot, &str, &str); 4] = [
+    (MotionPlot::Energy, "Energy", "Where the energy is, and where it has gone"),
+    (MotionPlot::Tip, "Tip", "Displacement of the first probe over time"),
+    (MotionPlot::Phase, "Phase", "Velocity of the first probe against its displacement"),
+    (MotionPlot::Spectrum, "Spectrum", "Amplitudes of the frequencies in the motion of the first probe"),
+];
+
+/// The last so many seconds are shown.
+const SHOWN: f64 = 12.0;
+/// Room for the legend on the right of what is shown, in parts of it.
+const LEGEND_ROOM: f64 = 0.22;
+/// More points than this on one line are thinned out.
+const MOST_POINTS: usize = 1000;
+/// The spectrum is of the last so many samples at most; a power of two.
+const LONGEST_SPECTRUM: usize = 4096;
+/// With fewer samples there is none.
+const SHORTEST_SPECTRUM: usize = 64;
+
+/// The colour of an integrator.
+pub(super) fn integrator_color(kind: IntegratorKind, dark: bool) -> Color32 {
+    let [r, g, b] = kind.entry().color(dark);
+    Color32::from_rgb(r, g, b)
+}
+
+/// Shows the plot that is chosen; `frequency` is the lowest natural one, Hz.
+pub(super) fn show(
+    ui: &mut Ui,
+    chosen: &mut MotionPlot,
+    playback: &Playback,
+    integrator: IntegratorKind,
+    frequency: Option<f64>,
+) {
+    ui.horizontal(|ui| {
+        for (plot, word, tip) in PLOTS {
+            if ui.selectable_label(*chosen == plot, word).on_hover_text(tip).clicked() {
+                *chosen = plot;
+            }
+        }
+    });
+    if playback.history.samples().is_empty() {
+        ui.centered_and_justified(|ui| ui.weak("Nothing has moved yet: run it, or take one step."));
+        return;
+    }
+    let dark = ui.visuals().dark_mode;
+    // One line for every motion that is shown.
+    let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
+    let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
+    let axis = playback.history.axis();
+    let name = format!("{} {}", playback.history.probe(), ["x", "y"][axis]);
+    match chosen {
+        MotionPlot::Energy => energy(ui, &playback.history, &motions),
+        MotionPlot::Tip => {
+            let lines =
+                motions.iter().map(|(kind, history)| (*kind, thinned(history, |s| [s.time, s.displacement[axis]])));
+            curves(ui, "tip", "time, s", &format!("{name}, m"), Some(&playback.history), lines, dark);
+        }
+        MotionPlot::Phase => {
+            let lines = motions
+                .iter()
+                .map(|(kind, history)| (*kind, thinned(history, |s| [s.displacement[axis], s.velocity[axis]])));
+            curves(ui, "phase", &format!("{name}, m"), "velocity, m/s", None, lines, dark);
+        }
+        MotionPlot::Spectrum => spectra(ui, &motions, axis, frequency, dark),
+    }
+}
+
+fn plot<'a>(id: &str, x: &str, y: &str) -> Plot<'a> {
+    Plot::new(id.to_owned())
+        .legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true))
+        .x_axis_label(x.to_owned())
+        .y_axis_label(y.to_owned())
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+}
+
+fn thinned(history: &History, point: impl Fn(&Sample) -> [f64; 2]) -> Vec<PlotPoint> {
+    let samples: Vec<&Sample> = history.last(SHOWN).collect();
+    let stride = samples.len().div_ceil(MOST_POINTS).max(1);
+    let kept = samples.iter().rev().step_by(stride);
+    kept.map(|s| PlotPoint::from(point(s))).collect()
+}
+
+/// Leaves room for the legend beside what has been.
+fn over_time<'a>(plot: Plot<'a>, history: &History) -> Plot<'a> {
+    let first = history.last(SHOWN).next().map_or(0.0, |s| s.time);
+    let last = history.samples().back().map_or(0.0, |s| s.time);
+    plot.include_x(last + LEGEND_ROOM * (last - first).max(1e-9))
+}
+
+fn curves(
+    ui: &mut Ui,
+    id: &str,
+    x: &str,
+    y: &str,
+    in_time: Option<&History>,
+    lines: impl Iterator<Item = (IntegratorKind, Vec<PlotPoint>)>,
+    dark: bool,
+) {
+    let plot = plot(id, x, y);
+    let plot = if let Some(history) = in_time { over_time(plot, history) } else { plot };
+    plot.show(ui, |plot| {
+        for (kind, points) in lines {
+            let line = Line::new(kind.id(), PlotPoints::Owned(points));
+            plot.line(line.color(integrator_color(kind, dark)).width(1.5));
+        }
+    });
+}
+
+fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]) {
+    let dark = ui.visuals().dark_mode;
+    let color = |on_dark: [u8; 3], on_light: [u8; 3]| {
+        let [r, g, b] = if dark { on_dark } else { on_light };
+        Color32::from_rgb(r, g, b)
+    };
+    let sum = ui.visuals().strong_text_color();
+    let kinds: [(&str, Color32, fn(&Sample) -> f64); 6] = [
+        ("kinetic", color([110, 170, 255], [20, 90, 200]), |s| s.ledger.kinetic),
+        ("elastic", color([255, 180, 80], [190, 100, 0]), |s| s.ledger.elastic),
+        ("potential of loads", color([120, 210, 130], [20, 120, 50]), |s| s.ledger.potential),
+        ("dissipated", color([170, 170, 180], [110, 110, 120]), |s| s.ledger.dissipated),
+        ("lost by the integrator", color([255, 120, 120], [200, 30, 40]), |s| s.ledger.integrator),
+        ("put in", color([200, 150, 255], [120, 50, 190]), |s| s.ledger.pulses + s.ledger.hands + s.ledger.edits),
+    ];
+    over_time(plot("energy", "time, s", "energy, J"), history).show(ui, |plot| {
+        // Beside others only the sums: these are what is compared.
+        let shown = if motions.len() == 1 { &kinds[..] } else { &[] };
+        for (name, color, value) in shown {
+            // What is never there needs no line.
+            if history.samples().iter().any(|s| value(s) != 0.0) {
+                let points = thinned(history, |s| [s.time, value(s)]);
+                plot.line(Line::new(*name, PlotPoints::Owned(points)).color(*color).width(1.5));
+            }
+        }
+        for (kind, history) in motions {
+            let points = thinned(history, |s| [s.time, s.ledger.total()]);
+            let (name, color) = if motions.len() == 1 {
+                ("sum".to_owned(), sum)
+            } else {
+                (format!("sum, {}", kind.id()), integrator_color(*kind, dark))
+            };
+            plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(2.5));
+        }
+    });
+}
+
+/// The amplitude, m, of every frequency, Hz, in the probe's motion along an axis; empty for too few samples.
+///
+/// Hann's window, scaled so that a sine of amplitude one between two bins has about one.
+fn spectrum(history: &History, axis: usize) -> Vec<[f64; 2]> {
+    let samples = history.samples();
+    let count = samples.len().min(LONGEST_SPECTRUM);
+    if count < SHORTEST_SPECTRUM {
+        return Vec::new();
+    }
+    let own = || samples.range(samples.len() - count..);
+    let (Some(first), Some(last)) = (own().next(), own().next_back()) else { return Vec::new() };
+    let duration = last.time - first.time;
+    let mean = own().map(|s| s.displacement[axis]).sum::<f64>() / count as f64;
+    let mut values: Vec<f64> = own()
+        .enumerate()
+        .map(|(i, s)| {
+            let phase = std::f64::consts::TAU * i as f64 / (count - 1) as f64;
+            (s.displacement[axis] - mean) * (1.0 - phase.cos())
+        })
+        .collect();
+    let forward = RealFftPlanner::<f64>::new().plan_fft_forward(count);
+    let mut amplitudes = forward.make_output_vec();
+    if duration <= 0.0 || forward.process(&mut values, &mut amplitudes).is_err() {
+        return Vec::new();
+    }
+    let bin = (count - 1) as f64 / (count as f64 * duration);
+    let scale = 2.0 / count as f64;
+    amplitudes.iter().enumerate().map(|(i, a)| [i as f64 * bin, a.norm() * scale]).collect()
+}
+
+fn spectra(ui: &mut Ui, motions: &[(IntegratorKind, &History)], axis: usize, frequency: Option<f64>, dark: bool) {
+    /// Frequencies with less than this part of the largest amplitude are off the picture on the right.
+    const SEEN: f64 = 1e-3;
+    let all: Vec<_> = motions.iter().map(|(kind, history)| (*kind, spectrum(history, axis))).collect();
+    if all.iter().all(|(_, s)| s.is_empty()) {
+        ui.centered_and_justified(|ui| ui.weak(format!("A spectrum needs {SHORTEST_SPECTRUM} time steps.")));
+        return;
+    }
+    let largest = all.iter().flat_map(|(_, s)| s).map(|p| p[1]).fold(0.0, f64::max);
+    let seen = all.iter().flat_map(|(_, s)| s).filter(|p| p[1] > SEEN * largest).map(|p| p[0]).fold(0.0, f64::max);
+    let end = seen.max(3.0 * frequency.unwrap_or(0.0));
+    plot("spectrum", "frequency, Hz", "amplitude, m").include_y(0.0).show(ui, |plot| {
+        for (kind, spectrum) in all {
+            let points: Vec<[f64; 2]> = spectrum.into_iter().take_while(|p| p[0] <= end).collect();
+            let line = Line::new(kind.id(), PlotPoints::from(points));
+            plot.line(line.color(integrator_color(kind, dark)).width(1.5));
+        }
+        if let Some(frequency) = frequency {
+            let name = format!("\u{3c9}\u{2081}/2\u{3c0} about rest: {frequency:.3} Hz");
+            let color = plot.ctx().global_style().visuals.weak_text_color();
+            plot.vline(VLine::new(name, frequency).color(color).style(LineStyle::dashed_dense()));
+        }
+    });
+}

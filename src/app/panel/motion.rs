@@ -1,0 +1,135 @@
+//! Time: integrator, step, solves a step, damping; speed; the other integrators beside.
+
+use egui::{ComboBox, Ui};
+
+use super::{Action, PanelInput, PanelState};
+use crate::app::field::{NumberField, show_message};
+use crate::app::format;
+use crate::dynamics::INTEGRATORS;
+use crate::scene::{Scene, limits};
+
+/// Speeds that can be chosen, with their words.
+const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
+
+pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let settings = &input.scene.dynamics;
+    ui.horizontal(|ui| {
+        ui.label("Speed");
+        for (speed, word) in SPEEDS {
+            let chosen = (input.playback.pace.speed() - speed).abs() < 1e-9;
+            let tip = "Simulated seconds a second: 1 is real time, less is slow motion";
+            if ui.selectable_label(chosen, word).on_hover_text(tip).clicked() {
+                actions.push(Action::Speed(speed));
+            }
+        }
+        let marked = input.playback.is_marked();
+        let tip = "Reset goes to where the body is now, in place of the start; again: to the start (H)";
+        if ui.selectable_label(marked, "Reset to here").on_hover_text(tip).clicked() {
+            actions.push(Action::Mark);
+        }
+    });
+    ui.horizontal(|ui| {
+        let label = ui.label("Integrator");
+        ComboBox::from_id_salt("integrator")
+            .selected_text(settings.integrator.id())
+            .show_ui(ui, |ui| {
+                for entry in INTEGRATORS {
+                    let selected = entry.kind == settings.integrator;
+                    if ui.selectable_label(selected, entry.id).on_hover_text(entry.about).clicked() && !selected {
+                        let mut scene = Box::new(input.scene.clone());
+                        scene.dynamics.integrator = entry.kind;
+                        actions.push(Action::Edit("Integrator", scene));
+                    }
+                }
+            })
+            .response
+            .labelled_by(label.id)
+            .on_hover_text(settings.integrator.entry().about);
+    });
+    show_message(ui, &state.messages, "Integrator");
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Beside it")
+            .on_hover_text("The same motion under other integrators, as outlines and lines in the plots");
+        for entry in INTEGRATORS.iter().filter(|entry| entry.kind != settings.integrator) {
+            let companion = input.playback.companions().iter().find(|c| c.integrator == entry.kind);
+            let stopped = companion.is_some_and(|c| c.has_stopped());
+            let tip = if stopped { "It has stopped: its step is too long" } else { entry.about };
+            if ui.selectable_label(companion.is_some(), entry.id).on_hover_text(tip).clicked() {
+                actions.push(Action::Compare(entry.kind));
+            }
+        }
+    });
+    let mut row = |field: NumberField, value: f64, set: fn(&mut Scene, f64)| {
+        if let Some(new) = field.show(ui, &mut state.messages, value) {
+            let mut scene = Box::new(input.scene.clone());
+            set(&mut scene, new);
+            actions.push(Action::Edit(field.label, scene));
+        }
+    };
+    row(
+        NumberField {
+            label: "Time step",
+            tooltip: "Length of a step, s. Half of it: twice the work, a quarter of the error at second order.",
+            limit: limits::TIME_STEP,
+            slider: 1e-4..=0.1,
+            logarithmic: Some(1e-4),
+            whole: false,
+        },
+        settings.time_step,
+        |s, v| s.dynamics.time_step = v,
+    );
+    row(
+        NumberField {
+            label: "Solves",
+            tooltip: "Solves a stage; 0: as many as the tolerance needs.",
+            limit: limits::Limit { unit: "", min: 0.0, max: 20.0 },
+            slider: 0.0..=4.0,
+            logarithmic: None,
+            whole: true,
+        },
+        f64::from(settings.iterations),
+        |s, v| s.dynamics.iterations = v as u32,
+    );
+    row(
+        NumberField {
+            label: "Air a",
+            tooltip: "Damping by mass, 1/s: slows everything down, as air does. Velocities fall by a factor e in 2/a seconds.",
+            limit: limits::MASS_DAMPING,
+            slider: 0.0..=10.0,
+            logarithmic: Some(1e-3),
+            whole: false,
+        },
+        settings.damping.mass,
+        |s, v| s.dynamics.damping.mass = v,
+    );
+    row(
+        NumberField {
+            label: "Inner b",
+            tooltip: "Damping by stiffness, s: stops vibrations inside the body, the fast ones first; turning is not damped.",
+            limit: limits::STIFFNESS_DAMPING,
+            slider: 0.0..=1.0,
+            logarithmic: Some(1e-5),
+            whole: false,
+        },
+        settings.damping.stiffness,
+        |s, v| s.dynamics.damping.stiffness = v,
+    );
+    if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {
+        let words = format!("The longest stable step about rest is {} s.", format::short(critical));
+        if settings.time_step > critical {
+            let set = |step: f64| {
+                let mut scene = Box::new(input.scene.clone());
+                scene.dynamics.time_step = step;
+                Action::Edit("Time step", scene)
+            };
+            ui.horizontal_wrapped(|ui| {
+                ui.colored_label(ui.visuals().error_fg_color, words);
+                if ui.button("Use 0.9 of it").clicked() {
+                    actions.push(set(format::round_to_slider(0.9 * critical)));
+                }
+            });
+        } else {
+            ui.small(words);
+        }
+    }
+}
