@@ -68,6 +68,14 @@ impl Ledger {
         self.throughput += changes.iter().chain(&booked).map(|v| v.abs()).sum::<f64>();
     }
 
+    /// Whether the integrator has added more, since an earlier ledger, than this part of the energy there was then and
+    /// of the work done since.
+    pub(crate) fn has_gained_since(&self, before: &Self, part: f64) -> bool {
+        let work = (self.pulses - before.pulses).abs() + (self.hands - before.hands).abs();
+        let there = before.kinetic + before.elastic + (self.potential - before.potential).abs();
+        before.integrator - self.integrator > part * (there + work)
+    }
+
     /// Books an edit that leaves the state where it is.
     pub(crate) fn edit(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
         let before = self.total();

@@ -21,6 +21,9 @@ pub enum StepError {
     /// A number is not finite.
     #[error("a result is not a finite number")]
     NotFinite,
+    /// The step has added energy as no error of rounding or linearization does.
+    #[error("the step has added energy to the motion")]
+    AddedEnergy,
     /// The iteration of a stage did not reach its tolerance.
     #[error("the iteration did not reach its tolerance within {0} solves")]
     NotConverged(u32),

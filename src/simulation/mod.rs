@@ -382,7 +382,7 @@ impl Simulation {
     fn pulled(&mut self, moved_only: bool) {
         match &mut self.process {
             Process::Search(search) => search.pulled(&mut self.body, moved_only),
-            Process::Motion(motion) => motion.pulled(),
+            Process::Motion(motion) => motion.pulled(&self.body),
         }
         self.judge();
     }

@@ -19,6 +19,8 @@ const MOST_HALVINGS: u32 = 10;
 const FARTHEST: f64 = 1e6;
 /// A fraction of a step that is rounding of the time.
 const NO_TIME: f64 = 1e-6;
+/// Of the energy of a body and of the work on it, a step that adds more has failed.
+const MOST_ADDED: f64 = 0.25;
 /// A body whose points all move by less than this fraction of its size a second …
 const UNSEEN: f64 = 1e-6;
 /// … for so long, s, and as many steps, is at rest.
@@ -35,6 +37,9 @@ pub struct Motion {
     counts: Counts,
     ledger: Ledger,
     keeps_ledger: bool,
+    /// Steps are checked for energy that comes from nowhere. A hand pulls harder on few nodes than loads do: a step that
+    /// solves its stages once can then be far off.
+    is_guarded: bool,
     stopped: Option<StopReason>,
     /// Steps in a row in which nothing has been seen to move.
     quiet_steps: u32,
@@ -55,6 +60,7 @@ impl Motion {
             counts: Counts::default(),
             ledger: Ledger::default(),
             keeps_ledger: true,
+            is_guarded: false,
             stopped: None,
             quiet_steps: 0,
             critical_step: None,
@@ -74,6 +80,7 @@ impl Motion {
         self.counts = Counts::default();
         self.stopped = None;
         self.quiet_steps = 0;
+        self.is_guarded = problem.hand().is_some();
         self.timings = Timings::default();
         self.last_step = Timings::default();
         self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
@@ -137,13 +144,7 @@ impl Motion {
             self.start.copy_from(&body.state);
             let part = body.scene.dynamics.time_step / f64::from(1_u32 << halvings);
             match self.try_step(body, part) {
-                Ok(booking) => {
-                    left -= 1;
-                    if self.keeps_ledger {
-                        let Body { scene, problem, state } = &*body;
-                        self.ledger.book(&booking, problem, &self.mass, inertia(scene), state);
-                    }
-                }
+                Ok(()) => left -= 1,
                 Err(error) => {
                     body.state.copy_from(&self.start);
                     if halvings == MOST_HALVINGS || entry(&body.scene).is_explicit() {
@@ -169,7 +170,29 @@ impl Motion {
         self.timings.add(&self.last_step);
     }
 
-    fn try_step(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
+    /// A step of length h, s, with its books.
+    fn try_step(&mut self, body: &mut Body, h: f64) -> Result<(), StepError> {
+        let booking = self.integrate(body, h)?;
+        if !body.state.is_finite() {
+            return Err(StepError::NotFinite);
+        }
+        if self.keeps_books() {
+            let (Body { scene, problem, state }, mut ledger) = (&*body, self.ledger);
+            ledger.book(&booking, problem, &self.mass, inertia(scene), state);
+            if self.is_guarded && ledger.has_gained_since(&self.ledger, MOST_ADDED) {
+                return Err(StepError::AddedEnergy);
+            }
+            self.ledger = ledger;
+        }
+        Ok(())
+    }
+
+    fn keeps_books(&self) -> bool {
+        self.keeps_ledger || self.is_guarded
+    }
+
+    fn integrate(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
+        let books = self.keeps_books();
         let kinematics = self.kinematics(&body.scene);
         let Body { scene, problem, state } = body;
         let settings = &scene.dynamics;
@@ -194,10 +217,9 @@ impl Motion {
             start: &self.start,
             state,
             middle: &mut self.middle,
-            books: self.keeps_ledger,
+            books,
         };
-        let booking = (settings.integrator.entry().step)(&mut step)?;
-        if state.is_finite() { Ok(booking) } else { Err(StepError::NotFinite) }
+        (settings.integrator.entry().step)(&mut step)
     }
 
     fn reason(&self, error: StepError, part: f64) -> StopReason {
@@ -233,7 +255,11 @@ impl Motion {
     }
 
     /// A hand has taken hold, moved or let go.
-    pub(super) fn pulled(&mut self) {
+    pub(super) fn pulled(&mut self, body: &Body) {
+        if !self.keeps_books() {
+            self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);
+        }
+        self.is_guarded = true;
         self.quiet_steps = 0;
         self.memory.corrector.forget();
     }
