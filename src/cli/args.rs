@@ -17,12 +17,15 @@ const SOLVE_FILES: &str = "--out of a static scene:
   .csv  a row a node: node, rest_x, rest_y, x, y, u_x, u_y (m)
   .vtu  the mesh and its fields, for ParaView
 --out of a scene in motion (analysis = \"dynamic\"):
-  .csv  a row a time step: t (s); for every probe NAME: NAME_x, NAME_y, NAME_u_x, NAME_u_y (m), NAME_v_x, NAME_v_y (m/s);
-        then energies (J): kinetic, elastic, potential, dissipated, integrator (what it lost), pulses, hands
-  .pvd  a ParaView collection of FILE_0000.vtu, FILE_0001.vtu, ... beside it, at most about 300, evenly spread in time
+  .csv  a row a time step. Columns: t (s); for every probe NAME
+          NAME_x, NAME_y, NAME_u_x, NAME_u_y (m), NAME_v_x, NAME_v_y (m/s);
+        then energies (J):
+          kinetic, elastic, potential, dissipated, integrator (what it lost), pulses, hands
+  .pvd  a ParaView collection of FILE_0000.vtu, FILE_0001.vtu, ... beside it:
+        at most about 300 states, evenly spread in time
   .vtu  the last state
 
-Ctrl-C ends a motion early: the files are valid, the result is printed with status `stopped`, exit code 1.
+Ctrl-C ends a motion early: its files are valid, the result is printed with status `stopped`, exit code 1.
 ";
 
 /// A lab for the warped stiffness (corotational finite element) method on 2D triangle beams.

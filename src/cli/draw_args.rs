@@ -37,12 +37,14 @@ pub(super) struct ShotArgs {
 }
 
 /// What `record --help` says of files.
-pub(super) const RECORD_NOTES: &str = "OUT.gif loops for ever, in one palette of 256 colours. A GIF counts in hundredths of a second: where --fps is no such
-rate, the nearest is taken, and said. OUT.png is an animated PNG, in full colour. Any other name without extension is a
-folder of numbered pictures, frame-0001.png and on, ready for
+pub(super) const RECORD_NOTES: &str = "\
+OUT.gif loops for ever, in one palette of 256 colours. A GIF counts in hundredths of a second: where --fps is no such \
+rate, the nearest is taken, and said.
+OUT.png is an animated PNG, in full colour.
+A name without extension is a folder of numbered pictures, frame-0001.png and on, ready for
   ffmpeg -framerate 25 -i FOLDER/frame-%04d.png -pix_fmt yuv420p OUT.mp4
-The camera and the range of the colours are fixed to the whole motion: it is run once before it is drawn.
 
+Camera and colours span the whole motion: it is run once before it is drawn.
 Ctrl-C leaves a shorter, valid recording, and exit code 1.
 ";
 

@@ -13,7 +13,7 @@ use crate::study::Progress;
 /// Steps of a full bar.
 const FULL: u64 = 10_000;
 /// Time from one drawing of the bar to the next: texts are not made to be thrown away.
-const REDRAW: Duration = Duration::from_millis(50);
+const REDRAW: Duration = Duration::from_millis(100);
 /// What shells see of a process that a second Ctrl-C has ended.
 const KILLED_BY_INTERRUPT: i32 = 130;
 
@@ -61,8 +61,8 @@ impl Watch {
             return;
         }
         self.drawn.set(Some(now));
-        self.bar.set_message(words());
         self.bar.set_position((fraction.clamp(0.0, 1.0) * FULL as f64) as u64);
+        self.bar.set_message(words());
     }
 
     /// Shows how far a motion is, s.

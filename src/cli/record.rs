@@ -21,7 +21,7 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
         watch.show(progress.fraction, || words(&progress));
         if watch.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let recorded = app::record(source, scene, &options, &output, observe);
+    let recorded = app::record(&source, scene, &options, &output, observe);
     drop(watch);
     let recorded = recorded?;
     if recorded.pictures == 0 {

@@ -136,7 +136,7 @@ pub struct Recorded {
 /// # Errors
 /// [`AppError::Render`], [`AppError::Record`].
 pub fn record(
-    source: Source,
+    source: &Source,
     mut scene: Scene,
     options: &RecordOptions,
     output: &Path,
@@ -162,12 +162,16 @@ pub fn record(
         Recorded { pictures: 0, rate: 1.0 / delay.seconds(), format, interrupted: true, status: Status::Running };
     let Some(preview) = Preview::new(&reel, again()?, observe) else { return Ok(recorded) };
 
-    let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
-    let view = options.size.map(f64::from);
-    let camera = lab.fit(preview.low, preview.high, view);
-    lab.fix_view(camera, preview.range);
+    let new_lab = || -> Result<Lab, AppError> {
+        let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
+        lab.set_panel(false);
+        let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));
+        lab.fix_view(camera, preview.range);
+        Ok(lab)
+    };
     let mut samples = Vec::new();
     if format == MovieFormat::Gif {
+        let mut lab = new_lab()?;
         for state in &preview.samples {
             // A state of the same equations is taken.
             if lab.simulation_mut().restore(state).is_ok() {
@@ -176,8 +180,7 @@ pub fn record(
         }
     }
 
-    let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
-    lab.fix_view(camera, preview.range);
+    let mut lab = new_lab()?;
     let mut film = Film::create(output, format, delay, preview.pictures, &samples, options.size)?;
     for k in 0..preview.pictures {
         let told = |time: f64| RecordProgress {
@@ -199,7 +202,11 @@ pub fn record(
     }
     film.finish()?;
     recorded.interrupted = recorded.pictures < preview.pictures;
-    recorded.status = lab.simulation().status().clone();
+    recorded.status = match lab.simulation().status() {
+        // The last picture may be earlier than the last step.
+        Status::Running if moves && !recorded.interrupted => Status::Finished,
+        status => status.clone(),
+    };
     Ok(recorded)
 }
 
