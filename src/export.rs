@@ -115,7 +115,11 @@ impl MotionWriter {
     pub fn create(simulation: &Simulation, path: &Path) -> Result<Self, ExportError> {
         let kind = match Format::of(path)? {
             Format::Csv => MotionFile::Table(BufWriter::new(File::create(path).map_err(failed(path))?)),
-            Format::Vtu => MotionFile::Last,
+            Format::Vtu => {
+                // A folder that is not there is said before the work.
+                File::options().write(true).create(true).truncate(false).open(path).map_err(failed(path))?;
+                MotionFile::Last
+            }
             Format::Pvd => {
                 let settings = &simulation.scene().dynamics;
                 let steps = (settings.duration / settings.time_step).ceil() as u64;

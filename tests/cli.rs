@@ -379,6 +379,34 @@ fn an_interrupted_command_leaves_what_it_has() {
     let atlas = fs::read_to_string(folder.path().join("atlas/extremes.csv")).unwrap();
     let columns = atlas.lines().next().unwrap().split(',').count();
     assert!(atlas.lines().all(|line| line.split(',').count() == columns));
+
+    for (args, missing) in [
+        (&["study", "cantilever", "--out", "trade"][..], "the finer meshes|nothing has been measured"),
+        (&["tune", "cantilever", "--error", "0.001%"], "nothing has been chosen"),
+    ] {
+        let running = start(folder.path(), args);
+        wait_for("an ear for signals", || listens(&running));
+        let output = interrupt(running);
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {text}");
+        assert!(missing.split('|').any(|words| text.contains(words)), "{args:?}: {text}");
+    }
+}
+
+/// On a terminal there is a bar, and nothing of it elsewhere.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_takes_long_shows_a_bar_on_a_terminal() {
+    let args = ["solve", "swing", "--set", "dynamics.duration=4"];
+    let quiet = warpbeam(&args);
+    assert_eq!((quiet.status.code(), stderr(&quiet).as_str()), (Some(0), ""));
+    let command = format!("{} {}", env!("CARGO_BIN_EXE_warpbeam"), args.join(" "));
+    // A terminal of its own.
+    let mut script = std::process::Command::new("script");
+    let shown = script.args(["-qec", &command, "/dev/null"]).env("TERM", "xterm").output().unwrap();
+    let text = stdout(&shown);
+    assert!(text.contains(" of 4 s, ") && text.contains(" s a second") && text.contains(" left"), "{text}");
+    assert!(text.contains("finished at 4.000000 s"), "{text}");
 }
 
 const GOOD: &str = r#"name = "Bar"

@@ -186,7 +186,7 @@ fn wrong_usage_is_refused_before_anything_is_drawn() {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_recording_is_shorter_and_valid() {
-    use common::process::{interrupt, start, wait_for};
+    use common::process::{interrupt, listens, start, wait_for};
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.gif", "a.png"] {
         let path = folder.path().join(name);
@@ -202,4 +202,11 @@ fn an_interrupted_recording_is_shorter_and_valid() {
         let said = format!("{} picture", movie.frames.len());
         assert!(stdout(&output).contains(&said), "{said}: {}", stdout(&output));
     }
+    // Before the first picture there is none.
+    let running = start(folder.path(), &["record", "swing", "--seconds", "1e5", "-o", "none.gif"]);
+    wait_for("an ear for signals", || listens(&running));
+    let output = interrupt(running);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("nothing was written"), "{}", stderr(&output));
+    assert!(!folder.path().join("none.gif").exists());
 }

@@ -96,6 +96,7 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     drop(watch);
     let (study, interrupted) = match (whole, partial) {
         (Err(StudyError::Cancelled), Some(partial)) => (partial, true),
+        (Err(StudyError::Cancelled), None) => return Ok(ended(true, "nothing has been measured")),
         (whole, _) => (whole.map_err(failed(source))?, false),
     };
     let summary = study.summary();

@@ -214,7 +214,11 @@ pub fn record(
 fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, RenderError> {
     let simulation = lab.simulation();
     let text = match simulation.motion() {
-        Some(_) => format!("{:.3} s", simulation.state().time()),
+        Some(_) => {
+            // As many digits as tell steps apart.
+            let digits = -simulation.scene().dynamics.time_step.log10();
+            format!("{:.*} s", digits.ceil().clamp(2.0, 9.0) as usize, simulation.state().time())
+        }
         None => format!("iteration {k}"),
     };
     canvas.draw(lab, &mut |ctx| {
