@@ -49,7 +49,8 @@ fn words(progress: &RecordProgress) -> String {
 /// What was written, and at which rate.
 fn summary(recorded: &Recorded, asked: Option<u16>, output: &Path) -> String {
     let Recorded { pictures, rate, format, .. } = recorded;
-    let mut text = format!("{}: {}, {} a second", output.display(), count(*pictures, "picture"), number(*rate));
+    let rounded = number((100.0 * rate).round() / 100.0);
+    let mut text = format!("{}: {}, {rounded} a second", output.display(), count(*pictures, "picture"));
     if let Some(asked) = asked.filter(|&asked| (f64::from(asked) - rate).abs() > 1e-9) {
         text += &format!(" (a {} cannot have {asked})", if *format == MovieFormat::Gif { "GIF" } else { "file" });
     }

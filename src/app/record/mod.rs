@@ -300,7 +300,7 @@ impl Preview {
         let (low, high) = simulation.system().mesh().bounds();
         let largest = LARGEST_VIEW * (high - low).norm();
         let mut preview = Self { pictures: 0, low, high, range: [0.0, 1.0], samples: Vec::new() };
-        let (mut values, mut range) = (Vec::new(), Vec::new());
+        let (mut values, mut extremes) = (Vec::new(), Vec::new());
         let mut way = Vec::new();
         let mut stride = 1;
         loop {
@@ -321,8 +321,9 @@ impl Preview {
                 // What explodes neither shrinks the body to a dot nor takes all colours.
                 if preview.include(low, high, largest) {
                     simulation.field(Field::default(), &mut values);
-                    values.extend(range.drain(..).map(Some));
-                    range.extend(range_of(&values));
+                    values.append(&mut extremes);
+                    let finite = values.iter().flatten().copied();
+                    extremes = vec![finite.clone().reduce(f64::min), finite.reduce(f64::max)];
                 }
             } else {
                 way.push((low, high));
@@ -338,9 +339,7 @@ impl Preview {
             preview.pictures += 1;
         }
         if moves {
-            if let [low, high] = range[..] {
-                preview.range = [low, high];
-            }
+            preview.range = range_of(&extremes);
         } else {
             let (low, high) = bounds(&simulation);
             preview.include(low, high, f64::INFINITY);
@@ -371,4 +370,88 @@ fn bounds(simulation: &Simulation) -> (Vector2<f64>, Vector2<f64>) {
     let nodes = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
     let none = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
     nodes.fold(none, |(low, high), p| (low.inf(&p), high.sup(&p)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn simulation(id: &str, set: &[&str]) -> Simulation {
+        let assignments = set.iter().map(|s| (*s).to_owned()).collect();
+        Simulation::new(&crate::scene::open(&Source { name: id.to_owned(), assignments }).unwrap()).unwrap()
+    }
+
+    fn reel(simulation: &Simulation, between: f64) -> Reel {
+        Reel { between, duration: simulation.scene().dynamics.duration }
+    }
+
+    /// Runs to the end; `each` sees every picture.
+    fn run(reel: &Reel, mut simulation: Simulation, each: &mut dyn FnMut(u64, &Simulation)) -> u64 {
+        for k in 0.. {
+            match reel.advance(k, &mut simulation, &mut |_| ControlFlow::Continue(())) {
+                Reached::Picture => each(k, &simulation),
+                _ => return k,
+            }
+        }
+        0
+    }
+
+    #[test]
+    fn a_picture_shows_the_last_step_that_is_not_later() {
+        // Steps shorter than the time between pictures, the same, and longer.
+        for (step, between, pictures) in [(0.01, 0.04, 26), (0.01, 0.03, 34), (0.04, 0.04, 26), (0.1, 0.04, 26)] {
+            let swing = simulation("swing", &[&format!("dynamics.time_step={step}"), "dynamics.duration=1"]);
+            let reel = reel(&swing, between);
+            let seen = run(&reel, swing, &mut |k, simulation| {
+                let (at, time) = (k as f64 * between, simulation.state().time());
+                assert!(time <= at + 1e-9 && time > at - step + 1e-9, "picture {k} at {at} s shows {time} s");
+            });
+            assert_eq!(seen, pictures, "{step}, {between}");
+        }
+    }
+
+    #[test]
+    fn the_preview_spans_every_picture() {
+        for id in ["swing", "jelly", "spin", "elastica"] {
+            let again = || simulation(id, if id == "elastica" { &[] } else { &["dynamics.duration=1.5"] });
+            let reel = reel(&again(), 0.04);
+            let preview = Preview::new(&reel, again(), &mut |_| ControlFlow::Continue(())).unwrap();
+            assert!(preview.samples.len() <= SAMPLES && preview.samples.len() >= SAMPLES.min(3), "{id}");
+            let mut values = Vec::new();
+            let moves = again().motion().is_some();
+            let seen = run(&reel, again(), &mut |k, simulation| {
+                let (low, high) = bounds(simulation);
+                // On the way to an equilibrium an iteration may leave the picture; the end is in it.
+                let shown = moves || *simulation.status() == Status::Converged;
+                assert!(!shown || low >= preview.low && high <= preview.high, "{id}, picture {k}");
+                simulation.field(Field::default(), &mut values);
+                let [low, high] = range_of(&values);
+                // A body at rest has a range of its own.
+                let strained = values.iter().flatten().any(|v| *v > 0.0);
+                assert!(
+                    !moves || !strained || low >= preview.range[0] && high <= preview.range[1],
+                    "{id}, picture {k}"
+                );
+            });
+            assert_eq!(seen, preview.pictures, "{id}");
+        }
+        let called_off =
+            Preview::new(&Reel { between: 0.04, duration: 1.0 }, simulation("swing", &[]), &mut |progress| {
+                if progress.time > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+        assert!(called_off.is_none());
+    }
+
+    /// A motion that explodes does not make the picture infinitely large.
+    #[test]
+    fn what_explodes_leaves_the_picture() {
+        let swing = simulation("swing", &["dynamics.integrator=symplectic-euler", "dynamics.time_step=0.001"]);
+        let size = {
+            let (low, high) = swing.system().mesh().bounds();
+            (high - low).norm()
+        };
+        let preview = Preview::new(&reel(&swing, 0.001), swing, &mut |_| ControlFlow::Continue(())).unwrap();
+        assert!((preview.high - preview.low).norm() <= LARGEST_VIEW * size && preview.range[1].is_finite());
+        assert!(preview.pictures > 1);
+    }
 }
