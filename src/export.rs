@@ -1,7 +1,11 @@
-//! A result as a file: a table of nodes (`.csv`) or a mesh with fields (`.vtu`, read by ParaView).
+//! A result as a file: a table of nodes (`.csv`) or a mesh with fields (`.vtu`, read by ParaView); of a motion, a table of
+//! what its probes see (`.csv`), its last state (`.vtu`) or a series of states (`.pvd`).
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -11,8 +15,13 @@ use crate::simulation::{Field, Simulation};
 #[derive(Debug, Error)]
 pub enum ExportError {
     /// The file name asks for a format there is not.
-    #[error("{0}: expected a file name ending in .csv or .vtu")]
+    #[error("{0}: expected a file name ending in .csv or .vtu, or in .pvd for a scene in motion")]
     UnknownFormat(String),
+    /// A series of states, of a body at rest.
+    #[error(
+        "{0}: expected a scene in motion (analysis = \"dynamic\") for a series of states; .vtu has the equilibrium"
+    )]
+    NotInMotion(String),
     /// The file cannot be written.
     #[error("{path}: {source}")]
     Write {
@@ -26,10 +35,12 @@ pub enum ExportError {
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A row a node: rest and current position, displacement.
+    /// A row a node: rest and current position, displacement. Of a motion, a row a time step: probes and energies.
     Csv,
     /// VTK unstructured grid, XML, ASCII.
     Vtu,
+    /// ParaView collection: a file that names a series of `.vtu` files with their times.
+    Pvd,
 }
 
 impl Format {
@@ -41,6 +52,7 @@ impl Format {
         match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("csv") => Ok(Self::Csv),
             Some("vtu") => Ok(Self::Vtu),
+            Some("pvd") => Ok(Self::Pvd),
             _ => Err(ExportError::UnknownFormat(path.display().to_string())),
         }
     }
@@ -54,8 +66,190 @@ pub fn write(simulation: &Simulation, path: &Path) -> Result<(), ExportError> {
     let text = match Format::of(path)? {
         Format::Csv => csv(simulation),
         Format::Vtu => vtu(simulation),
+        Format::Pvd => return Err(ExportError::NotInMotion(path.display().to_string())),
     };
     write_text(path, &text)
+}
+
+/// Most states of a series, about: more is seldom watched and fills the disk.
+pub const MOST_STATES: u64 = 300;
+
+/// A motion on its way into a file, step by step. What has been written is valid whenever [`Self::finish`] is called.
+///
+/// - `.csv`: a row a time step, and one of the start. Columns: `t` (s); for every probe NAME its mean position
+///   `NAME_x`, `NAME_y` and displacement `NAME_u_x`, `NAME_u_y` (m), and velocity `NAME_v_x`, `NAME_v_y` (m/s); then the
+///   energies of the [`Ledger`](crate::dynamics::Ledger), J: `kinetic`, `elastic`, `potential`, `dissipated`,
+///   `integrator`, `pulses`, `hands`. In every row kinetic + elastic + potential + dissipated + integrator − pulses −
+///   hands is the same.
+/// - `.pvd`: a collection of the files `NAME_0000.vtu`, `NAME_0001.vtu`, … beside it: every step, or every n-th, n the
+///   least that makes them no more than [`MOST_STATES`], and the first and the last.
+/// - `.vtu`: the last state.
+#[derive(Debug)]
+pub struct MotionWriter {
+    path: PathBuf,
+    kind: MotionFile,
+}
+
+#[derive(Debug)]
+enum MotionFile {
+    Table(BufWriter<File>),
+    Series(Series),
+    Last,
+}
+
+/// The states of a `.pvd` file so far.
+#[derive(Debug)]
+struct Series {
+    /// Steps from state to state, and since the last one.
+    stride: u64,
+    steps: u64,
+    /// Times and names of files.
+    states: Vec<(f64, String)>,
+}
+
+impl MotionWriter {
+    /// Begins the file that its name asks for with the start of a motion.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn create(simulation: &Simulation, path: &Path) -> Result<Self, ExportError> {
+        let kind = match Format::of(path)? {
+            Format::Csv => MotionFile::Table(BufWriter::new(File::create(path).map_err(failed(path))?)),
+            Format::Vtu => {
+                // A folder that is not there is said before the work.
+                File::options().write(true).create(true).truncate(false).open(path).map_err(failed(path))?;
+                MotionFile::Last
+            }
+            Format::Pvd => {
+                let settings = &simulation.scene().dynamics;
+                let steps = (settings.duration / settings.time_step).ceil() as u64;
+                MotionFile::Series(Series { stride: steps.div_ceil(MOST_STATES).max(1), steps: 0, states: Vec::new() })
+            }
+        };
+        let mut writer = Self { path: path.to_owned(), kind };
+        match &mut writer.kind {
+            MotionFile::Table(file) => {
+                let rows = table_header(simulation) + &table_row(simulation);
+                file.write_all(rows.as_bytes()).map_err(failed(path))?;
+            }
+            MotionFile::Series(series) => series.add(simulation, path)?,
+            MotionFile::Last => {}
+        }
+        Ok(writer)
+    }
+
+    /// Adds what a step has led to.
+    ///
+    /// # Errors
+    /// [`ExportError::Write`].
+    pub fn add(&mut self, simulation: &Simulation) -> Result<(), ExportError> {
+        match &mut self.kind {
+            MotionFile::Table(file) => {
+                file.write_all(table_row(simulation).as_bytes()).map_err(failed(&self.path))?;
+            }
+            MotionFile::Series(series) => {
+                series.steps += 1;
+                if series.steps == series.stride {
+                    series.add(simulation, &self.path)?;
+                }
+            }
+            MotionFile::Last => {}
+        }
+        Ok(())
+    }
+
+    /// Ends the file with the last state, the one that was added last.
+    ///
+    /// # Errors
+    /// [`ExportError::Write`].
+    pub fn finish(self, simulation: &Simulation) -> Result<(), ExportError> {
+        match self.kind {
+            MotionFile::Table(mut file) => file.flush().map_err(failed(&self.path)),
+            MotionFile::Series(mut series) => {
+                if series.steps > 0 {
+                    series.add(simulation, &self.path)?;
+                }
+                write_text(&self.path, &collection(&series.states))
+            }
+            MotionFile::Last => write_text(&self.path, &vtu(simulation)),
+        }
+    }
+}
+
+impl Series {
+    fn add(&mut self, simulation: &Simulation, collection: &Path) -> Result<(), ExportError> {
+        // The collection names its files, and XML is text.
+        let stem = collection.file_stem().unwrap_or_default().to_string_lossy();
+        let name = format!("{stem}_{:04}.vtu", self.states.len());
+        write_text(&collection.with_file_name(&name), &vtu(simulation))?;
+        self.states.push((simulation.state().time(), name));
+        self.steps = 0;
+        Ok(())
+    }
+}
+
+fn failed(path: &Path) -> impl Fn(std::io::Error) -> ExportError {
+    |source| ExportError::Write { path: path.display().to_string(), source }
+}
+
+fn collection(states: &[(f64, String)]) -> String {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    for (time, name) in states {
+        let _ = writeln!(text, r#"<DataSet timestep="{time}" part="0" file="{}"/>"#, xml_attribute(name));
+    }
+    text.push_str("</Collection>\n</VTKFile>\n");
+    text
+}
+
+/// A text as the value of an XML attribute.
+fn xml_attribute(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// A text as a field of a CSV file.
+fn csv_field(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\"")).into()
+    } else {
+        text.into()
+    }
+}
+
+fn table_header(simulation: &Simulation) -> String {
+    let mut text = String::from("t");
+    for probe in simulation.problem().probes() {
+        for column in ["x", "y", "u_x", "u_y", "v_x", "v_y"] {
+            let _ = write!(text, ",{}", csv_field(&format!("{}_{column}", probe.name)));
+        }
+    }
+    text.push_str(",kinetic,elastic,potential,dissipated,integrator,pulses,hands\n");
+    text
+}
+
+fn table_row(simulation: &Simulation) -> String {
+    let state = simulation.state();
+    let nodes = simulation.system().mesh().nodes();
+    let mut text = state.time().to_string();
+    for probe in simulation.problem().probes() {
+        let (u, v) = (probe.mean(state.displacement()), probe.mean(state.velocity()));
+        let x = probe.mean(nodes) + u;
+        let _ = write!(text, ",{},{},{},{},{},{}", x.x, x.y, u.x, u.y, v.x, v.y);
+    }
+    let ledger = simulation.motion().map(|motion| *motion.ledger()).unwrap_or_default();
+    let _ = writeln!(
+        text,
+        ",{},{},{},{},{},{},{}",
+        ledger.kinetic,
+        ledger.elastic,
+        ledger.potential,
+        ledger.dissipated,
+        ledger.integrator,
+        ledger.pulses,
+        ledger.hands
+    );
+    text
 }
 
 /// Writes a file, naming it where that fails.
@@ -63,7 +257,7 @@ pub fn write(simulation: &Simulation, path: &Path) -> Result<(), ExportError> {
 /// # Errors
 /// [`ExportError::Write`].
 pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
-    std::fs::write(path, text).map_err(|source| ExportError::Write { path: path.display().to_string(), source })
+    std::fs::write(path, text).map_err(failed(path))
 }
 
 fn csv(simulation: &Simulation) -> String {
@@ -103,11 +297,18 @@ fn vtu(simulation: &Simulation) -> String {
         let _ = writeln!(text, "{}", entry.vtk_type);
     }
     let _ = writeln!(text, "</DataArray>\n</Cells>\n<PointData Vectors=\"displacement\">");
-    let _ = writeln!(text, r#"<DataArray type="Float64" Name="displacement" NumberOfComponents="3" format="ascii">"#);
-    for u in simulation.displacement() {
-        let _ = writeln!(text, "{} {} 0", u.x, u.y);
+    let mut vectors = vec![("displacement", simulation.displacement())];
+    if simulation.motion().is_some() {
+        vectors.push(("velocity", simulation.state().velocity()));
     }
-    let _ = writeln!(text, "</DataArray>\n</PointData>\n<CellData>");
+    for (name, nodal) in vectors {
+        let _ = writeln!(text, r#"<DataArray type="Float64" Name="{name}" NumberOfComponents="3" format="ascii">"#);
+        for v in nodal {
+            let _ = writeln!(text, "{} {} 0", v.x, v.y);
+        }
+        let _ = writeln!(text, "</DataArray>");
+    }
+    let _ = writeln!(text, "</PointData>\n<CellData>");
     let mut values = Vec::new();
     for field in Field::ALL {
         simulation.field(field, &mut values);

@@ -4,8 +4,11 @@
 mod common;
 
 use std::fs;
+use std::path::Path;
 
-use common::{ids_of, scene, scene_ids, solve_json, stderr, stdout, warpbeam, warpbeam_in};
+#[cfg(target_os = "linux")]
+use common::process::{interrupt, listens, start, wait_for};
+use common::{ids_of, program, scene, scene_ids, solve_json, stderr, stdout, warpbeam, warpbeam_in};
 use warpbeam::scene::{Analysis, registry};
 
 #[test]
@@ -20,6 +23,7 @@ fn every_command_has_help() {
         &["study", "--help"],
         &["tune", "--help"],
         &["extremes", "--help"],
+        &["record", "--help"],
     ] {
         let output = warpbeam(args);
         assert_eq!(output.status.code(), Some(0), "{args:?}");
@@ -27,10 +31,17 @@ fn every_command_has_help() {
         assert!(text.contains("Usage: warpbeam"), "{args:?}: {text}");
         assert!(text.lines().all(|line| line.len() < 200));
     }
-    for command in ["run", "scenes", "solve", "curve", "study", "tune", "extremes", "shot"] {
+    for command in ["run", "scenes", "solve", "curve", "study", "tune", "extremes", "shot", "record"] {
         assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
     }
     assert!(stdout(&warpbeam(&["solve", "--help"])).contains("Exit codes"));
+    // What scripts read has its columns and its interruption documented.
+    for words in ["NAME_v_x", "dissipated", "about 300", "Ctrl-C"] {
+        assert!(stdout(&warpbeam(&["solve", "--help"])).contains(words), "{words}");
+    }
+    for words in ["hundredths of a second", "ffmpeg", "Ctrl-C"] {
+        assert!(stdout(&warpbeam(&["record", "--help"])).contains(words), "{words}");
+    }
     assert!(stdout(&warpbeam(&["--version"])).starts_with("warpbeam "));
 }
 
@@ -177,6 +188,225 @@ fn results_are_written_as_csv_and_vtu() {
     let (code, _, message) = run("mesh.obj");
     assert_eq!(code, Some(2));
     assert!(message.contains(".csv or .vtu"), "{message}");
+}
+
+/// A file of numbers with a header: its columns, and its rows.
+fn read_table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let header = lines.next().unwrap().split(',').map(str::to_owned).collect();
+    (header, lines.map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect())
+}
+
+/// Whether a number is one of a JSON text, which `serde_json` reads to all but the last digit.
+fn same(number: f64, json: &serde_json::Value) -> bool {
+    (number - json.as_f64().unwrap()).abs() <= 1e-14 * number.abs()
+}
+
+/// The trajectory of a motion: a row a step, the last one the result, and in every one the books are closed.
+#[test]
+fn a_motion_is_written_as_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("swing.csv");
+    for (id, integrator, iterations) in [
+        ("swing", "tr-bdf2", 1),
+        ("swing", "energy-momentum", 0),
+        ("jelly", "implicit-euler", 1),
+        ("flick", "tr-bdf2", 1),
+    ] {
+        let set = [format!("dynamics.integrator={integrator}"), format!("dynamics.iterations={iterations}")];
+        let args = [id, "--set", &set[0], "--set", &set[1], "--set", "dynamics.duration=0.5"];
+        let json = solve_json(&[&args[..], &["--out", path.to_str().unwrap()]].concat());
+        let (header, rows) = read_table(&path);
+        let name = json["probes"][0]["name"].as_str().unwrap();
+        assert_eq!(
+            header[..7],
+            ["t", "x", "y", "u_x", "u_y", "v_x", "v_y"].map(|c| match c {
+                "t" => c.to_owned(),
+                c => format!("{name}_{c}"),
+            })
+        );
+        let energies = &header[header.len() - 7..];
+        assert_eq!(energies, ["kinetic", "elastic", "potential", "dissipated", "integrator", "pulses", "hands"]);
+        let steps = json["steps"].as_u64().unwrap() as usize;
+        assert_eq!((rows.len(), steps > 20), (steps + 1, true), "{id}");
+        assert!(rows.windows(2).all(|w| w[1][0] > w[0][0]) && rows[0][0] == 0.0, "{id}: times increase");
+        let last = rows.last().unwrap();
+        let probe = &json["probes"][0];
+        let seen = [&json["time"], &probe["x"][0], &probe["x"][1], &probe["u"][0], &probe["u"][1]];
+        for (column, value) in last.iter().zip(seen) {
+            assert!(same(*column, value), "{id}: {column} {value}");
+        }
+        let from = header.len() - 7;
+        for key in ["kinetic", "elastic", "dissipated", "integrator", "pulses", "hands"] {
+            let column = header.iter().position(|c| c == key).unwrap();
+            assert!(same(last[column], &json["energy"][key]), "{id}: {key}");
+        }
+        let sum = |row: &[f64]| row[from..from + 5].iter().sum::<f64>() - row[from + 5] - row[from + 6];
+        let largest = rows.iter().flat_map(|r| &r[from..]).fold(0.0_f64, |m, v| m.max(v.abs()));
+        for row in &rows {
+            assert!((sum(row) - sum(&rows[0])).abs() < 1e-9 * largest, "{id}, {integrator}: the books of {row:?}");
+        }
+        // The velocity is that of the displacement: over steps that resolve it.
+        let h = rows[1][0] - rows[0][0];
+        let fastest = rows.iter().map(|r| r[6].abs()).fold(0.0, f64::max);
+        let off = rows.windows(3).map(|w| ((w[2][4] - w[0][4]) / (2.0 * h) - w[1][6]).abs()).fold(0.0, f64::max);
+        assert!(off < 0.2 * fastest, "{id}, {integrator}: the velocity is off by {off} of {fastest} m/s");
+    }
+}
+
+/// A series of states for ParaView: files that are there, times that increase, and the result at the end.
+#[test]
+fn a_motion_is_written_as_a_series_of_states() {
+    let folder = tempfile::tempdir().unwrap();
+    // A name that XML has to escape.
+    let path = folder.path().join("swing & sway.pvd");
+    let last = folder.path().join("last.vtu");
+    for (step, duration, states) in [("0.016666666666666666", "0.5", 31), ("0.001", "0.65", 218)] {
+        let set = [format!("dynamics.time_step={step}"), format!("dynamics.duration={duration}")];
+        let args = ["swing", "--set", &set[0], "--set", &set[1], "--set", "beam.cells=[4,1]"];
+        let json = solve_json(&[&args[..], &["--out", path.to_str().unwrap()]].concat());
+        let text = fs::read_to_string(&path).unwrap();
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let root = document.root_element();
+        assert_eq!((root.tag_name().name(), root.attribute("type")), ("VTKFile", Some("Collection")));
+        let sets: Vec<_> = document.descendants().filter(|n| n.has_tag_name("DataSet")).collect();
+        assert_eq!(sets.len(), states, "every step, or every third of 650, and the last");
+        let times: Vec<f64> = sets.iter().map(|n| n.attribute("timestep").unwrap().parse().unwrap()).collect();
+        assert!(times.windows(2).all(|w| w[1] > w[0]) && times[0] == 0.0);
+        assert!(same(*times.last().unwrap(), &json["time"]));
+        let files: Vec<_> = sets.iter().map(|n| folder.path().join(n.attribute("file").unwrap())).collect();
+        for file in &files {
+            let text = fs::read_to_string(file).unwrap();
+            roxmltree::Document::parse(&text).unwrap();
+        }
+        // The state of the last file is the result: the tip is the mean of the right edge.
+        let text = fs::read_to_string(files.last().unwrap()).unwrap();
+        let vectors = |name: &str| -> Vec<Vec<f64>> {
+            let document = roxmltree::Document::parse(&text).unwrap();
+            let array = document.descendants().find(|n| match name {
+                "points" => n.parent().is_some_and(|p| p.has_tag_name("Points")),
+                name => n.attribute("Name") == Some(name),
+            });
+            let numbers: Vec<f64> =
+                array.unwrap().text().unwrap().split_whitespace().map(|v| v.parse().unwrap()).collect();
+            numbers.chunks(3).map(<[f64]>::to_vec).collect()
+        };
+        let (points, u, v) = (vectors("points"), vectors("displacement"), vectors("velocity"));
+        assert!(u.len() == points.len() && v.len() == points.len());
+        let tip = &json["probes"][0];
+        // Simpson's rule along the one six-node side.
+        let weight = |y: f64| if y.abs() < 1e-9 { 4.0 / 6.0 } else { 1.0 / 6.0 };
+        for axis in 0..2 {
+            let mean: f64 =
+                points.iter().zip(&u).filter(|(p, _)| p[0] > 1.0 - 1e-9).map(|(p, u)| weight(p[1]) * u[axis]).sum();
+            assert!((mean - tip["u"][axis].as_f64().unwrap()).abs() < 1e-12, "axis {axis}: {mean}, {tip}");
+        }
+        assert!(v.iter().flatten().any(|v| v.abs() > 0.1));
+        // The same run as a single state.
+        solve_json(&[&args[..], &["--out", last.to_str().unwrap()]].concat());
+        assert_eq!(fs::read_to_string(&last).unwrap(), text);
+    }
+    let refused = warpbeam_in(folder.path(), &["solve", "article", "--out", "rest.pvd"]);
+    assert_eq!((refused.status.code(), refused.stdout.is_empty()), (Some(2), true));
+    assert!(stderr(&refused).contains("a scene in motion"), "{}", stderr(&refused));
+    assert!(!folder.path().join("rest.pvd").exists());
+}
+
+/// What cannot be written is an error, and the result is printed all the same; a reader that goes away is none.
+#[cfg(target_os = "linux")]
+#[test]
+fn failed_writes_end_with_exit_code_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    for args in [&["solve", "article", "--json"][..], &["solve", "swing"], &["scenes"], &["curve", "elastica"]] {
+        let output = program(folder.path(), args).stdout(full()).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(stderr(&output).contains("standard output: "), "{args:?}: {}", stderr(&output));
+    }
+    for (id, name) in
+        [("article", "x.csv"), ("swing", "x.csv"), ("article", "x.vtu"), ("swing", "x.vtu"), ("swing", "x.pvd")]
+    {
+        let path = folder.path().join(name);
+        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+        let output = warpbeam_in(folder.path(), &["solve", id, "--out", name, "--json"]);
+        fs::remove_file(path).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{id} {name}");
+        assert!(stderr(&output).contains("x."), "{id} {name}: {}", stderr(&output));
+        let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert!(json["status"] == "converged" || json["status"] == "finished", "{id} {name}");
+    }
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = program(folder.path(), &["solve", "article"]).stdout(writer).output().unwrap();
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+}
+
+/// Ctrl-C ends what takes long with what it has.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_command_leaves_what_it_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("swing.csv");
+    let args = ["solve", "swing", "--json", "--set", "dynamics.duration=1e5", "--out", "swing.csv"];
+    let running = start(folder.path(), &args);
+    wait_for("rows", || fs::metadata(&path).is_ok_and(|file| file.len() > 20_000));
+    let output = interrupt(running);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("partial"), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(json["status"], "stopped");
+    let (header, rows) = read_table(&path);
+    assert!(rows.iter().all(|row| row.len() == header.len()));
+    assert_eq!(rows.len() as u64 - 1, json["steps"].as_u64().unwrap());
+    assert!(same(rows.last().unwrap()[0], &json["time"]));
+
+    let args = ["solve", "swing", "--set", "dynamics.duration=1e5", "--out", "series.pvd"];
+    let running = start(folder.path(), &args);
+    wait_for("the first state", || folder.path().join("series_0000.vtu").exists() && listens(&running));
+    let output = interrupt(running);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stdout(&output).contains("stopped at"), "{}", stdout(&output));
+    let pvd = fs::read_to_string(folder.path().join("series.pvd")).unwrap();
+    assert!(roxmltree::Document::parse(&pvd).unwrap().descendants().filter(|n| n.has_tag_name("DataSet")).count() >= 1);
+
+    // However early, the atlas is a table with what there is.
+    let running = start(folder.path(), &["extremes", "--out", "atlas"]);
+    wait_for("an ear for signals", || listens(&running));
+    let output = interrupt(running);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("not in the atlas"), "{}", stderr(&output));
+    let atlas = fs::read_to_string(folder.path().join("atlas/extremes.csv")).unwrap();
+    let columns = atlas.lines().next().unwrap().split(',').count();
+    assert!(atlas.lines().all(|line| line.split(',').count() == columns));
+
+    for (args, missing) in [
+        (&["study", "cantilever", "--out", "trade"][..], "the finer meshes|nothing has been measured"),
+        (&["tune", "cantilever", "--error", "0.001%"], "nothing has been chosen"),
+    ] {
+        let running = start(folder.path(), args);
+        wait_for("an ear for signals", || listens(&running));
+        let output = interrupt(running);
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {text}");
+        assert!(missing.split('|').any(|words| text.contains(words)), "{args:?}: {text}");
+    }
+}
+
+/// On a terminal there is a bar, and nothing of it elsewhere.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_takes_long_shows_a_bar_on_a_terminal() {
+    let args = ["solve", "swing", "--set", "dynamics.duration=4"];
+    let quiet = warpbeam(&args);
+    assert_eq!((quiet.status.code(), stderr(&quiet).as_str()), (Some(0), ""));
+    let command = format!("{} {}", env!("CARGO_BIN_EXE_warpbeam"), args.join(" "));
+    // A terminal of its own.
+    let mut script = std::process::Command::new("script");
+    let shown = script.args(["-qec", &command, "/dev/null"]).env("TERM", "xterm").output().unwrap();
+    let text = stdout(&shown);
+    assert!(text.contains(" of 4 s, ") && text.contains(" s a second") && text.contains(" left"), "{text}");
+    assert!(text.contains("finished at 4.000000 s"), "{text}");
 }
 
 const GOOD: &str = r#"name = "Bar"

@@ -166,6 +166,17 @@ impl Lab {
         self.iterations
     }
 
+    /// The simulation, for who steps it in the lab's place.
+    pub(super) fn simulation_mut(&mut self) -> &mut Simulation {
+        &mut self.simulation
+    }
+
+    /// Looks through this camera, and colours with this range, whatever the body does.
+    pub(super) fn fix_view(&mut self, camera: Camera, range: [f64; 2]) {
+        self.camera = Some(camera);
+        self.view.fixed_range = Some(range);
+    }
+
     /// Shows or hides the outlines at rest and of the linear solution.
     pub fn set_outlines(&mut self, shown: bool) {
         self.view.rest_outline = shown;
@@ -466,17 +477,23 @@ impl Lab {
         };
         include(&mut self.shape.points.iter().copied());
         self.swept = Some([low, high]).filter(|_| self.moves());
+        self.fitted = self.fit(low, high, [f64::from(rect.width()), f64::from(rect.height())]);
+    }
+
+    /// The camera that shows a box, m, and the linear solution beside it, in a view of this size, points.
+    pub(super) fn fit(&self, mut low: Vector2<f64>, mut high: Vector2<f64>, view: [f64; 2]) -> Camera {
         if let Some(linear) = self.ghost() {
             // The linear solution of a large load is absurdly long; the body must not shrink to a dot beside it.
             const LARGEST: f64 = 1.5;
             let size = (high - low).norm();
-            let ghost: Vec<_> = mesh.nodes().iter().zip(linear).map(|(x, u)| x + u).collect();
+            let nodes = self.simulation.system().mesh().nodes();
+            let ghost: Vec<_> = nodes.iter().zip(linear).map(|(x, u)| x + u).collect();
             let (ghost_low, ghost_high) = ghost.iter().fold((low, high), |(low, high), p| (low.inf(p), high.sup(p)));
             if (ghost_high - ghost_low).norm() < LARGEST * size {
                 (low, high) = (ghost_low, ghost_high);
             }
         }
-        self.fitted = Camera::fit(low, high, [f64::from(rect.width()), f64::from(rect.height())], FIT_MARGINS);
+        Camera::fit(low, high, view, FIT_MARGINS)
     }
 
     /// The linear solution, if it is to be shown.

@@ -23,11 +23,13 @@ mod panel;
 mod playback;
 mod plot;
 mod pointer;
+mod record;
 mod shot;
 mod stage;
 mod window;
 
 pub use lab::{Lab, PANEL_WIDTH};
+pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use shot::{MAX_SHOT_SIDE, ShotOptions, picture, shot};
 pub use window::{Display, NoDisplay, run};
 
@@ -38,6 +40,9 @@ pub enum AppError {
     /// Nothing to draw with, or a picture not written.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// No moving picture.
+    #[error(transparent)]
+    Record(#[from] RecordError),
     /// The window system gave no window.
     #[error("no window: {0}")]
     Window(String),

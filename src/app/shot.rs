@@ -79,36 +79,77 @@ pub fn picture(
     pixels_per_point: f32,
     theme: egui::Theme,
 ) -> Result<Picture, RenderError> {
-    /// egui needs a pass to learn sizes, another to use them, and one more to come to rest.
-    const PASSES: u32 = 3;
-    if size.iter().any(|&side| side > gpu.max_side()) {
-        return Err(RenderError::TooLarge { size, limit: gpu.max_side() });
+    Canvas::new(gpu, size, pixels_per_point, theme)?.draw(lab, &mut |_| {})
+}
+
+/// What pictures of one size are drawn with, one after the other.
+pub(super) struct Canvas<'a> {
+    gpu: &'a Gpu,
+    ctx: egui::Context,
+    stage: Stage,
+    target: wgpu::Texture,
+    screen: ScreenDescriptor,
+    /// egui's passes so far.
+    passes: u32,
+}
+
+impl<'a> Canvas<'a> {
+    /// # Errors
+    /// [`RenderError::TooLarge`].
+    pub(super) fn new(
+        gpu: &'a Gpu,
+        size: [u32; 2],
+        pixels_per_point: f32,
+        theme: egui::Theme,
+    ) -> Result<Self, RenderError> {
+        if size.iter().any(|&side| side > gpu.max_side()) {
+            return Err(RenderError::TooLarge { size, limit: gpu.max_side() });
+        }
+        let ctx = egui::Context::default();
+        ctx.set_theme(theme);
+        let stage = Stage::new(gpu, FORMAT);
+        let target = gpu.target("shot", size, 1, wgpu::TextureUsages::COPY_SRC);
+        let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
+        Ok(Self { gpu, ctx, stage, target, screen, passes: 0 })
     }
-    let ctx = egui::Context::default();
-    ctx.set_theme(theme);
-    let mut stage = Stage::new(gpu, FORMAT);
-    let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
-    let mut primitives = Vec::new();
-    for pass in 0..PASSES {
-        let mut input = egui::RawInput {
-            screen_rect: Some(egui::Rect::from_min_size(
-                egui::Pos2::ZERO,
-                egui::vec2(size[0] as f32, size[1] as f32) / pixels_per_point,
-            )),
-            time: Some(f64::from(pass)),
-            max_texture_side: Some(gpu.max_side() as usize),
-            focused: true,
-            ..Default::default()
+
+    /// Draws the lab as it stands, and over it what `over` paints.
+    ///
+    /// # Errors
+    /// [`RenderError::ReadBack`].
+    pub(super) fn draw(&mut self, lab: &mut Lab, over: &mut dyn FnMut(&egui::Context)) -> Result<Picture, RenderError> {
+        /// egui needs a pass to learn sizes, another to use them, and one more to come to rest.
+        const FIRST_PASSES: u32 = 3;
+        let Self { gpu, ctx, stage, target, screen, passes } = self;
+        let ScreenDescriptor { size_in_pixels: size, pixels_per_point } = *screen;
+        let mut unused = Vec::new();
+        let primitives = loop {
+            let mut input = egui::RawInput {
+                screen_rect: Some(egui::Rect::from_min_size(
+                    egui::Pos2::ZERO,
+                    egui::vec2(size[0] as f32, size[1] as f32) / pixels_per_point,
+                )),
+                time: Some(f64::from(*passes)),
+                max_texture_side: Some(gpu.max_side() as usize),
+                focused: true,
+                ..Default::default()
+            };
+            input.viewports.entry(egui::ViewportId::ROOT).or_default().native_pixels_per_point = Some(pixels_per_point);
+            let mut output = ctx.run_ui(input, |ui| {
+                lab.ui(ui, Some(stage.body_texture()));
+                over(ui.ctx());
+            });
+            stage.set_textures(gpu, &mut output.textures_delta);
+            unused.push(output.textures_delta);
+            *passes = passes.saturating_add(1);
+            if *passes >= FIRST_PASSES {
+                break ctx.tessellate(output.shapes, pixels_per_point);
+            }
         };
-        input.viewports.entry(egui::ViewportId::ROOT).or_default().native_pixels_per_point = Some(pixels_per_point);
-        let mut output = ctx.run_ui(input, |ui| {
-            lab.ui(ui, Some(stage.body_texture()));
-        });
-        stage.set_textures(gpu, &mut output.textures_delta);
-        output.textures_delta.free.clear();
-        primitives = ctx.tessellate(std::mem::take(&mut output.shapes), pixels_per_point);
+        stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), screen, &primitives, lab);
+        for mut textures in unused {
+            stage.free_textures(&mut textures);
+        }
+        read_texture(gpu, target)
     }
-    let target = gpu.target("shot", size, 1, wgpu::TextureUsages::COPY_SRC);
-    stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), &screen, &primitives, lab);
-    read_texture(gpu, &target)
 }

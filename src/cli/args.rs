@@ -5,13 +5,28 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 #[cfg(feature = "app")]
-use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
+use super::draw_args::{DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
 use crate::scene;
 use crate::scene::limits::{BUDGET_MS, Limit, MAX_ERROR_PERCENT, OutOfRange};
 use crate::words::number;
 
 const EXIT_CODES: &str = "Exit codes: 0 done and converged, 1 ran but did not converge (the result is still printed), \
-2 bad input or usage, 3 no usable graphics adapter.";
+2 bad input or usage, or a result that could not be written, 3 no usable graphics adapter.";
+
+const SOLVE_FILES: &str = "--out of a static scene:
+  .csv  a row a node: node, rest_x, rest_y, x, y, u_x, u_y (m)
+  .vtu  the mesh and its fields, for ParaView
+--out of a scene in motion (analysis = \"dynamic\"):
+  .csv  a row a time step. Columns: t (s); for every probe NAME
+          NAME_x, NAME_y, NAME_u_x, NAME_u_y (m), NAME_v_x, NAME_v_y (m/s);
+        then energies (J):
+          kinetic, elastic, potential, dissipated, integrator (what it lost), pulses, hands
+  .pvd  a ParaView collection of FILE_0000.vtu, FILE_0001.vtu, ... beside it:
+        at most about 300 states, evenly spread in time
+  .vtu  the last state
+
+Ctrl-C ends a motion early: its files are valid, the result is printed with status `stopped`, exit code 1.
+";
 
 /// A lab for the warped stiffness (corotational finite element) method on 2D triangle beams.
 #[derive(Debug, Parser)]
@@ -37,8 +52,8 @@ pub(super) enum Command {
     },
     /// List the built-in scenes.
     Scenes,
-    /// Find the equilibrium of a scene.
-    #[command(after_help = EXIT_CODES)]
+    /// Find the equilibrium of a scene, or take a scene in motion to the end of its duration.
+    #[command(after_help = format!("{SOLVE_FILES}\n{EXIT_CODES}"))]
     Solve(SolveArgs),
     /// Print load against deflection of a cantilever: linear theory, the exact beam, every method, and where linear
     /// theory leaves the exact beam by 3, 5 and 10 percent.
@@ -73,6 +88,11 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Shot(ShotArgs),
+    /// Draw the moving picture of a scene in motion, or of the way of a static one to its equilibrium (an iteration a
+    /// picture), without a window: an animated GIF or PNG, or numbered pictures.
+    #[cfg(feature = "app")]
+    #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
+    Record(RecordArgs),
 }
 
 #[derive(Debug, Args)]
@@ -106,8 +126,8 @@ pub(super) struct SolveArgs {
     /// Print one JSON object, and nothing else, on standard output.
     #[arg(long)]
     pub json: bool,
-    /// Also write the nodes (.csv) or the mesh with its fields (.vtu, for ParaView).
-    #[arg(long, value_name = "FILE.csv|.vtu")]
+    /// Also write a table (.csv), the mesh with its fields (.vtu) or, of a motion, a series of them (.pvd); see below.
+    #[arg(long, value_name = "FILE.csv|.vtu|.pvd")]
     pub out: Option<PathBuf>,
     /// Do not look for the truth that errors are measured against: it takes a solve on a finer mesh.
     #[arg(long)]
@@ -152,7 +172,7 @@ impl From<RequiredSceneArgs> for scene::Source {
 }
 
 /// A number with one of these units, each with its factor; the first is that of a bare number.
-fn parse_with_unit(text: &str, limit: Limit, units: &[(&str, f64)]) -> Result<f64, OutOfRange> {
+pub(super) fn parse_with_unit(text: &str, limit: Limit, units: &[(&str, f64)]) -> Result<f64, OutOfRange> {
     let text = text.trim();
     let parsed = units.iter().rev().find_map(|(unit, factor)| {
         let value: f64 = text.strip_suffix(unit)?.trim_end().parse().ok()?;

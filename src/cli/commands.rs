@@ -1,37 +1,77 @@
 //! The commands that need no window.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
 use super::args::{FolderArgs, SolveArgs, TuneArgs};
+use super::progress::Watch;
 use super::{CliError, NOT_CONVERGED, exit_code, json, simulate, text};
-use crate::export::{self, ExportError, Format};
+use crate::dynamics::StopReason;
+use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::picture::draw_svg;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Analysis, Scene};
+use crate::simulation::{Simulation, Solution, Status};
 use crate::study::{
     Demand, Extent, LoadCurve, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map, plot,
 };
+use crate::words::count;
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let SolveArgs { scene, json, out, no_truth } = args;
     // A wrong file name is said before the work, not after.
-    out.as_deref().map(Format::of).transpose()?;
+    let format = out.as_deref().map(Format::of).transpose()?;
     let (scene, mut simulation) = simulate(&scene.into())?;
-    let status = simulation.solve().clone();
-    simulation.certify();
-    if let Some(path) = &out {
-        export::write(&simulation, path)?;
-    }
+    let (status, written) = match (scene.analysis, &out) {
+        (Analysis::Static, Some(path)) if format == Some(Format::Pvd) => {
+            return Err(ExportError::NotInMotion(path.display().to_string()).into());
+        }
+        (Analysis::Static, _) => {
+            let status = simulation.solve().clone();
+            simulation.certify();
+            (status, out.as_deref().map_or(Ok(()), |path| export::write(&simulation, path)))
+        }
+        (Analysis::Dynamic, _) => {
+            let writer = out.as_deref().map(|path| MotionWriter::create(&simulation, path)).transpose()?;
+            march(&mut simulation, writer)
+        }
+    };
     // A scene without a truth has a result all the same.
     let truth = if no_truth { None } else { Reference::of(&scene).ok() };
-    let solution = simulation.solution();
+    let solution = Solution { status, ..simulation.solution() };
     text::print(&if json {
         json::solution(&scene, &solution, truth.as_ref())
     } else {
         text::solution(&scene, &solution, truth.as_ref())
-    });
-    Ok(exit_code(&status))
+    })?;
+    // What could not be written is no reason to keep the result from who waits for it.
+    written?;
+    if solution.status == Status::Stopped(StopReason::Interrupted) {
+        eprintln!("warpbeam: {}", StopReason::Interrupted);
+    }
+    Ok(exit_code(&solution.status))
+}
+
+/// Takes a motion to its end, or to where it is called off; the file, if there is one, has what was reached.
+fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>) -> (Status, Result<(), ExportError>) {
+    let watch = Watch::new();
+    let duration = simulation.scene().dynamics.duration;
+    let mut written = Ok(());
+    while *simulation.status() == Status::Running && !watch.is_called_off() {
+        simulation.step();
+        let added = writer.as_mut().map_or(Ok(()), |writer| writer.add(simulation));
+        if added.is_err() {
+            (writer, written) = (None, added);
+        }
+        watch.show_time(simulation.state().time(), duration);
+    }
+    if let Some(writer) = writer {
+        written = writer.finish(simulation);
+    }
+    let status = match simulation.status() {
+        Status::Running => Status::Stopped(StopReason::Interrupted),
+        status => status.clone(),
+    };
+    (status, written)
 }
 
 pub(super) fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliError> {
@@ -40,18 +80,39 @@ pub(super) fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCo
     if let Some(path) = out {
         export::write_text(path, &text::curve_table(&curve))?;
     }
-    text::print(&text::curve(&scene, &curve));
+    text::print(&text::curve(&scene, &curve))?;
     Ok(ExitCode::SUCCESS)
 }
 
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
-    let study = Study::new(&scene, extent(out), &mut observer()).map_err(failed(source))?;
+    let watch = Watch::new();
+    let mut partial = None;
+    let observe = &mut |progress: Progress<'_>| {
+        partial = progress.so_far.filter(|study| !study.measurements.is_empty()).cloned().or(partial.take());
+        watch.observe(&progress)
+    };
+    let whole = Study::new(&scene, extent(out), observe);
+    drop(watch);
+    let (study, interrupted) = match (whole, partial) {
+        (Err(StudyError::Cancelled), Some(partial)) => (partial, true),
+        (Err(StudyError::Cancelled), None) => return Ok(ended(true, "nothing has been measured")),
+        (whole, _) => (whole.map_err(failed(source))?, false),
+    };
     let summary = study.summary();
     let texts = [("study.csv", study.table()), ("study.svg", plot::svg(&study)), ("study.txt", summary.clone())];
     write_folder(&out.folder, &texts.each_ref().map(|(name, text)| (*name, text.as_str())), "study.svg")?;
-    text::print(&summary);
-    Ok(ExitCode::SUCCESS)
+    text::print(&summary)?;
+    Ok(ended(interrupted, "the finer meshes are not in the study"))
+}
+
+/// The exit code of a command that may have been interrupted, and then says what is missing.
+fn ended(interrupted: bool, missing: &str) -> ExitCode {
+    if !interrupted {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("warpbeam: interrupted: {missing}");
+    ExitCode::from(NOT_CONVERGED)
 }
 
 pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
@@ -60,11 +121,17 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(&source)?;
     let error = if time.is_none() { error.or(Some(1.0)) } else { error };
     let demand = Demand { max_error_percent: error, max_time_ms: time };
-    let tuning = Tuning::of(&scene, demand, &mut observer()).map_err(failed(&source))?;
+    let watch = Watch::new();
+    let tuning = Tuning::of(&scene, demand, &mut |progress| watch.observe(&progress));
+    drop(watch);
+    let tuning = match tuning {
+        Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been chosen")),
+        tuning => tuning.map_err(failed(&source))?,
+    };
     if let Some(path) = &write {
         export::write_text(path, &tuned(&scene, &tuning, &source, path).to_toml()?)?;
     }
-    text::print(&format!("{tuning}\n"));
+    text::print(&format!("{tuning}\n"))?;
     Ok(if tuning.met { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
 }
 
@@ -84,16 +151,24 @@ fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) ->
 
 pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     let cases = extremes::cases(extent(out));
-    let mut entries = Vec::with_capacity(cases.len());
+    let all = cases.len();
+    let mut entries = Vec::with_capacity(all);
+    let watch = Watch::new();
     for case in cases {
+        if watch.is_called_off() {
+            break;
+        }
         let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
         entries.push(case.solve().map_err(broken)?);
+        watch.show(entries.len() as f64 / all as f64, || format!("{} of {all} cases", entries.len()));
     }
+    drop(watch);
+    let missing = all - entries.len();
     let (table, svg, summary) = (extremes::table(&entries), heat_map(&entries), extremes::summary(&entries));
     let texts = [("extremes.csv", table.as_str()), ("extremes.svg", &svg), ("extremes.txt", &summary)];
     write_folder(&out.folder, &texts, "extremes.svg")?;
-    text::print(&summary);
-    Ok(ExitCode::SUCCESS)
+    text::print(&summary)?;
+    Ok(ended(missing > 0, &format!("{} not in the atlas", count(missing as u64, "case"))))
 }
 
 fn failed(source: &scene::Source) -> impl Fn(StudyError) -> CliError {
@@ -102,17 +177,6 @@ fn failed(source: &scene::Source) -> impl Fn(StudyError) -> CliError {
 
 fn extent(out: &FolderArgs) -> Extent {
     if out.quick { Extent::Quick } else { Extent::Full }
-}
-
-/// Tells people who wait how far a study is; scripts get clean streams.
-fn observer() -> impl FnMut(Progress<'_>) -> ControlFlow<()> {
-    let watched = std::io::IsTerminal::is_terminal(&std::io::stderr());
-    move |progress| {
-        if watched && !progress.now.is_empty() {
-            eprintln!("measuring {}", progress.now);
-        }
-        ControlFlow::Continue(())
-    }
 }
 
 /// Writes a folder of texts, and one of them, an SVG picture, as PNG too.

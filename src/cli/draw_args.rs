@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use thiserror::Error;
 
+use super::args::parse_with_unit;
 use crate::app;
+use crate::scene::limits::{DURATION, OutOfRange, PLAYBACK_SPEED};
 
 /// The picture written where there is no display.
 pub(super) const DEFAULT_PICTURE: &str = "warpbeam.png";
@@ -32,6 +34,50 @@ pub(super) struct ShotArgs {
     /// Light or dark.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
+}
+
+/// What `record --help` says of files.
+pub(super) const RECORD_NOTES: &str = "\
+OUT.gif loops for ever, in one palette of 256 colours. A GIF counts in hundredths of a second: where --fps is no such \
+rate, the nearest is taken, and said.
+OUT.png is an animated PNG, in full colour.
+A name without extension is a folder of numbered pictures, frame-0001.png and on, ready for
+  ffmpeg -framerate 25 -i FOLDER/frame-%04d.png -pix_fmt yuv420p OUT.mp4
+
+Camera and colours span the whole motion: it is run once before it is drawn.
+Ctrl-C leaves a shorter, valid recording, and exit code 1.
+";
+
+#[derive(Debug, Args)]
+pub(super) struct RecordArgs {
+    #[command(flatten)]
+    pub scene: super::args::RequiredSceneArgs,
+    /// The file, or the folder, to write.
+    #[arg(short, long, value_name = "OUT.gif|OUT.png|FOLDER")]
+    pub output: PathBuf,
+    /// How much of a motion is recorded: 2, 2s or 500ms. Else the scene's dynamics.duration.
+    #[arg(long, value_name = "TIME", value_parser = parse_seconds)]
+    pub seconds: Option<f64>,
+    /// Seconds of the motion in a second of the picture: 0.1 is slow motion.
+    #[arg(long, value_name = "FACTOR", value_parser = parse_speed)]
+    pub speed: Option<f64>,
+    /// Pictures a second, 1 to 100. Else 25, and 4 of the way to an equilibrium.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub fps: Option<u16>,
+    /// Its size in pixels, 64x64 to 8192x8192.
+    #[arg(long, value_name = "WxH", default_value = "800x500", value_parser = parse_size)]
+    pub size: [u32; 2],
+    /// Light or dark.
+    #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
+    pub theme: app::ThemeChoice,
+}
+
+fn parse_seconds(text: &str) -> Result<f64, OutOfRange> {
+    parse_with_unit(text, DURATION, &[("s", 1.0), ("ms", 1e-3)])
+}
+
+fn parse_speed(text: &str) -> Result<f64, OutOfRange> {
+    parse_with_unit(text, PLAYBACK_SPEED, &[])
 }
 
 /// A size that is none, or is out of range.

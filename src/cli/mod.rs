@@ -1,7 +1,8 @@
-//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`. Without the feature `app`, those
-//! that need no window and no GPU.
+//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`. Without the feature `app`,
+//! those that need no window and no GPU.
 //!
-//! Exit codes: 0 done and converged, 1 ran but did not converge, 2 bad input or usage, 3 no graphics adapter.
+//! Exit codes: 0 done and converged, 1 ran but did not converge or was interrupted, 2 bad input or usage, or a result that
+//! could not be written, 3 no graphics adapter.
 
 use std::process::ExitCode;
 
@@ -19,11 +20,14 @@ mod commands;
 #[cfg(feature = "app")]
 mod draw_args;
 mod json;
+mod progress;
+#[cfg(feature = "app")]
+mod record;
 mod text;
 #[cfg(feature = "app")]
 mod window;
 
-/// Ran, but did not converge.
+/// Ran, but did not converge, or not to the end.
 const NOT_CONVERGED: u8 = 1;
 /// Bad input or usage.
 const BAD_INPUT: u8 = 2;
@@ -46,6 +50,8 @@ enum CliError {
     NoBeam(String),
     #[error("the tuned scene cannot be written as TOML: {0}")]
     Toml(#[from] toml::ser::Error),
+    #[error("standard output: {0}")]
+    Output(std::io::Error),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error(transparent)]
@@ -77,10 +83,7 @@ pub fn main() -> ExitCode {
         None => Ok(ExitCode::from(BAD_INPUT)),
         #[cfg(feature = "app")]
         Some(Command::Run { scene, output }) => window::run(scene.into(), &output),
-        Some(Command::Scenes) => {
-            text::print(&text::scenes());
-            Ok(ExitCode::SUCCESS)
-        }
+        Some(Command::Scenes) => text::print(&text::scenes()).map(|()| ExitCode::SUCCESS),
         Some(Command::Solve(args)) => commands::solve(args),
         Some(Command::Curve { scene, out }) => commands::curve(&scene.into(), out.as_deref()),
         Some(Command::Study { scene, out }) => commands::study(&scene.into(), &out),
@@ -88,6 +91,8 @@ pub fn main() -> ExitCode {
         Some(Command::Extremes { out }) => commands::extremes(&out),
         #[cfg(feature = "app")]
         Some(Command::Shot(args)) => window::shot(args),
+        #[cfg(feature = "app")]
+        Some(Command::Record(args)) => record::record(args),
     };
     result.unwrap_or_else(|error| {
         eprintln!("warpbeam: {error}");

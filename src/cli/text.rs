@@ -1,8 +1,9 @@
 //! What commands print for people.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 
+use super::CliError;
 use crate::method::{Certificate, rho_words};
 use crate::scene::{Analysis, MethodKind, Scene, registry};
 use crate::simulation::{MotionResult, Solution, Status};
@@ -10,10 +11,12 @@ use crate::study::{LoadCurve, Reference};
 use crate::words::count;
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
-pub(super) fn print(text: &str) {
+pub(super) fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes());
-    let _ = out.flush();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),
+        _ => Ok(()),
+    }
 }
 
 /// The list of built-in scenes.

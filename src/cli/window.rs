@@ -33,7 +33,7 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
         Ok(display) => app::run(display, source, scene, simulation)?,
         Err(reason) => {
             let picture = output.display();
-            text::print(&format!("No window: {reason}.\nSolving the scene instead; the picture goes to {picture}.\n"));
+            text::print(&format!("No window: {reason}.\nSolving the scene instead; the picture goes to {picture}.\n"))?;
             let args = RequiredSceneArgs {
                 scene: source.name.clone(),
                 set: SetArgs { assignments: source.assignments.clone() },

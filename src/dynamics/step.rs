@@ -52,6 +52,9 @@ pub enum StopReason {
     /// A node is farther from its rest position than this many sizes of the body.
     #[error("the body has gone more than {} times its size away", number(*.0))]
     RanAway(f64),
+    /// Whoever was stepping has stopped before the end.
+    #[error("interrupted before the end: the result is partial")]
+    Interrupted,
 }
 
 /// How often a stage is solved.

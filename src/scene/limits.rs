@@ -81,6 +81,8 @@ pub const MAX_ITERATIONS: Limit = Limit::new("", 1.0, 100_000.0);
 pub const MAX_ERROR_PERCENT: Limit = Limit::new("%", 1e-6, 100.0);
 /// Time a solve may be given.
 pub const BUDGET_MS: Limit = Limit::new("ms", 1e-6, 1e6);
+/// Seconds of a motion that a second of its moving picture shows.
+pub const PLAYBACK_SPEED: Limit = Limit::new("", 1e-6, 1e6);
 /// Time step of a dynamic scene.
 pub const TIME_STEP: Limit = Limit::new("s", 1e-9, 1e3);
 /// Duration of a headless run.

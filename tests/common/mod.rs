@@ -5,6 +5,8 @@
 pub mod motion;
 #[cfg(feature = "app")]
 pub mod pictures;
+#[cfg(target_os = "linux")]
+pub mod process;
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -47,14 +49,17 @@ pub fn warpbeam(args: &[&str]) -> Output {
 
 /// Runs the program in a folder, without a display.
 pub fn warpbeam_in(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_warpbeam"))
-        .args(args)
-        .current_dir(folder)
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .output()
-        .unwrap()
+    program(folder, args).output().unwrap()
+}
+
+/// The program, to be run in a folder, without a display.
+pub fn program(folder: &Path, args: &[&str]) -> Command {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_warpbeam"));
+    program.args(args).current_dir(folder);
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        program.env_remove(display);
+    }
+    program
 }
 
 pub fn stdout(output: &Output) -> String {

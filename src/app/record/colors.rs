@@ -1,0 +1,139 @@
+//! A palette for a whole recording, and its colours by their place in it.
+
+use std::collections::HashMap;
+
+use crate::picture::Picture;
+
+type Color = [u8; 3];
+
+/// Colours of a GIF.
+const MOST: usize = 256;
+/// Of these, how many are the most frequent ones as they are: backgrounds and texts keep their colour.
+const EXACT: usize = 32;
+
+/// No more than 256 colours that stand for all.
+#[derive(Debug)]
+pub(super) struct Palette {
+    colors: Vec<Color>,
+    /// The places of colours that have been asked for.
+    known: HashMap<Color, u8>,
+}
+
+impl Palette {
+    /// One for pictures like these: median cut over their distinct colours.
+    pub(super) fn of(pictures: &[Picture]) -> Self {
+        let mut counts: HashMap<Color, u64> = HashMap::new();
+        for color in pictures.iter().flat_map(colors) {
+            *counts.entry(color).or_default() += 1;
+        }
+        let mut counts: Vec<_> = counts.into_iter().collect();
+        // The same on every run: frequent first, then by value.
+        counts.sort_by_key(|&(color, count)| (std::cmp::Reverse(count), color));
+        let rare = counts.split_off(counts.len().min(if counts.len() > MOST { EXACT } else { MOST }));
+        let mut palette: Vec<Color> = counts.into_iter().map(|(color, _)| color).collect();
+        palette.extend(median_cut(rare, MOST - palette.len()));
+        if palette.is_empty() {
+            palette.push([0; 3]);
+        }
+        Self { colors: palette, known: HashMap::new() }
+    }
+
+    /// Red, green and blue of all.
+    pub(super) fn bytes(&self) -> &[u8] {
+        self.colors.as_flattened()
+    }
+
+    /// The places of a picture's pixels in the palette: of the nearest colours. Without dithering, which would move.
+    pub(super) fn indices(&mut self, picture: &Picture, indices: &mut Vec<u8>) {
+        let Self { colors: palette, known } = self;
+        indices.clear();
+        indices.extend(colors(picture).map(|color| *known.entry(color).or_insert_with(|| nearest(palette, color))));
+    }
+}
+
+fn colors(picture: &Picture) -> impl Iterator<Item = Color> {
+    picture.rgba.as_chunks().0.iter().map(|&[r, g, b, _]: &[u8; 4]| [r, g, b])
+}
+
+fn nearest(palette: &[Color], color: Color) -> u8 {
+    let distance = |other: &Color| -> u32 {
+        // Green counts most to the eye, blue least.
+        other.iter().zip(color).zip([3, 6, 1]).map(|((&a, b), weight)| weight * u32::from(a.abs_diff(b)).pow(2)).sum()
+    };
+    (0..=u8::MAX).zip(palette).min_by_key(|(_, other)| distance(other)).map_or(0, |(place, _)| place)
+}
+
+/// Heckbert 1982: boxes of colours, the widest cut in halves until there are as many as wanted; their means.
+fn median_cut(colors: Vec<(Color, u64)>, most: usize) -> Vec<Color> {
+    if colors.is_empty() || most == 0 {
+        return Vec::new();
+    }
+    let mut boxes = vec![colors];
+    while boxes.len() < most {
+        let widest = boxes.iter().map(|colors| widest_channel(colors)).enumerate().max_by_key(|(_, (_, width))| *width);
+        let Some((at, (channel, 1..))) = widest else { break };
+        let mut colors = boxes.swap_remove(at);
+        colors.sort_unstable_by_key(|(color, _)| (color[channel], *color));
+        // Halves by distinct colours: a colour that covers much is not worth more of them.
+        let upper = colors.split_off(colors.len() / 2);
+        boxes.extend([colors, upper]);
+    }
+    boxes.iter().map(|colors| mean(colors)).collect()
+}
+
+/// The channel in which some colours differ most, and by how much.
+fn widest_channel(colors: &[(Color, u64)]) -> (usize, u8) {
+    let width = |channel: usize| {
+        let values = colors.iter().map(|(color, _)| color[channel]);
+        values.clone().max().unwrap_or_default() - values.min().unwrap_or_default()
+    };
+    (0..3).map(|channel| (channel, width(channel))).max_by_key(|(_, width)| *width).unwrap_or_default()
+}
+
+fn mean(colors: &[(Color, u64)]) -> Color {
+    let all = colors.iter().map(|(_, count)| count).sum::<u64>().max(1);
+    [0, 1, 2].map(|channel| (colors.iter().map(|(c, n)| u64::from(c[channel]) * n).sum::<u64>() / all) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(colors: impl Iterator<Item = Color>) -> Picture {
+        let rgba: Vec<u8> = colors.flat_map(|[r, g, b]| [r, g, b, 255]).collect();
+        Picture { size: [rgba.len() as u32 / 4, 1], rgba }
+    }
+
+    #[test]
+    fn few_colours_stay_as_they_are() {
+        let few = picture((0..200).map(|i| [i, 255 - i, 7]));
+        let mut palette = Palette::of(std::slice::from_ref(&few));
+        let mut indices = Vec::new();
+        palette.indices(&few, &mut indices);
+        for (pixel, index) in few.rgba.chunks(4).zip(&indices) {
+            assert_eq!(&pixel[..3], &palette.bytes()[3 * usize::from(*index)..][..3]);
+        }
+    }
+
+    #[test]
+    fn many_colours_are_near_ones_and_the_background_is_exact() {
+        let background = [22, 24, 28];
+        // A gradient, a wide one beside it, and much background.
+        let gradient = (0..4000_u32).map(|i| [(i / 16) as u8, (i / 20) as u8, 128 - (i / 40) as u8]);
+        let many = picture(gradient.chain(std::iter::repeat_n(background, 9000)));
+        let mut palette = Palette::of(std::slice::from_ref(&many));
+        assert!(palette.bytes().len() <= 3 * MOST);
+        let mut indices = Vec::new();
+        palette.indices(&many, &mut indices);
+        for (pixel, index) in many.rgba.chunks(4).zip(&indices) {
+            let color = &palette.bytes()[3 * usize::from(*index)..][..3];
+            let off = pixel.iter().zip(color).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(off <= Some(if pixel[..3] == background { 0 } else { 4 }), "{pixel:?} {color:?}");
+        }
+    }
+
+    #[test]
+    fn no_picture_has_a_palette_too() {
+        assert_eq!(Palette::of(&[]).bytes(), [0, 0, 0]);
+    }
+}

@@ -1,0 +1,315 @@
+//! Pictures one after the other, as files.
+
+use std::borrow::Cow;
+use std::fs::{File, OpenOptions};
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use super::RecordError;
+use super::colors::Palette;
+use crate::picture::Picture;
+
+/// How a recording is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MovieFormat {
+    /// An animated GIF: everywhere, 256 colours.
+    Gif,
+    /// An animated PNG: all colours.
+    Apng,
+    /// A folder of numbered PNG files.
+    Folder,
+}
+
+/// How long a picture is shown: a fraction of a second.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Delay {
+    numerator: u16,
+    denominator: u16,
+}
+
+impl Delay {
+    pub(super) fn seconds(self) -> f64 {
+        f64::from(self.numerator) / f64::from(self.denominator)
+    }
+
+    /// The delay with some seconds more.
+    fn longer(self, seconds: f64) -> Self {
+        let more = (seconds * f64::from(self.denominator)).round() as u16;
+        Self { numerator: self.numerator.saturating_add(more), ..self }
+    }
+}
+
+impl MovieFormat {
+    /// The format a name asks for.
+    ///
+    /// # Errors
+    /// [`RecordError::UnknownFormat`], and [`RecordError::NoFolder`] where the file's folder is not there.
+    pub fn of(path: &Path) -> Result<Self, RecordError> {
+        let unknown = || RecordError::UnknownFormat(path.to_owned());
+        if path.is_dir() {
+            return Ok(Self::Folder);
+        }
+        if path.file_name().is_none() {
+            return Err(unknown());
+        }
+        let extension = path.extension().map(|e| e.to_ascii_lowercase());
+        let format = match extension.as_deref().map(|e| e.to_str()) {
+            Some(Some("gif")) => Self::Gif,
+            Some(Some("png")) => Self::Apng,
+            None => return Ok(Self::Folder),
+            _ => return Err(unknown()),
+        };
+        match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+                Err(RecordError::NoFolder(folder.to_owned()))
+            }
+            _ => Ok(format),
+        }
+    }
+
+    /// The time of a picture at this rate, or the nearest that the format has.
+    pub(super) fn delay(self, rate: u16) -> Delay {
+        /// Viewers take a GIF's delays below this for a mistake.
+        const SHORTEST: u16 = 2;
+        match self {
+            Self::Gif => {
+                Delay { numerator: ((100.0 / f64::from(rate.max(1))).round() as u16).max(SHORTEST), denominator: 100 }
+            }
+            Self::Apng | Self::Folder => Delay { numerator: 1, denominator: rate.max(1) },
+        }
+    }
+}
+
+/// A recording on its way into its file or folder.
+pub(super) struct Film {
+    path: PathBuf,
+    delay: Delay,
+    pictures: u64,
+    reel: Reel,
+}
+
+enum Reel {
+    Gif(Box<Gif>),
+    Apng { writer: Box<png::Writer<BufWriter<File>>>, announced: u32, rgb: Vec<u8> },
+    Folder,
+}
+
+struct Gif {
+    encoder: gif::Encoder<BufWriter<File>>,
+    palette: Palette,
+    before: Vec<u8>,
+    now: Vec<u8>,
+}
+
+impl Film {
+    /// Begins a recording of so many pictures, which look like `samples`.
+    pub(super) fn create(
+        path: &Path,
+        format: MovieFormat,
+        delay: Delay,
+        pictures: u64,
+        samples: &[Picture],
+        size: [u32; 2],
+    ) -> Result<Self, RecordError> {
+        let failed = |reason: &dyn std::fmt::Display| failed(path, reason);
+        let file = || Ok(BufWriter::new(File::create(path).map_err(|e| failed(&e))?));
+        let reel = match format {
+            MovieFormat::Gif => {
+                let palette = Palette::of(samples);
+                // A side of a picture is no more than 8192 pixels.
+                let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+                let mut encoder = gif::Encoder::new(file()?, width, height, palette.bytes()).map_err(|e| failed(&e))?;
+                encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e))?;
+                Reel::Gif(Box::new(Gif { encoder, palette, before: Vec::new(), now: Vec::new() }))
+            }
+            MovieFormat::Apng => {
+                let announced = u32::try_from(pictures).unwrap_or(u32::MAX);
+                let mut encoder = png::Encoder::new(file()?, size[0], size[1]);
+                encoder.set_color(png::ColorType::Rgb);
+                encoder.set_depth(png::BitDepth::Eight);
+                encoder.set_animated(announced, 0).map_err(|e| failed(&e))?;
+                let writer = Box::new(encoder.write_header().map_err(|e| failed(&e))?);
+                Reel::Apng { writer, announced, rgb: Vec::new() }
+            }
+            MovieFormat::Folder => {
+                std::fs::create_dir_all(path).map_err(|e| failed(&e))?;
+                Reel::Folder
+            }
+        };
+        Ok(Self { path: path.to_owned(), delay, pictures: 0, reel })
+    }
+
+    /// Adds a picture, to be shown for so many seconds longer than others.
+    pub(super) fn add(&mut self, picture: &Picture, hold: f64) -> Result<(), RecordError> {
+        let Self { path, delay, pictures, reel } = self;
+        let failed = |reason: &dyn std::fmt::Display| failed(path, reason);
+        let shown = delay.longer(hold);
+        match reel {
+            Reel::Gif(gif) => gif.add(picture, shown).map_err(|e| failed(&e))?,
+            Reel::Apng { writer, rgb, .. } => {
+                rgb.clear();
+                rgb.extend(picture.rgba.chunks_exact(4).flat_map(|pixel| pixel.iter().take(3)));
+                writer.set_frame_delay(shown.numerator, shown.denominator).map_err(|e| failed(&e))?;
+                writer.write_image_data(rgb).map_err(|e| failed(&e))?;
+            }
+            Reel::Folder => {
+                let copies = 1 + (hold / delay.seconds()).round() as u64;
+                for copy in 1..=copies {
+                    let path = path.join(format!("frame-{:04}.png", *pictures + copy));
+                    picture.write_png(&path).map_err(|e| RecordError::Write { path, reason: e.to_string() })?;
+                }
+            }
+        }
+        *pictures += 1;
+        Ok(())
+    }
+
+    /// Ends the file: it is valid whether all announced pictures were added or not.
+    pub(super) fn finish(self) -> Result<(), RecordError> {
+        let Self { path, pictures, reel, .. } = self;
+        let failed = |reason: &dyn std::fmt::Display| failed(&path, reason);
+        match reel {
+            Reel::Gif(gif) => {
+                let mut file = gif.encoder.into_inner().map_err(|e| failed(&e))?;
+                file.flush().map_err(|e| failed(&e))
+            }
+            Reel::Apng { writer, announced, .. } if u64::from(announced) == pictures => {
+                writer.finish().map_err(|e| failed(&e))
+            }
+            Reel::Apng { writer, .. } => {
+                // Ends the file, but with the number of pictures that were to come.
+                drop(writer);
+                correct_frames(&path, u32::try_from(pictures).unwrap_or(u32::MAX)).map_err(|e| failed(&e))
+            }
+            Reel::Folder => Ok(()),
+        }
+    }
+}
+
+fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RecordError {
+    RecordError::Write { path: path.to_owned(), reason: reason.to_string() }
+}
+
+impl Gif {
+    /// Adds what has changed: the smallest rectangle that holds it.
+    fn add(&mut self, picture: &Picture, shown: Delay) -> Result<(), gif::EncodingError> {
+        let Self { encoder, palette, before, now } = self;
+        palette.indices(picture, now);
+        let width = picture.size[0] as usize;
+        let rect = changed(before, now, width);
+        let rows = now.chunks(width.max(1)).skip(rect.top).take(rect.height);
+        let pixels: Vec<u8> = rows.flat_map(|row| row.iter().skip(rect.left).take(rect.width)).copied().collect();
+        // Sides of pictures are far below.
+        let small = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
+        encoder.write_frame(&gif::Frame {
+            delay: shown.numerator,
+            left: small(rect.left),
+            top: small(rect.top),
+            width: small(rect.width),
+            height: small(rect.height),
+            buffer: Cow::Owned(pixels),
+            ..gif::Frame::default()
+        })?;
+        std::mem::swap(before, now);
+        Ok(())
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Rect {
+    left: usize,
+    top: usize,
+    width: usize,
+    height: usize,
+}
+
+/// Where two pictures of this width differ; all of it where there was none before, and a pixel where they do not.
+fn changed(before: &[u8], now: &[u8], width: usize) -> Rect {
+    let width = width.max(1);
+    if before.len() != now.len() {
+        return Rect { left: 0, top: 0, width, height: now.len() / width };
+    }
+    let (mut left, mut right, mut top, mut bottom) = (width, 0, usize::MAX, 0);
+    for (y, (a, b)) in before.chunks(width).zip(now.chunks(width)).enumerate() {
+        let differs = |(a, b): (&u8, &u8)| a != b;
+        if let Some(first) = a.iter().zip(b).position(differs) {
+            let last = a.iter().zip(b).rposition(differs).unwrap_or(first);
+            (left, right, top, bottom) = (left.min(first), right.max(last), top.min(y), y);
+        }
+    }
+    if top == usize::MAX {
+        return Rect { left: 0, top: 0, width: 1, height: 1 };
+    }
+    Rect { left, top, width: right - left + 1, height: bottom - top + 1 }
+}
+
+/// Writes the number of pictures into an animated PNG that announced more.
+fn correct_frames(path: &Path, frames: u32) -> std::io::Result<()> {
+    const SIGNATURE: u64 = 8;
+    let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+    let mut at = SIGNATURE;
+    loop {
+        // A chunk: length, name, data, checksum of name and data.
+        file.seek(SeekFrom::Start(at))?;
+        let mut head = [0; 8];
+        file.read_exact(&mut head)?;
+        let [a, b, c, d, name @ ..] = head;
+        if &name == b"acTL" {
+            let mut plays = [0; 4];
+            file.seek(SeekFrom::Start(at + 12))?;
+            file.read_exact(&mut plays)?;
+            let data = [name, frames.to_be_bytes(), plays].concat();
+            file.seek(SeekFrom::Start(at + 4))?;
+            file.write_all(&data)?;
+            return file.write_all(&crc32(&data).to_be_bytes());
+        }
+        at += 12 + u64::from(u32::from_be_bytes([a, b, c, d]));
+    }
+}
+
+/// The checksum of PNG chunks (ISO 3309).
+fn crc32(bytes: &[u8]) -> u32 {
+    const POLYNOMIAL: u32 = 0xedb8_8320;
+    !bytes.iter().fold(!0, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ if crc & 1 == 1 { POLYNOMIAL } else { 0 })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_checksum_is_the_one_of_png() {
+        // The chunk that ends every file.
+        assert_eq!(crc32(b"IEND"), 0xae42_6082);
+    }
+
+    #[test]
+    fn delays_are_what_formats_have() {
+        for (rate, hundredths) in [(25, 4), (50, 2), (30, 3), (100, 2), (1, 100), (4, 25)] {
+            assert_eq!(MovieFormat::Gif.delay(rate), Delay { numerator: hundredths, denominator: 100 });
+        }
+        assert!((MovieFormat::Apng.delay(30).seconds() - 1.0 / 30.0).abs() < 1e-15);
+        assert_eq!(MovieFormat::Gif.delay(4).longer(2.0).numerator, 225);
+    }
+
+    #[test]
+    fn what_changes_is_the_smallest_rectangle() {
+        let before = vec![0; 20];
+        let mut now = before.clone();
+        assert_eq!(changed(&before, &now, 5), Rect { left: 0, top: 0, width: 1, height: 1 });
+        assert_eq!(changed(&[], &now, 5), Rect { left: 0, top: 0, width: 5, height: 4 });
+        (now[7], now[14]) = (1, 1);
+        assert_eq!(changed(&before, &now, 5), Rect { left: 2, top: 1, width: 3, height: 2 });
+    }
+
+    #[test]
+    fn names_choose_the_format() {
+        let of = |name: &str| MovieFormat::of(Path::new(name));
+        assert!(matches!(of("a.gif"), Ok(MovieFormat::Gif)) && matches!(of("a.PNG"), Ok(MovieFormat::Apng)));
+        assert!(matches!(of("frames"), Ok(MovieFormat::Folder)) && matches!(of("."), Ok(MovieFormat::Folder)));
+        assert!(matches!(of("a.mp4"), Err(RecordError::UnknownFormat(_))));
+        assert!(matches!(of("no/such/folder/a.gif"), Err(RecordError::NoFolder(_))));
+    }
+}

@@ -1,0 +1,58 @@
+//! The command `record`.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::ExitCode;
+
+use super::draw_args::RecordArgs;
+use super::progress::Watch;
+use super::{CliError, NOT_CONVERGED, exit_code, text};
+use crate::app::{self, MovieFormat, Phase, RecordOptions, RecordProgress, Recorded};
+use crate::scene;
+use crate::words::{count, number};
+
+pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
+    let RecordArgs { scene, output, seconds, speed, fps, size, theme } = args;
+    let source = scene::Source::from(scene);
+    let scene = scene::open(&source)?;
+    let options = RecordOptions { size, seconds, speed, fps, theme };
+    let watch = Watch::new();
+    let observe = &mut |progress: RecordProgress| {
+        watch.show(progress.fraction, || words(&progress));
+        if watch.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let recorded = app::record(&source, scene, &options, &output, observe);
+    drop(watch);
+    let recorded = recorded?;
+    if recorded.pictures == 0 {
+        eprintln!("warpbeam: interrupted before the first picture: nothing was written");
+        return Ok(ExitCode::from(NOT_CONVERGED));
+    }
+    text::print(&summary(&recorded, fps, &output))?;
+    if recorded.interrupted {
+        eprintln!("warpbeam: interrupted: the recording is partial");
+        return Ok(ExitCode::from(NOT_CONVERGED));
+    }
+    if let Some(reason) = recorded.status.failure() {
+        eprintln!("warpbeam: {}: {reason}", recorded.status.id());
+    }
+    Ok(exit_code(&recorded.status))
+}
+
+fn words(progress: &RecordProgress) -> String {
+    match (progress.phase, progress.pictures) {
+        (Phase::Looking, _) => format!("looking ahead, {:.3} s", progress.time),
+        (Phase::Drawing, pictures) => format!("drawing, {} of {pictures} pictures", progress.drawn),
+    }
+}
+
+/// What was written, and at which rate.
+fn summary(recorded: &Recorded, asked: Option<u16>, output: &Path) -> String {
+    let Recorded { pictures, rate, format, .. } = recorded;
+    let rounded = number((100.0 * rate).round() / 100.0);
+    let mut text = format!("{}: {}, {rounded} a second", output.display(), count(*pictures, "picture"));
+    if let Some(asked) = asked.filter(|&asked| (f64::from(asked) - rate).abs() > 1e-9) {
+        text += &format!(" (a {} cannot have {asked})", if *format == MovieFormat::Gif { "GIF" } else { "file" });
+    }
+    text + "\n"
+}

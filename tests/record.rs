@@ -1,0 +1,212 @@
+//! Moving pictures: what a viewer decodes of them.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use std::fs::{self, File};
+use std::path::Path;
+
+use common::{stderr, stdout, warpbeam_in};
+
+/// A decoded moving picture: its size, and each picture in RGB with the seconds it is shown.
+struct Movie {
+    size: [usize; 2],
+    frames: Vec<(Vec<u8>, f64)>,
+}
+
+fn decode_gif(path: &Path) -> Movie {
+    let mut decoder = gif::Decoder::new(File::open(path).unwrap()).unwrap();
+    let (width, height) = (usize::from(decoder.width()), usize::from(decoder.height()));
+    assert_eq!(decoder.repeat(), gif::Repeat::Infinite);
+    let palette = decoder.global_palette().unwrap().to_vec();
+    let mut canvas = vec![0; 3 * width * height];
+    let mut frames = Vec::new();
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        assert!(frame.palette.is_none(), "one palette");
+        for (y, row) in frame.buffer.chunks(usize::from(frame.width)).enumerate() {
+            for (x, &index) in row.iter().enumerate() {
+                let at = 3 * ((usize::from(frame.top) + y) * width + usize::from(frame.left) + x);
+                canvas[at..at + 3].copy_from_slice(&palette[3 * usize::from(index)..][..3]);
+            }
+        }
+        frames.push((canvas.clone(), f64::from(frame.delay) / 100.0));
+    }
+    Movie { size: [width, height], frames }
+}
+
+fn decode_png(path: &Path) -> Movie {
+    let decoder = png::Decoder::new(std::io::BufReader::new(File::open(path).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let size = [reader.info().width as usize, reader.info().height as usize];
+    let count = reader.info().animation_control().map_or(1, |a| a.num_frames);
+    let mut frames = Vec::new();
+    for _ in 0..count {
+        let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut rgb).unwrap();
+        let delay = reader.info().frame_control().map_or(0.0, |f| f64::from(f.delay_num) / f64::from(f.delay_den));
+        frames.push((rgb, delay));
+    }
+    reader.finish().unwrap();
+    Movie { size, frames }
+}
+
+fn record(folder: &Path, args: &[&str]) -> String {
+    let output = warpbeam_in(folder, &[&["record"], args].concat());
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", stderr(&output));
+    stdout(&output)
+}
+
+/// The largest difference of two pictures, and the mean one.
+fn difference(a: &[u8], b: &[u8]) -> (u8, f64) {
+    assert_eq!(a.len(), b.len());
+    let off = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
+    (off.clone().max().unwrap_or(0), off.map(f64::from).sum::<f64>() / a.len() as f64)
+}
+
+/// The three formats show the same: as many pictures as asked, each another one, GIF in its nearest colours.
+#[test]
+fn a_motion_is_recorded_in_every_format() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let args = ["swing", "--seconds", "0.4", "--size", "320x200"];
+    let words = record(folder, &[&args[..], &["-o", "swing.gif"]].concat());
+    assert!(words.contains("11 pictures, 25 a second"), "{words}");
+    record(folder, &[&args[..], &["-o", "swing.png"]].concat());
+    record(folder, &[&args[..], &["-o", "frames"]].concat());
+    let (gif, png) = (decode_gif(&folder.join("swing.gif")), decode_png(&folder.join("swing.png")));
+    assert_eq!((gif.size, gif.frames.len()), ([320, 200], 11));
+    assert_eq!((png.size, png.frames.len()), ([320, 200], 11));
+    assert!(gif.frames.iter().chain(&png.frames).all(|(_, delay)| (delay - 0.04).abs() < 1e-9));
+    assert_eq!(fs::read_dir(folder.join("frames")).unwrap().count(), 11);
+    for (k, ((gif, _), (png, _))) in gif.frames.iter().zip(&png.frames).enumerate() {
+        let single = decode_png(&folder.join(format!("frames/frame-{:04}.png", k + 1)));
+        let rgb: Vec<u8> = single.frames[0].0.chunks(4).flat_map(|p| p[..3].to_vec()).collect();
+        assert_eq!(&rgb, png, "picture {k}");
+        let (_, mean) = difference(gif, png);
+        assert!(mean < 0.5, "picture {k}: colours are off by {mean} on average");
+        // The background is exact.
+        assert_eq!(gif[..3], png[..3]);
+    }
+    for movie in [&gif, &png] {
+        assert!(movie.frames.windows(2).all(|w| w[0].0 != w[1].0), "something moves");
+    }
+    // The same again, to the byte.
+    record(folder, &[&args[..], &["-o", "again.gif"]].concat());
+    assert_eq!(fs::read(folder.join("swing.gif")).unwrap(), fs::read(folder.join("again.gif")).unwrap());
+}
+
+/// Neither the camera nor the colours move: at the clamp and in the legend nothing changes.
+#[test]
+fn camera_and_colours_stand_still() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path(), &["swing", "--seconds", "1", "--fps", "5", "--size", "400x300", "-o", "swing.png"]);
+    let movie = decode_png(&folder.path().join("swing.png"));
+    assert_eq!(movie.frames.len(), 6);
+    // The legend's words and colours, and the scale: the lowest sixth of the picture.
+    let below = |rgb: &[u8]| rgb[3 * 400 * 250..].to_vec();
+    for (rgb, _) in &movie.frames[1..] {
+        assert_eq!(below(rgb), below(&movie.frames[0].0), "the range or the scale moved");
+    }
+}
+
+#[test]
+fn rates_are_what_the_format_has_and_slow_motion_is_slow() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let short = ["swing", "--size", "64x64", "--seconds", "0.2"];
+    let words = record(folder, &[&short[..], &["--fps", "30", "-o", "a.gif"]].concat());
+    assert!(words.contains("7 pictures, 33.33 a second") && words.contains("cannot have 30"), "{words}");
+    assert!(decode_gif(&folder.join("a.gif")).frames.iter().all(|(_, delay)| (delay - 0.03).abs() < 1e-9));
+    let words = record(folder, &[&short[..], &["--fps", "30", "-o", "a.png"]].concat());
+    assert!(words.contains("7 pictures, 30 a second\n"), "{words}");
+    // A tenth of the speed: ten times as many pictures of the same time.
+    record(folder, &[&short[..], &["--speed", "0.1", "-o", "slow.gif"]].concat());
+    assert_eq!(decode_gif(&folder.join("slow.gif")).frames.len(), 51);
+}
+
+/// The way to an equilibrium: an iteration a picture, and the last one stays.
+#[test]
+fn a_search_is_recorded_iteration_by_iteration() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let json = common::solve_json(&["elastica"]);
+    let iterations = json["iterations"].as_u64().unwrap() as usize;
+    record(folder, &["elastica", "--size", "200x200", "-o", "a.gif"]);
+    record(folder, &["elastica", "--size", "200x200", "-o", "frames"]);
+    let movie = decode_gif(&folder.join("a.gif"));
+    assert_eq!(movie.frames.len(), iterations + 1);
+    let (last, others) = movie.frames.split_last().unwrap();
+    assert!(others.iter().all(|(_, delay)| (delay - 0.25).abs() < 1e-9) && (last.1 - 2.25).abs() < 1e-9);
+    assert_eq!(fs::read_dir(folder.join("frames")).unwrap().count(), iterations + 1 + 8);
+    // What does not converge is recorded too, and said.
+    let diverged = warpbeam_in(
+        folder,
+        &["record", "cantilever", "--set", "load.0.force=[0,-9000]", "--size", "64x64", "-o", "b.png"],
+    );
+    assert_eq!(diverged.status.code(), Some(1));
+    assert!(stderr(&diverged).contains("diverged"), "{}", stderr(&diverged));
+    assert!(decode_png(&folder.join("b.png")).frames.len() > 1);
+}
+
+/// A motion that explodes is recorded as far as it went.
+#[test]
+fn an_explosion_is_recorded_and_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["record", "swing", "--set", "dynamics.integrator=symplectic-euler", "--size", "64x64", "-o", "a.gif"];
+    let output = warpbeam_in(folder.path(), &args);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("stopped: the body has gone"), "{}", stderr(&output));
+    let frames = decode_gif(&folder.path().join("a.gif")).frames.len();
+    assert!((1..51).contains(&frames), "{frames}");
+}
+
+#[test]
+fn wrong_usage_is_refused_before_anything_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: &[(&[&str], &str)] = &[
+        (&["swing", "-o", "a.mp4"], "ending in .gif or .png"),
+        (&["swing", "-o", "no/such/a.gif"], "no/such: no such folder"),
+        (&["article", "-o", "a.gif", "--seconds", "2"], "this scene is static"),
+        (&["swing", "-o", "a.gif", "--seconds", "-1"], "expected"),
+        (&["swing", "-o", "a.gif", "--speed", "0"], "expected"),
+        (&["swing", "-o", "a.gif", "--fps", "0"], "1..=100"),
+        (&["swing", "-o", "a.gif", "--size", "9000x10"], "64 to 8192"),
+        (&["swing"], "--output"),
+        (&["swung", "-o", "a.gif"], "built-in scenes"),
+    ];
+    for (args, message) in cases {
+        let output = warpbeam_in(folder.path(), &[&["record"], *args].concat());
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(message), "{args:?}: {}", stderr(&output));
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+/// Ctrl-C leaves a shorter recording that every viewer opens.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_recording_is_shorter_and_valid() {
+    use common::process::{interrupt, listens, start, wait_for};
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.gif", "a.png"] {
+        let path = folder.path().join(name);
+        // Slow motion: the motion is short, and its pictures are many.
+        let args = ["record", "swing", "--speed", "0.001", "--size", "128x128", "-o", name];
+        let running = start(folder.path(), &args);
+        wait_for("some pictures", || fs::metadata(&path).is_ok_and(|file| file.len() > 30_000));
+        let output = interrupt(running);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(stderr(&output).contains("the recording is partial"), "{}", stderr(&output));
+        let movie = if name == "a.gif" { decode_gif(&path) } else { decode_png(&path) };
+        assert!((1..50_000).contains(&movie.frames.len()));
+        let said = format!("{} picture", movie.frames.len());
+        assert!(stdout(&output).contains(&said), "{said}: {}", stdout(&output));
+    }
+    // Before the first picture there is none.
+    let running = start(folder.path(), &["record", "swing", "--seconds", "1e5", "-o", "none.gif"]);
+    wait_for("an ear for signals", || listens(&running));
+    let output = interrupt(running);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("nothing was written"), "{}", stderr(&output));
+    assert!(!folder.path().join("none.gif").exists());
+}
