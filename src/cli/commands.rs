@@ -8,9 +8,10 @@ use super::args::{FolderArgs, SolveArgs, TuneArgs};
 use super::{CliError, NOT_CONVERGED, exit_code, json, simulate, text};
 use crate::export::{self, ExportError, Format};
 use crate::picture::draw_svg;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Analysis, Scene};
 use crate::study::{
-    Demand, Extent, LoadCurve, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map, plot,
+    Demand, Extent, LoadCurve, MotionStudy, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map,
+    motion_heat_map, plot,
 };
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
@@ -46,10 +47,18 @@ pub(super) fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCo
 
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
-    let study = Study::new(&scene, extent(out), &mut observer()).map_err(failed(source))?;
-    let summary = study.summary();
-    let texts = [("study.csv", study.table()), ("study.svg", plot::svg(&study)), ("study.txt", summary.clone())];
-    write_folder(&out.folder, &texts.each_ref().map(|(name, text)| (*name, text.as_str())), "study.svg")?;
+    let (table, svg, summary) = match scene.analysis {
+        Analysis::Static => {
+            let study = Study::new(&scene, extent(out), &mut observer()).map_err(failed(source))?;
+            (study.table(), plot::svg(&study), study.summary())
+        }
+        Analysis::Dynamic => {
+            let study = MotionStudy::new(&scene, extent(out), &mut observer()).map_err(failed(source))?;
+            (study.table(), plot::motion_svg(&study), study.summary())
+        }
+    };
+    let texts = [("study.csv", table.as_str()), ("study.svg", &svg), ("study.txt", &summary)];
+    write_folder(&out.folder, &texts, "study.svg")?;
     text::print(&summary);
     Ok(ExitCode::SUCCESS)
 }
@@ -89,9 +98,18 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
         let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
         entries.push(case.solve().map_err(broken)?);
     }
-    let (table, svg, summary) = (extremes::table(&entries), heat_map(&entries), extremes::summary(&entries));
+    let mut motions = Vec::new();
+    for case in extremes::motion::cases(extent(out)) {
+        let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
+        motions.push(case.run().map_err(broken)?);
+    }
+    let summary = format!("{}\n{}", extremes::summary(&entries), extremes::motion::summary(&motions));
+    let (table, svg) = (extremes::table(&entries), heat_map(&entries));
     let texts = [("extremes.csv", table.as_str()), ("extremes.svg", &svg), ("extremes.txt", &summary)];
     write_folder(&out.folder, &texts, "extremes.svg")?;
+    let (table, svg) = (extremes::motion::table(&motions), motion_heat_map(&motions));
+    let texts = [("extremes-motion.csv", table.as_str()), ("extremes-motion.svg", &svg)];
+    write_folder(&out.folder, &texts, "extremes-motion.svg")?;
     text::print(&summary);
     Ok(ExitCode::SUCCESS)
 }

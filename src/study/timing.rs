@@ -50,3 +50,21 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
         })
         .collect()
 }
+
+/// Repetitions of a run that is not warmed up: one goes before it.
+const RUNS: usize = 5;
+/// No more of them once they have taken this long together: long times vary less.
+const LONG_RUNS: Duration = Duration::from_millis(50);
+
+/// The time that a run takes, without what prepares it.
+pub(super) fn median_time<T>(subject: &mut T, prepare: impl Fn(&mut T), mut run: impl FnMut(&mut T)) -> Duration {
+    let mut times = Vec::with_capacity(RUNS);
+    while times.len() < RUNS && times.iter().sum::<Duration>() < LONG_RUNS {
+        prepare(subject);
+        let start = Instant::now();
+        run(subject);
+        times.push(start.elapsed());
+    }
+    times.sort_unstable();
+    times.get(times.len() / 2).copied().unwrap_or_default()
+}
