@@ -16,8 +16,8 @@ use super::trade::{Extent, Observer, Progress, StudyError, check, mesh_words};
 use crate::assembly::{Mass, System};
 use crate::dynamics::{Counts, INTEGRATORS, IntegratorEntry, critical_step};
 use crate::method::METHODS;
-use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
-use crate::simulation::{Simulation, SimulationError, Status};
+use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::simulation::{Simulation, Status};
 use crate::words::count;
 
 mod reference;
@@ -242,6 +242,8 @@ struct Plan {
     reference_mesh: f64,
     /// More steps than these are not run to their end.
     most_steps: u32,
+    /// Time that is given to timing a setting.
+    timing: Duration,
 }
 
 const QUICK: Plan = Plan {
@@ -252,6 +254,7 @@ const QUICK: Plan = Plan {
     meshes: &[0.5, 1.0],
     reference_mesh: 2.0,
     most_steps: 20_000,
+    timing: Duration::from_millis(20),
 };
 
 const FULL: Plan = Plan {
@@ -262,6 +265,7 @@ const FULL: Plan = Plan {
     meshes: &[0.25, 0.5, 1.0, 1.5],
     reference_mesh: 3.0,
     most_steps: 100_000,
+    timing: Duration::from_millis(200),
 };
 
 /// Steps of the reference in the shortest of the others.
@@ -277,7 +281,7 @@ impl Plan {
 /// The explicit integrator's step over its critical one.
 const BELOW_CRITICAL: f64 = 0.9;
 /// Steps after which the time of a motion that is cut short is known.
-const ENOUGH_STEPS: u32 = 2000;
+const ENOUGH_STEPS: u32 = 500;
 /// A scene shorter than so many of its steps is studied with shorter ones.
 const FEWEST_STEPS: f64 = 8.0;
 /// The finest mesh of the settings has no more nodes along and across than this.
@@ -393,13 +397,9 @@ impl MotionStudy {
     /// # Errors
     /// [`StudyError`].
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
-        scene.validate().map_err(SimulationError::from)?;
-        if scene.analysis != Analysis::Dynamic {
-            return Err(StudyError::AtRest);
-        }
         let plan = extent.plan();
         let samples = Samples::of(scene, plan);
-        let reference = MotionReference::of(scene, plan, samples, observe)?;
+        let reference = MotionReference::new(scene, extent, observe)?;
         let mut study = Self {
             scene: scene.name.clone(),
             duration: samples.duration(),
@@ -465,7 +465,7 @@ impl MotionStudy {
         let (counts, drift) = simulation.motion().map(|m| (m.counts(), m.ledger().drift())).unwrap_or_default();
         simulation.keep_ledger(false);
         let mut simulated = 0.0;
-        let time = median_time(&mut simulation, Simulation::reset, |simulation| {
+        let time = median_time(plan.timing, &mut simulation, Simulation::reset, |simulation| {
             run(simulation, steps_of_run);
             simulated = simulation.state().time();
         });

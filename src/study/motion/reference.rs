@@ -9,10 +9,10 @@ use std::ops::ControlFlow;
 use super::{MotionSetting, Plan, Samples, cells, path, step_words};
 use crate::assembly::System;
 use crate::mesh::Mesh;
-use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::reference::{MOST_ELEMENTS, system_of};
-use crate::study::trade::{Observer, Progress, StudyError, mesh_words};
+use crate::study::trade::{Extent, Observer, Progress, StudyError, mesh_words};
 
 /// The path of the first probe as the finest motion has it.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,8 +50,20 @@ impl std::fmt::Display for MotionReference {
 }
 
 impl MotionReference {
-    /// Finds it.
-    pub(super) fn of(scene: &Scene, plan: &Plan, samples: Samples, observe: Observer<'_>) -> Result<Self, StudyError> {
+    /// Finds it, for a study of this extent.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+        scene.validate().map_err(SimulationError::from)?;
+        if scene.analysis != Analysis::Dynamic {
+            return Err(StudyError::AtRest);
+        }
+        let plan = extent.plan();
+        Self::of(scene, plan, Samples::of(scene, plan), observe)
+    }
+
+    fn of(scene: &Scene, plan: &Plan, samples: Samples, observe: Observer<'_>) -> Result<Self, StudyError> {
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
