@@ -176,7 +176,7 @@ impl MotionStudy {
     fn unfinished(&self, text: &mut String) {
         for (ending, words) in [
             (Ending::Stopped, "stopped before the end"),
-            (Ending::CutShort, "would take too many steps, and was cut short"),
+            (Ending::CutShort, "cut short, as the end is too many steps away"),
         ] {
             let those: Vec<_> = self.measurements.iter().filter(|m| m.ending == ending).collect();
             if !those.is_empty() {
