@@ -653,6 +653,19 @@ fn extremes_writes_the_stability_atlas() {
     }));
     assert!(fs::read_to_string(out.join("extremes.svg")).unwrap().contains("stalled"));
     assert!(fs::metadata(out.join("extremes.png")).unwrap().len() > 10_000);
+    // The same of the atlas in time: its counts add up, and its numbers are finite.
+    let csv = fs::read_to_string(out.join("extremes-motion.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert!(rows.len() >= 72 && rows.iter().all(|row| row.len() == 13));
+    for row in &rows {
+        assert!(row[2..6].iter().chain(&row[7..]).all(|v| v.parse::<f64>().unwrap().is_finite()), "{row:?}");
+    }
+    let exploded = rows.iter().filter(|r| (r[0], r[1], r[6]) == ("t6", "symplectic-euler", "exploded")).count();
+    let line = summary.lines().find(|line| line.starts_with("t6      symplectic-euler")).unwrap();
+    assert_eq!(line.split_whitespace().nth(5).unwrap(), exploded.to_string());
+    assert!(summary.contains(&format!("in motion: {} cases", rows.len())));
+    assert!(fs::read_to_string(out.join("extremes-motion.svg")).unwrap().contains("gained energy"));
+    assert!(fs::metadata(out.join("extremes-motion.png")).unwrap().len() > 5_000);
 }
 
 /// The trade: errors split, times positive, the front the front, the files there.

@@ -79,6 +79,19 @@ fn energy_momentum_takes_few_iterations() {
     }
 }
 
+/// Linear theory is linear: one solve a step is exact, and the motion is that of the other integrators.
+#[test]
+fn energy_momentum_moves_linear_theory_too() {
+    let end = |kind, iterations| {
+        let simulation = run(&with("swing", kind, 1.0 / 960.0, iterations, 0.5).with_method(MethodKind::Linear));
+        (simulation.probe("tip").unwrap(), simulation.motion().unwrap().counts(), drift(&simulation))
+    };
+    let ((tip, counts, drift), (other, ..)) = (end(ENERGY_MOMENTUM, 0), end(TR_BDF2, 1));
+    assert!((tip - other).norm() < 1e-3 * other.norm() && tip.y < -1.0, "{tip} {other}");
+    assert_eq!((counts.solves, counts.halvings), (counts.steps, 0));
+    assert!(drift.abs() < 1e-9, "{drift}");
+}
+
 /// 10⁴ steps of a free bar.
 #[test]
 fn energy_momentum_keeps_a_spin() {

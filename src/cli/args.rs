@@ -65,21 +65,24 @@ pub(super) enum Command {
         out: Option<PathBuf>,
     },
     /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
-    /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt).
+    /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt). Of a scene in motion: the
+    /// error of the first probe's path against the time of computing a simulated second, for every integrator and time
+    /// step too, with what becomes of the energy.
     Study {
         #[command(flatten)]
         scene: SceneArgs,
         #[command(flatten)]
         out: FolderArgs,
     },
-    /// Choose element, mesh and method for an error and a time: measure finer and finer meshes on this machine until
+    /// Choose element, mesh and method of a scene at rest for an error and a time: measure finer and finer meshes on this machine until
     /// both are met, and print what was chosen and why.
     #[command(
         after_help = "Exit codes: 0 both are met, 1 nothing meets them (the closest is printed), 2 bad input or usage."
     )]
     Tune(TuneArgs),
     /// Solve at the extremes of load, stiffness, Poisson ratio, slenderness and starting state, and count how each method
-    /// ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary.
+    /// ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary. The same of every integrator in
+    /// motion, at the extremes of stiffness, time step and weight: extremes-motion.csv, .svg and .png.
     Extremes {
         #[command(flatten)]
         out: FolderArgs,

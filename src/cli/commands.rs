@@ -12,7 +12,8 @@ use crate::picture::draw_svg;
 use crate::scene::{self, Analysis, Scene};
 use crate::simulation::{Simulation, Solution, Status};
 use crate::study::{
-    Demand, Extent, LoadCurve, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map, plot,
+    Demand, Extent, LoadCurve, MotionStudy, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map,
+    motion_heat_map, plot,
 };
 use crate::words::count;
 
@@ -87,23 +88,35 @@ pub(super) fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCo
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
     let watch = Watch::new();
-    let mut partial = None;
-    let observe = &mut |progress: Progress<'_>| {
-        partial = progress.so_far.filter(|study| !study.measurements.is_empty()).cloned().or(partial.take());
-        watch.observe(&progress)
+    let (texts, interrupted) = match scene.analysis {
+        Analysis::Static => {
+            let mut partial = None;
+            let observe = &mut |progress: Progress<'_>| {
+                partial = progress.so_far.filter(|study| !study.measurements.is_empty()).cloned().or(partial.take());
+                watch.observe(&progress)
+            };
+            let whole = Study::new(&scene, extent(out), observe);
+            let (study, interrupted) = match (whole, partial) {
+                (Err(StudyError::Cancelled), Some(partial)) => (Ok(partial), true),
+                (whole, _) => (whole, false),
+            };
+            (study.map(|study| [study.table(), plot::svg(&study), study.summary()]), interrupted)
+        }
+        Analysis::Dynamic => {
+            let study = MotionStudy::new(&scene, extent(out), &mut |progress| watch.observe(&progress));
+            let interrupted = study.as_ref().is_ok_and(|study| study.is_partial);
+            (study.map(|study| [study.table(), plot::motion_svg(&study), study.summary()]), interrupted)
+        }
     };
-    let whole = Study::new(&scene, extent(out), observe);
     drop(watch);
-    let (study, interrupted) = match (whole, partial) {
-        (Err(StudyError::Cancelled), Some(partial)) => (partial, true),
-        (Err(StudyError::Cancelled), None) => return Ok(ended(true, "nothing has been measured")),
-        (whole, _) => (whole.map_err(failed(source))?, false),
+    let [table, svg, summary] = match texts {
+        Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
+        texts => texts.map_err(failed(source))?,
     };
-    let summary = study.summary();
-    let texts = [("study.csv", study.table()), ("study.svg", plot::svg(&study)), ("study.txt", summary.clone())];
-    write_folder(&out.folder, &texts.each_ref().map(|(name, text)| (*name, text.as_str())), "study.svg")?;
+    let texts = [("study.csv", table.as_str()), ("study.svg", &svg), ("study.txt", &summary)];
+    write_folder(&out.folder, &texts, "study.svg")?;
     text::print(&summary)?;
-    Ok(ended(interrupted, "the finer meshes are not in the study"))
+    Ok(ended(interrupted, "the study lacks what was not measured yet"))
 }
 
 /// The exit code of a command that may have been interrupted, and then says what is missing.
@@ -150,23 +163,30 @@ fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) ->
 }
 
 pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
-    let cases = extremes::cases(extent(out));
-    let all = cases.len();
-    let mut entries = Vec::with_capacity(all);
+    let (cases, motion_cases) = (extremes::cases(extent(out)), extremes::motion::cases(extent(out)));
+    let all = cases.len() + motion_cases.len();
+    let (mut entries, mut motions) = (Vec::with_capacity(cases.len()), Vec::with_capacity(motion_cases.len()));
     let watch = Watch::new();
-    for case in cases {
-        if watch.is_called_off() {
-            break;
-        }
+    let show = |done: usize| watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
+    for case in cases.into_iter().take_while(|_| !watch.is_called_off()) {
         let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
         entries.push(case.solve().map_err(broken)?);
-        watch.show(entries.len() as f64 / all as f64, || format!("{} of {all} cases", entries.len()));
+        show(entries.len());
+    }
+    for case in motion_cases.into_iter().take_while(|_| !watch.is_called_off()) {
+        let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
+        motions.push(case.run().map_err(broken)?);
+        show(entries.len() + motions.len());
     }
     drop(watch);
-    let missing = all - entries.len();
-    let (table, svg, summary) = (extremes::table(&entries), heat_map(&entries), extremes::summary(&entries));
+    let missing = all - entries.len() - motions.len();
+    let summary = format!("{}\n{}", extremes::summary(&entries), extremes::motion::summary(&motions));
+    let (table, svg) = (extremes::table(&entries), heat_map(&entries));
     let texts = [("extremes.csv", table.as_str()), ("extremes.svg", &svg), ("extremes.txt", &summary)];
     write_folder(&out.folder, &texts, "extremes.svg")?;
+    let (table, svg) = (extremes::motion::table(&motions), motion_heat_map(&motions));
+    let texts = [("extremes-motion.csv", table.as_str()), ("extremes-motion.svg", &svg)];
+    write_folder(&out.folder, &texts, "extremes-motion.svg")?;
     text::print(&summary)?;
     Ok(ended(missing > 0, &format!("{} not in the atlas", count(missing as u64, "case"))))
 }

@@ -18,6 +18,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     colors: [[0, 100, 180], [90, 200, 250]],
     order: 2,
     stages: 1,
+    always_iterates: true,
     inertia: Inertia::Consistent,
     step,
 };

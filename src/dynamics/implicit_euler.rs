@@ -17,6 +17,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     colors: [[190, 20, 30], [255, 105, 97]],
     order: 1,
     stages: 1,
+    always_iterates: false,
     inertia: Inertia::Consistent,
     step,
 };

@@ -48,6 +48,8 @@ pub struct IntegratorEntry {
     pub order: u32,
     /// Stages a step, each of one solve or more; 0 for an explicit integrator, which solves nothing.
     pub stages: u32,
+    /// Whether it iterates to the tolerance, whatever number of solves it is asked for.
+    pub always_iterates: bool,
     /// The mass matrix it moves.
     pub inertia: Inertia,
     /// Takes a step.

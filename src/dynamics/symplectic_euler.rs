@@ -20,6 +20,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     colors: [[200, 90, 0], [240, 150, 60]],
     order: 1,
     stages: 0,
+    always_iterates: false,
     inertia: Inertia::Lumped,
     step,
 };

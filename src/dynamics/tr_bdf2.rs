@@ -17,6 +17,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     colors: [[0, 120, 80], [110, 220, 140]],
     order: 2,
     stages: 2,
+    always_iterates: false,
     inertia: Inertia::Consistent,
     step,
 };

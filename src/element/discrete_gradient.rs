@@ -8,7 +8,7 @@ use crate::rotation::{Rotation, polar_or};
 /// What two deformation gradients F₀ = I + H₀ and F₁ = I + H₁ have between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteGradient {
-    /// F̄ − R̄, F̄ = (F₀ + F₁)/2.
+    /// F̄ − R̄, F̄ = (F₀ + F₁)/2; under linear theory its symmetric part.
     strain: Matrix2<f64>,
     /// R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁), r = tr S: no rotation in general.
     mean_rotation: Matrix2<f64>,
@@ -39,8 +39,11 @@ impl DiscreteGradient {
         let (w0, w1) = if sum.abs() > 0.0 { ((2.0 + t0) / sum, (2.0 + t1) / sum) } else { (0.5, 0.5) };
         let mean_turn = turn0 * w0 + turn1 * w1;
         let mean_rotation = Matrix2::identity() + mean_turn;
+        let mean = (h0 + h1) * 0.5;
+        // Linear theory strains by the symmetric part of H; a polar factor that is the identity has no other.
+        let unturned = (r0, r1) == (Rotation::IDENTITY, Rotation::IDENTITY);
         Self {
-            strain: (h0 + h1) * 0.5 - mean_turn,
+            strain: if unturned { (mean + mean.transpose()) * 0.5 } else { mean - mean_turn },
             mean_rotation,
             rotation: polar_or(&mean_rotation, r1),
             trace: 0.5 * (t0 + t1),

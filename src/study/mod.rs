@@ -1,8 +1,11 @@
 //! Measurements over many solves.
 
+mod chart;
 pub mod extremes;
 mod heat_map;
 mod load_curve;
+pub mod motion;
+mod pareto;
 pub mod plot;
 mod reference;
 mod report;
@@ -10,8 +13,9 @@ mod timing;
 mod trade;
 mod tune;
 
-pub use heat_map::heat_map;
+pub use heat_map::{heat_map, motion_heat_map};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
+pub use motion::MotionStudy;
 pub use reference::{ProbeTruth, Reference, TruthSource};
 pub use timing::times_from_rest;
 pub use trade::{ErrorSplit, Extent, Measurement, Observer, Progress, Setting, Study, StudyError};

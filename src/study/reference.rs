@@ -78,7 +78,7 @@ const FINE: u32 = 64;
 /// Elements of a mesh from a file that is: it is refined until it has as many, and at least once.
 const FINE_ELEMENTS: usize = 2000;
 /// Elements of a mesh from a file beyond which its refinement is too dear to be a by-product of a solve.
-const MOST_ELEMENTS: usize = 4000;
+pub(super) const MOST_ELEMENTS: usize = 4000;
 
 /// The exact beam is the truth if a fine solution is no farther from it than this, percent. A stubby beam under a large
 /// load is: its strains are large, and a section does not stay straight.

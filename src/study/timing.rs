@@ -50,3 +50,25 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
         })
         .collect()
 }
+
+/// Repetitions of a run that is not warmed up: one goes before it.
+const RUNS: usize = 5;
+
+/// The time that a run takes, without what prepares it. No more of them once they have taken `enough` together: long times
+/// vary less.
+pub(super) fn median_time<T>(
+    enough: Duration,
+    subject: &mut T,
+    prepare: impl Fn(&mut T),
+    mut run: impl FnMut(&mut T),
+) -> Duration {
+    let mut times = Vec::with_capacity(RUNS);
+    while times.len() < RUNS && times.iter().sum::<Duration>() < enough {
+        prepare(subject);
+        let start = Instant::now();
+        run(subject);
+        times.push(start.elapsed());
+    }
+    times.sort_unstable();
+    times.get(times.len() / 2).copied().unwrap_or_default()
+}

@@ -5,8 +5,10 @@
 
 use std::ops::ControlFlow;
 
+use super::pareto;
 use super::reference::{Reference, end, first_probe, system_of};
 use super::timing::times_from_rest;
+use crate::dynamics::StopReason;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
@@ -54,7 +56,7 @@ impl std::fmt::Display for Setting {
     }
 }
 
-fn mesh_words(element: ElementKind, cells: Option<[u32; 2]>) -> String {
+pub(super) fn mesh_words(element: ElementKind, cells: Option<[u32; 2]>) -> String {
     format!("{} {}", element.id(), cells_words(cells))
 }
 
@@ -131,8 +133,16 @@ pub enum StudyError {
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     /// A body in motion has no equilibrium to compare with.
-    #[error("expected a scene with analysis = \"static\": errors are measured against its equilibrium")]
+    #[error(
+        "expected a scene with analysis = \"static\": this measures solves of its equilibrium, and it is in motion"
+    )]
     InMotion,
+    /// A body at rest has no path to compare with.
+    #[error("expected a scene with analysis = \"dynamic\": this measures the path of its motion, and it is at rest")]
+    AtRest,
+    /// The fine motion that would be the truth cannot go on.
+    #[error("no truth: the fine motion of the scene stops: {0}")]
+    NoPath(StopReason),
     /// Nothing to compare.
     #[error("expected a scene with a probe that moves; errors are measured there")]
     NoProbe,
@@ -268,13 +278,9 @@ impl Study {
     }
 
     fn mark_pareto(&mut self) {
-        let all: Vec<_> = self.measurements.iter().map(|m| (m.time.total(), m.error.bound())).collect();
-        for (i, m) in self.measurements.iter_mut().enumerate() {
-            let (time, error) = all[i];
-            // Of equals the first is kept.
-            m.pareto = !all.iter().enumerate().any(|(j, &(t, e))| {
-                (t <= time && e < error) || (t < time && e <= error) || (t == time && e == error && j < i)
-            });
+        let pairs: Vec<_> = self.measurements.iter().map(|m| (m.milliseconds(), m.error.bound())).collect();
+        for (m, front) in self.measurements.iter_mut().zip(pareto::front(&pairs)) {
+            m.pareto = front;
         }
     }
 

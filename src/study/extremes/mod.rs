@@ -1,6 +1,8 @@
 //! The stability atlas: every method at the extremes of load, stiffness, Poisson ratio, slenderness, element shape, and
 //! from states no solver should be started in. Each case is classified; nothing in it is ever non-finite or a panic.
 
+pub mod motion;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 

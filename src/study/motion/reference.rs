@@ -1,0 +1,163 @@
+//! The path that others are measured against: energy–momentum with short steps on a fine mesh.
+
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use std::ops::ControlFlow;
+
+use super::{MotionSetting, Plan, Samples, cells, path, step_words};
+use crate::assembly::System;
+use crate::mesh::Mesh;
+use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::simulation::{Simulation, SimulationError, Status};
+use crate::study::reference::{MOST_ELEMENTS, system_of};
+use crate::study::trade::{Extent, Observer, Progress, StudyError, mesh_words};
+
+/// The path of the first probe as the finest motion has it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MotionReference {
+    /// Time between two places of [`Self::path`], s.
+    pub interval: f64,
+    /// Displacement from rest, m, at 1, 2, … intervals after the start.
+    pub path: Vec<Vector2<f64>>,
+    /// How far the path leads from where it starts, m; errors are over this.
+    pub size: f64,
+    /// Its own error, percent of its size: a third, as its second order has it, of what the path changes by with steps
+    /// of twice the length, and of what it changes by on half as many cells, added.
+    pub error_percent: f64,
+    /// Its time step, s.
+    pub time_step: f64,
+    /// The cells of its mesh of six-node triangles; `None` for the refined mesh of a file.
+    pub cells: Option<[u32; 2]>,
+}
+
+impl std::fmt::Display for MotionReference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mesh = match self.cells {
+            Some(_) => mesh_words(ElementKind::T6, self.cells),
+            None => format!("{} on the refined mesh", ElementKind::T6.id()),
+        };
+        write!(
+            f,
+            "{} with steps of {} on {mesh} (its own error about {:.1e} %)",
+            IntegratorKind::EnergyMomentum.id(),
+            step_words(self.time_step),
+            self.error_percent
+        )
+    }
+}
+
+impl MotionReference {
+    /// Finds it, for a study of this extent.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+        scene.validate().map_err(SimulationError::from)?;
+        if scene.analysis != Analysis::Dynamic {
+            return Err(StudyError::AtRest);
+        }
+        let plan = extent.plan();
+        Self::of(scene, plan, Samples::of(scene, plan), observe)
+    }
+
+    fn of(scene: &Scene, plan: &Plan, samples: Samples, observe: Observer<'_>) -> Result<Self, StudyError> {
+        if scene.probes.is_empty() {
+            return Err(StudyError::NoProbe);
+        }
+        let steps = plan.reference_steps();
+        let [coarse, fine] = meshes(scene, plan)?;
+        let mut follow = |mesh: &Reference, steps: u32, now: &str| {
+            let mut say = || observe(Progress { fraction: 0.0, now, so_far: None });
+            fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, &mut say)
+        };
+        let coarser = follow(&coarse, steps / 2, "the truth, on a coarser mesh")?;
+        let longer = follow(&fine, steps / 2, "the truth, with longer steps")?;
+        let best = follow(&fine, steps, "the truth")?;
+        let size = best.iter().map(|u| u.norm()).fold(0.0, f64::max);
+        if size == 0.0 {
+            return Err(StudyError::NoProbe);
+        }
+        let mut reference = Self {
+            interval: samples.interval,
+            path: best,
+            size,
+            error_percent: 0.0,
+            time_step: samples.interval / f64::from(steps),
+            cells: fine.cells,
+        };
+        let [of_mesh, _] = reference.distance(&coarser, &longer);
+        let [of_step, _] = reference.distance(&longer, &reference.path);
+        reference.error_percent = (of_mesh + of_step) / 3.0;
+        Ok(reference)
+    }
+
+    /// Between two paths with a place for each of the reference's: the largest distance, and the root of the mean of its
+    /// square, percent of the size.
+    #[must_use]
+    pub fn distance(&self, a: &[Vector2<f64>], b: &[Vector2<f64>]) -> [f64; 2] {
+        let distances = a.iter().zip(b).map(|(a, b)| (a - b).norm());
+        let percent = 100.0 / self.size;
+        let squares: f64 = distances.clone().map(|d| d * d).sum();
+        let mean = squares / a.len().min(b.len()).max(1) as f64;
+        [percent * distances.fold(0.0, f64::max), percent * mean.sqrt()]
+    }
+}
+
+/// The first probe's path under the energy–momentum method, with so many steps between samples.
+pub(super) fn fine_path(
+    scene: &Scene,
+    method: MethodKind,
+    system: &Arc<System>,
+    samples: Samples,
+    steps: u32,
+    observe: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<Vec<Vector2<f64>>, StudyError> {
+    let mut scene = scene.clone();
+    scene.solver.method = method;
+    let dynamics = &mut scene.dynamics;
+    (dynamics.integrator, dynamics.iterations) = (IntegratorKind::EnergyMomentum, 0);
+    dynamics.time_step = samples.interval / f64::from(steps);
+    let mut simulation = Simulation::with_system(&scene, system.clone())?;
+    simulation.keep_ledger(false);
+    let path = path(&mut simulation, samples, steps, observe)?;
+    match simulation.status() {
+        Status::Stopped(reason) => Err(StudyError::NoPath(*reason)),
+        _ => Ok(path),
+    }
+}
+
+/// A mesh for the reference.
+struct Reference {
+    scene: Scene,
+    system: Arc<System>,
+    cells: Option<[u32; 2]>,
+}
+
+/// One with half as many cells each way, and the fine one.
+fn meshes(scene: &Scene, plan: &Plan) -> Result<[Reference; 2], StudyError> {
+    let with = |factor: f64| {
+        let setting = MotionSetting {
+            element: ElementKind::T6,
+            cells: cells(scene, ElementKind::T6, factor),
+            integrator: IntegratorKind::EnergyMomentum,
+            method: MethodKind::Newton,
+            time_step: scene.dynamics.time_step,
+            iterations: 0,
+        };
+        let scene = setting.apply(scene);
+        Ok::<_, StudyError>(Reference { system: system_of(&scene)?, scene, cells: setting.cells })
+    };
+    let (coarse, mut fine) = (with(0.5 * plan.reference_mesh)?, with(plan.reference_mesh)?);
+    if scene.beam.is_none() {
+        let mesh: &Mesh = fine.system.mesh();
+        if mesh.element_count() > MOST_ELEMENTS {
+            return Err(StudyError::TooFine { elements: mesh.element_count() });
+        }
+        let refined = System::with_mesh(&fine.scene, mesh.refined()).map_err(SimulationError::from)?;
+        fine.system = Arc::new(refined);
+    }
+    Ok([coarse, fine])
+}

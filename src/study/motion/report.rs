@@ -1,0 +1,210 @@
+//! The trade in time in words: a table and a summary.
+
+use std::fmt::Write as _;
+
+use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStudy, REAL_TIME, step_words};
+use crate::dynamics::INTEGRATORS;
+use crate::scene::{ElementKind, MethodKind};
+use crate::study::trade::mesh_words;
+use crate::words::{count, number};
+
+impl MotionStudy {
+    /// The study as CSV. `solves` is a step's or a stage's, 0: as many as the tolerance takes; `resolved` is whether the
+    /// bound is above the reference's own. A motion that did not finish has no error.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let mut text = String::from(
+            "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto\n",
+        );
+        for m in &self.measurements {
+            let [along, across] = m.setting.cells.unwrap_or([0, 0]);
+            let error = m.error.map_or_else(
+                || ",,,,,,".to_owned(),
+                |e| {
+                    let parts = [e.total, e.rms, e.discretization, e.integration, e.model, e.bound()];
+                    let resolved = e.bound() > self.reference.error_percent;
+                    format!("{},{resolved}", parts.map(|v| format!("{v:e}")).join(","))
+                },
+            );
+            let _ = writeln!(
+                text,
+                "{},{along},{across},{},{},{},{:e},{},{},{:.4},{error},{:e},{},{},{},{},{}",
+                m.setting.element.id(),
+                m.dofs,
+                m.setting.integrator.id(),
+                m.setting.method.id(),
+                m.setting.time_step,
+                m.setting.iterations,
+                m.ending.id(),
+                m.milliseconds,
+                m.drift_percent,
+                m.energy().id(),
+                m.counts.steps,
+                m.counts.solves,
+                m.counts.factorizations,
+                m.pareto
+            );
+        }
+        text
+    }
+
+    /// The study for people: the truth, the front, what real time buys, and what becomes of the energy.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let mut text = format!(
+            "{}: error of the first probe's path, the largest distance over {} s, percent of the {:.4} m that it leads,\n\
+             against {}\n",
+            self.scene,
+            number(round(self.duration)),
+            self.reference.size,
+            self.reference
+        );
+        if self.duration < self.scene_duration * (1.0 - 1e-6) {
+            let _ = writeln!(text, "(the scene goes on to {} s, which is not looked at)", number(self.scene_duration));
+        }
+        text.push_str("\nnothing measured is both faster and surer than these (time: of a simulated second; error: at most the sum of its parts):\n");
+        text.push_str(
+            "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting\n",
+        );
+        for m in self.front() {
+            let Some(e) = m.error else { continue };
+            let _ = writeln!(
+                text,
+                "{:12.3} {:>12} {:>11} {:11.4} {:12.4} {:11.4} {:14.4} {:11.4}   {}",
+                m.milliseconds,
+                self.percent_words(e.bound()),
+                self.percent_words(e.total),
+                e.rms,
+                e.discretization,
+                e.integration,
+                e.model,
+                m.drift_percent,
+                m.setting
+            );
+        }
+        text.push('\n');
+        self.costs(&mut text);
+        self.steps(&mut text);
+        self.auto(&mut text);
+        self.unfinished(&mut text);
+        text
+    }
+
+    /// What an error costs, with every integrator.
+    fn costs(&self, text: &mut String) {
+        for percent in [10.0, 1.0, 0.1] {
+            if percent < self.reference.error_percent {
+                continue;
+            }
+            let best = self.fastest_within(percent);
+            let words = best.map_or_else(|| "not reached".to_owned(), time_words);
+            let _ = writeln!(text, "an error of {percent} % costs {words}");
+            for integrator in INTEGRATORS {
+                let own = self.fastest_of(percent, |m| m.setting.integrator == integrator.kind);
+                let words = own.map_or_else(|| "not reached".to_owned(), time_words);
+                let _ = writeln!(text, "    {:<16} {words}", integrator.id);
+            }
+        }
+        let real = self.fastest_of(1.0, |m| m.milliseconds <= REAL_TIME);
+        let words = real.map_or_else(
+            || "within 1 %, nothing measured is as fast as real time".to_owned(),
+            |m| {
+                let times = REAL_TIME / m.milliseconds;
+                format!("within 1 %, the fastest in real time, {times:.0} times as fast as it: {}", m.setting)
+            },
+        );
+        let _ = writeln!(text, "{words}\n");
+    }
+
+    /// What the step does to error and energy, on the scene's mesh.
+    fn steps(&self, text: &mut String) {
+        let _ = writeln!(
+            text,
+            "by time step, newton on {}: error of the time steps, %; energy, % of the largest kinetic; time of a simulated second, ms",
+            mesh_words(ElementKind::T6, self.own_mesh)
+        );
+        let own = |m: &&MotionMeasurement| {
+            let MotionSetting { element, cells, method, .. } = m.setting;
+            (element, cells, method) == (ElementKind::T6, self.own_mesh, MethodKind::Newton)
+        };
+        for m in self.measurements.iter().filter(own) {
+            let setting = &m.setting;
+            let _ = writeln!(
+                text,
+                "    {:<16} {:<18} {:>10}  {:>12} {:>12.5} {:<6} {:>10.3}",
+                setting.integrator.id(),
+                setting.solves_words(),
+                step_words(setting.time_step),
+                m.error.map_or_else(|| m.ending.id().replace('_', " "), |e| format!("{:.4}", e.integration)),
+                m.drift_percent,
+                m.energy().id(),
+                m.milliseconds
+            );
+        }
+        text.push('\n');
+    }
+
+    /// What `auto` saves beside `newton`.
+    fn auto(&self, text: &mut String) {
+        let pairs = self.measurements.iter().filter(|m| m.setting.method == MethodKind::Auto).filter_map(|auto| {
+            let setting = MotionSetting { method: MethodKind::Newton, ..auto.setting };
+            let newton = self.measurements.iter().find(|m| m.setting == setting)?;
+            let farther = auto.error?.bound() - newton.error?.bound();
+            let factors = auto.counts.factorizations as f64 / newton.counts.factorizations.max(1) as f64;
+            Some((auto.milliseconds / newton.milliseconds, factors, farther))
+        });
+        let pairs: Vec<(f64, f64, f64)> = pairs.collect();
+        let median = |of: fn(&(f64, f64, f64)) -> f64| {
+            let mut values: Vec<f64> = pairs.iter().map(of).collect();
+            values.sort_by(f64::total_cmp);
+            values.get(values.len() / 2).copied().unwrap_or(1.0)
+        };
+        let worst = pairs.iter().map(|p| p.2).fold(0.0, f64::max);
+        if !pairs.is_empty() {
+            let _ = writeln!(
+                text,
+                "auto beside newton, the same otherwise: {:.2} of the time and {:.2} of the factorizations (medians), \
+                 its error larger by {} % at most",
+                median(|p| p.0),
+                median(|p| p.1),
+                number(round(worst))
+            );
+        }
+    }
+
+    /// What has no error, and why.
+    fn unfinished(&self, text: &mut String) {
+        for (ending, words) in [
+            (Ending::Stopped, "stopped before the end"),
+            (Ending::CutShort, "cut short, as the end is too many steps away"),
+        ] {
+            let those: Vec<_> = self.measurements.iter().filter(|m| m.ending == ending).collect();
+            if !those.is_empty() {
+                let _ = writeln!(text, "{} {words}:", count(those.len() as u64, "setting"));
+            }
+            for m in those {
+                let _ = writeln!(text, "    {} ({:.0} ms a simulated second)", m.setting, m.milliseconds);
+            }
+        }
+        let gained = self.measurements.iter().filter(|m| m.energy() == EnergyBehaviour::Gained);
+        let most = gained.max_by(|a, b| a.drift_percent.total_cmp(&b.drift_percent));
+        if let Some(m) = most {
+            let _ = writeln!(text, "the most energy was gained, {:.2} %, by {}", m.drift_percent, m.setting);
+        }
+    }
+
+    /// An error for people: what is below the reference's own is not known.
+    fn percent_words(&self, percent: f64) -> String {
+        let own = self.reference.error_percent;
+        if percent <= own { format!("≤ {own:.4}") } else { format!("{percent:.4}") }
+    }
+}
+
+fn time_words(m: &MotionMeasurement) -> String {
+    format!("{:.3} ms a simulated second, {}", m.milliseconds, m.setting)
+}
+
+/// To six digits after the point, for sums of steps.
+fn round(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}

@@ -1,0 +1,208 @@
+//! The study of a body in motion, and the atlas in time.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use std::fs;
+use std::ops::ControlFlow;
+
+use common::{scene, scene_with, stderr, stdout, warpbeam};
+use nalgebra::Vector2;
+use warpbeam::scene::Scene;
+use warpbeam::study::extremes::motion::{MotionOutcome, cases};
+use warpbeam::study::motion::{Ending, EnergyBehaviour, MotionMeasurement, MotionReference};
+use warpbeam::study::{Demand, Extent, MotionStudy, Study, StudyError, Tuning};
+use warpbeam::{ElementKind, IntegratorKind, MethodKind};
+
+fn go_on(_: warpbeam::study::Progress<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// The swing's study: its errors go with the step as the integrators' orders say, its energy as they promise, and its
+/// front is one.
+#[test]
+fn a_swing_is_studied() {
+    let study = MotionStudy::new(&scene("swing"), Extent::Quick, &mut go_on).unwrap();
+    let own = study.reference.error_percent;
+    assert!(own > 0.0 && own < 0.5, "{own}");
+    assert!((study.duration - 1.0).abs() < 1e-9 && study.scene_duration == 2.0);
+    let at = |kind, rate: f64, iterations| -> &MotionMeasurement {
+        let found = study.measurements.iter().find(|m| {
+            let s = &m.setting;
+            (s.element, s.cells, s.method) == (ElementKind::T6, Some([20, 1]), MethodKind::Newton)
+                && (s.integrator, s.iterations) == (kind, iterations)
+                && (s.time_step * rate - 1.0).abs() < 1e-9
+        });
+        found.unwrap()
+    };
+    let steps = |kind, iterations| {
+        [60.0, 120.0, 240.0].map(|rate| at(kind, rate, iterations)).map(|m| m.error.unwrap().integration)
+    };
+    for (kind, iterations, overall, last) in [
+        (IntegratorKind::TrBdf2, 1, 8.0..11.0, 3.0..4.5),
+        (IntegratorKind::TrBdf2, 0, 7.5..11.0, 2.8..4.5),
+        (IntegratorKind::EnergyMomentum, 0, 7.0..11.0, 2.4..4.5),
+        (IntegratorKind::ImplicitEuler, 1, 2.8..4.2, 1.6..2.2),
+        (IntegratorKind::ImplicitEuler, 0, 2.8..4.2, 1.6..2.2),
+    ] {
+        let [a, b, c] = steps(kind, iterations);
+        assert!(overall.contains(&(a / c)) && last.contains(&(b / c)), "{} {iterations}: {a} {b} {c}", kind.id());
+    }
+    for m in &study.measurements {
+        let setting = m.setting;
+        assert_eq!(m.ending, Ending::Finished, "{setting}");
+        let e = m.error.unwrap();
+        let parts = [e.total, e.rms, e.discretization, e.integration, e.model, m.drift_percent, m.milliseconds];
+        assert!(parts.iter().all(|v| v.is_finite()) && m.milliseconds > 0.0 && m.counts.halvings == 0, "{m:?}");
+        // The parts are distances on the way from the path to the reference's.
+        assert!(e.total <= e.bound() * (1.0 + 1e-9) && e.rms <= e.total, "{setting}: {e:?}");
+        assert_eq!(e.model == 0.0, setting.method != MethodKind::Linear, "{setting}");
+        match setting.integrator {
+            IntegratorKind::EnergyMomentum => assert!(m.drift_percent.abs() < 1e-3, "{setting}: {}", m.drift_percent),
+            IntegratorKind::ImplicitEuler => assert_eq!(m.energy(), EnergyBehaviour::Lost, "{setting}"),
+            _ => {}
+        }
+    }
+    // The ends of explicit steps are those of the others: 0.9 of the critical one, rounded to parts of a sixtieth.
+    let explicit = study.measurements.iter().filter(|m| m.setting.integrator == IntegratorKind::SymplecticEuler);
+    for m in explicit {
+        let parts = 1.0 / 60.0 / m.setting.time_step;
+        assert!(parts > 2.0 && (parts - parts.round()).abs() < 1e-6, "{}", m.setting);
+    }
+    // Nothing beats the front, everything else is beaten, and the front is sorted both ways.
+    let pair = |m: &MotionMeasurement| (m.milliseconds, study.resolved(m.error.unwrap().bound()));
+    for m in &study.measurements {
+        let (time, error) = pair(m);
+        let beaten =
+            study.measurements.iter().map(pair).any(|(t, e)| t <= time && e <= error && (t, e) != (time, error));
+        assert_eq!(m.pareto, !beaten, "{}", m.setting);
+    }
+    let front: Vec<_> = study.front().into_iter().map(pair).collect();
+    assert!(front.len() > 2 && front.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 > w[1].1), "{front:?}");
+    // What is said to be within an error is, the reference's own included.
+    let chosen = study.fastest_within(10.0).unwrap();
+    assert!(chosen.error.unwrap().bound() + own <= 10.0);
+    assert!(study.fastest_within(0.5 * own).is_none());
+}
+
+/// The reference against a trajectory computed independently on the same mesh: `tests/data/swing.py`.
+#[test]
+fn the_reference_is_the_truth() {
+    // Twice as fine as this in six-node triangles is the independent mesh.
+    let scene = scene_with("swing", &["beam.element=t3"]);
+    let reference = MotionReference::new(&scene, Extent::Quick, &mut go_on).unwrap();
+    assert_eq!(reference.cells, Some([20, 1]));
+    let rows = include_str!("data/swing.csv").lines().filter(|line| !line.starts_with('#')).skip(1);
+    let truth: Vec<(f64, Vector2<f64>)> = rows
+        .map(|row| {
+            let v: Vec<f64> = row.split(',').map(|v| v.parse().unwrap()).collect();
+            (v[0], Vector2::new(v[1], v[2]))
+        })
+        .collect();
+    // Of 240 places a second every fourth.
+    let truth: Vec<_> = truth.iter().skip(3).step_by(4).take(reference.path.len()).collect();
+    assert_eq!(truth.len(), 60);
+    for (i, (time, _)) in truth.iter().enumerate() {
+        assert!((time - reference.interval * (i + 1) as f64).abs() < 1e-9);
+    }
+    let places: Vec<_> = truth.iter().map(|(_, u)| *u).collect();
+    let [distance, _] = reference.distance(&places, &reference.path);
+    assert!(distance <= reference.error_percent, "{distance} {}", reference.error_percent);
+    // The mesh is the same: nothing is left but the time step.
+    assert!(distance < 0.01, "{distance}");
+    let size = places.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    assert!((reference.size / size - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn what_cannot_be_studied_is_refused() {
+    let refused = |scene: &Scene| MotionStudy::new(scene, Extent::Quick, &mut go_on).unwrap_err();
+    assert_eq!(refused(&scene("cantilever")), StudyError::AtRest);
+    assert_eq!(refused(&scene_with("swing", &["probe=[]"])), StudyError::NoProbe);
+    assert_eq!(refused(&scene_with("swing", &["load=[]", "beam.cells=[2,1]"])), StudyError::NoProbe);
+    let moving = scene("swing");
+    assert_eq!(Study::new(&moving, Extent::Quick, &mut go_on), Err(StudyError::InMotion));
+    assert_eq!(Tuning::of(&moving, Demand::default(), &mut go_on).unwrap_err(), StudyError::InMotion);
+    for after in [0, 3] {
+        let mut heard = 0;
+        let mut observe = |progress: warpbeam::study::Progress<'_>| {
+            assert!((0.0..=1.0).contains(&progress.fraction));
+            heard += 1;
+            if heard > after { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        assert_eq!(MotionStudy::new(&moving, Extent::Quick, &mut observe).unwrap_err(), StudyError::Cancelled);
+    }
+}
+
+/// The same from the command line: files, columns, no number that is none; a step too short to be run to the end is said
+/// to be.
+#[test]
+fn study_of_a_motion_writes_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    for (id, set) in [("swing", "dynamics.duration=0.25"), ("chime", "dynamics.duration=0.01")] {
+        let out = folder.path().join(id);
+        let output = warpbeam(&["study", id, "--quick", "--set", set, "--out", out.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let summary = stdout(&output);
+        assert_eq!(summary, fs::read_to_string(out.join("study.txt")).unwrap());
+        for words in ["its own error about", "real time", "an error of 10 % costs", "auto beside newton"] {
+            assert!(summary.contains(words), "{words}: {summary}");
+        }
+        let csv = fs::read_to_string(out.join("study.csv")).unwrap();
+        let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let header = lines.next().unwrap();
+        assert_eq!(
+            header.join(","),
+            "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,\
+             error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,\
+             resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto"
+        );
+        let rows: Vec<_> = lines.collect();
+        let words = ["element", "integrator", "method", "ending", "resolved", "energy", "pareto"];
+        for row in &rows {
+            assert_eq!(row.len(), header.len());
+            let finished = row[8] == "finished";
+            for (column, value) in header.iter().zip(row).filter(|(column, _)| !words.contains(column)) {
+                // No error without an end.
+                let empty = value.is_empty() && !finished && column.ends_with("_percent");
+                assert!(empty || value.parse::<f64>().unwrap().is_finite(), "{column}: {row:?}");
+            }
+        }
+        let has = |column: usize, word: &str| rows.iter().any(|row| row[column] == word);
+        assert!(["tr-bdf2", "energy-momentum", "implicit-euler", "symplectic-euler"].iter().all(|i| has(4, i)));
+        assert!(["linear", "newton", "auto"].iter().all(|m| has(5, m)) && has(0, "t3") && has(0, "t6"));
+        assert!(has(22, "true") && has(22, "false") && has(18, "lost") && has(18, "kept"));
+        assert_eq!(has(8, "cut_short"), id == "chime");
+        assert_eq!(summary.contains("cut short, as the end"), id == "chime", "{summary}");
+        let svg = fs::read_to_string(out.join("study.svg")).unwrap();
+        assert!(svg.contains("Pareto front") && svg.contains("real time") && svg.contains("t6 energy-momentum"));
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        assert!(fs::metadata(out.join("study.png")).unwrap().len() > 10_000);
+    }
+    let refused = warpbeam(&["tune", "swing"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("expected a scene with analysis = \"static\""), "{}", stderr(&refused));
+}
+
+/// Whatever the stiffness, the step and the weight: a motion ends in words, its numbers finite; what is implicit goes on
+/// to the end, and energy comes from nowhere under none.
+#[test]
+fn motions_at_the_extremes_end_in_words() {
+    let cases = cases(Extent::Quick);
+    assert!(cases.len() >= 72);
+    for case in cases {
+        let entry = case.run().unwrap();
+        let numbers = [entry.drift, entry.tip[0], entry.tip[1]];
+        assert!(numbers.iter().all(|v| v.is_finite()), "{entry:?}");
+        let explicit = case.integrator.entry().is_explicit();
+        match entry.outcome {
+            MotionOutcome::Finished | MotionOutcome::Inverted => assert_eq!(entry.steps, 100, "{entry:?}"),
+            MotionOutcome::Exploded => assert!(explicit && entry.steps < 100, "{entry:?}"),
+            MotionOutcome::GainedEnergy | MotionOutcome::Stopped => unreachable!("{entry:?}"),
+        }
+        // Far above its critical step the explicit integrator explodes, and is said to.
+        if explicit && case.young >= 1e6 {
+            assert_eq!(entry.outcome, MotionOutcome::Exploded, "{entry:?}");
+        }
+    }
+}
