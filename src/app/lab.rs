@@ -20,6 +20,7 @@ use crate::dynamics::lowest_frequency;
 use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
+use crate::state::State;
 use crate::study::{LoadCurve, Reference, Study};
 use crate::timings::Timings;
 
@@ -166,9 +167,9 @@ impl Lab {
         self.iterations
     }
 
-    /// The simulation, for who steps it in the lab's place.
-    pub(super) fn simulation_mut(&mut self) -> &mut Simulation {
-        &mut self.simulation
+    /// Shows the body in a state of its own, if it is one.
+    pub(super) fn restore(&mut self, state: &State) -> bool {
+        self.simulation.restore(state).is_ok()
     }
 
     /// Looks through this camera, and colours with this range, whatever the body does.
@@ -238,7 +239,8 @@ impl Lab {
         self.scene.analysis == Analysis::Dynamic
     }
 
-    fn iterate(&mut self, iterations: u32) {
+    /// So many iterations, or one time step.
+    pub(super) fn iterate(&mut self, iterations: u32) {
         if self.moves() {
             self.playback.step(&mut self.simulation);
             self.timings = *self.simulation.last_iteration();

@@ -174,7 +174,7 @@ pub fn record(
         let mut lab = new_lab()?;
         for state in &preview.samples {
             // A state of the same equations is taken.
-            if lab.simulation_mut().restore(state).is_ok() {
+            if lab.restore(state) {
                 samples.push(draw(&mut canvas, &mut lab, 0)?);
             }
         }
@@ -190,7 +190,7 @@ pub fn record(
             drawn: k,
             pictures: preview.pictures,
         };
-        let reached = reel.advance(k, lab.simulation_mut(), &mut |time| observe(told(time)));
+        let reached = reel.advance(k, &mut lab, &mut |time| observe(told(time)));
         // At least a picture: a file without one is none.
         if k > 0 && reached != Reached::Picture {
             break;
@@ -248,19 +248,45 @@ enum Reached {
     CalledOff,
 }
 
+/// What is taken from picture to picture: a simulation, or a lab that remembers the way for its trail.
+trait Moving {
+    fn simulation(&self) -> &Simulation;
+    fn step(&mut self);
+}
+
+impl Moving for Simulation {
+    fn simulation(&self) -> &Simulation {
+        self
+    }
+
+    fn step(&mut self) {
+        Simulation::step(self);
+    }
+}
+
+impl Moving for Lab {
+    fn simulation(&self) -> &Simulation {
+        self.simulation()
+    }
+
+    fn step(&mut self) {
+        self.iterate(1);
+    }
+}
+
 impl Reel {
     /// Takes a simulation from picture to picture `k`: the last step that is not later. `observe` is told the time.
-    fn advance(&self, k: u64, simulation: &mut Simulation, observe: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Reached {
-        let time = |simulation: &Simulation| simulation.state().time();
-        if observe(time(simulation)).is_break() {
+    fn advance(&self, k: u64, body: &mut impl Moving, observe: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Reached {
+        let time = |body: &dyn Moving| body.simulation().state().time();
+        if observe(time(body)).is_break() {
             return Reached::CalledOff;
         }
-        if simulation.motion().is_none() {
+        if body.simulation().motion().is_none() {
             if k > 0 {
-                if *simulation.status() != Status::Running {
+                if *body.simulation().status() != Status::Running {
                     return Reached::End;
                 }
-                simulation.step();
+                body.step();
             }
             return Reached::Picture;
         }
@@ -268,15 +294,15 @@ impl Reel {
         if at > self.duration + NO_TIME * self.between {
             return Reached::End;
         }
-        let step = simulation.scene().dynamics.time_step;
-        while *simulation.status() == Status::Running && time(simulation) + step <= at + NO_TIME * step {
-            simulation.step();
-            if observe(time(simulation)).is_break() {
+        let step = body.simulation().scene().dynamics.time_step;
+        while *body.simulation().status() == Status::Running && time(body) + step <= at + NO_TIME * step {
+            body.step();
+            if observe(time(body)).is_break() {
                 return Reached::CalledOff;
             }
         }
         // A motion that was given up has no pictures beyond.
-        let given_up = matches!(simulation.status(), Status::Stopped(_)) && time(simulation) + step <= at;
+        let given_up = matches!(body.simulation().status(), Status::Stopped(_)) && time(body) + step <= at;
         if given_up { Reached::End } else { Reached::Picture }
     }
 }
