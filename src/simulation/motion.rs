@@ -147,7 +147,9 @@ impl Motion {
                 Ok(()) => left -= 1,
                 Err(error) => {
                     body.state.copy_from(&self.start);
-                    if halvings == MOST_HALVINGS || entry(&body.scene).is_explicit() {
+                    // Beyond its critical step an explicit scheme is to be seen to fail; a hand must not make it fail.
+                    let gives_up = entry(&body.scene).is_explicit() && !self.is_guarded;
+                    if halvings == MOST_HALVINGS || gives_up {
                         self.stopped = Some(self.reason(error, part));
                         break;
                     }
