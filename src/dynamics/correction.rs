@@ -1,7 +1,17 @@
 //! The linear equations of a stage: from a residual force to a correction of the displacement.
+//!
+//! `auto` keeps the factor of an earlier matrix while it serves. It preconditions conjugate gradients on the present
+//! matrix, turned along with the body: with Q the nodes' rotations since the factor was made, Q L Lᵀ Qᵀ differs from
+//! the matrix only by how much elements have bent and stretched (the warp preconditioner of Courtecuisse, Allard,
+//! Duriez and Cotin 2010, *Asynchronous preconditioners for efficient solving of non-linear deformations*).
 
-use crate::assembly::{Matrix, System};
+use crate::assembly::{Matrix, Pattern, System};
+use crate::rotation::Rotation;
 use crate::solver::{Factor, SolverError};
+use crate::state::State;
+
+/// Inertia and stiffness that differ relatively by less than this are the same but for rounding.
+const SAME: f64 = 1e-9;
 
 /// A matrix over the free unknowns with its factor.
 #[derive(Debug)]
@@ -11,16 +21,41 @@ pub(crate) struct Corrector {
     /// A vector over the free unknowns.
     pub free: Vec<f64>,
     /// What the factor is of, where that is a constant matrix.
-    pub constant: Option<Constant>,
+    pub constant: Option<Weights>,
+    kept: Kept,
 }
 
-/// What the matrix of linear theory depends on.
+/// The parts of a stage's matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Constant {
+pub(crate) struct Weights {
     /// Factor of the mass, 1/s².
     pub inertia: f64,
     /// Factor of the stiffness.
     pub stiffness: f64,
+}
+
+impl Weights {
+    fn are_about(&self, other: &Self) -> bool {
+        let close = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs();
+        close(self.inertia, other.inertia) && close(self.stiffness, other.stiffness)
+    }
+}
+
+/// What is known of the factor of an earlier matrix.
+#[derive(Debug, Default)]
+struct Kept {
+    /// What it is of; `None` where there is no factor that could serve.
+    weights: Option<Weights>,
+    /// Every node's rotation when the factor was made …
+    then: Vec<Rotation>,
+    /// … and since then.
+    since: Vec<Rotation>,
+    /// Corrections with this factor, and back substitutions they took.
+    corrections: u32,
+    solves: u32,
+    /// Back substitutions of the last correction.
+    last: u32,
+    vectors: [Vec<f64>; 4],
 }
 
 impl Corrector {
@@ -30,11 +65,134 @@ impl Corrector {
             factor: Factor::new(system.symbolic())?,
             free: vec![0.0; system.dofs()],
             constant: None,
+            kept: Kept::default(),
         })
     }
 
     /// Forgets a factor of equations that have changed.
     pub fn forget(&mut self) {
         self.constant = None;
+        self.kept.weights = None;
+    }
+
+    /// Forgets that a factor was of a constant matrix: another one has it now.
+    pub fn matrix_changes(&mut self) {
+        self.constant = None;
+    }
+
+    /// Keeps the factor just made of this state's matrix for later ones.
+    pub fn keep(&mut self, weights: Weights, system: &System, state: &State) {
+        let Kept { then, .. } = &mut self.kept;
+        nodal_rotations(system, state, then);
+        (self.kept.weights, self.kept.corrections, self.kept.solves, self.kept.last) = (Some(weights), 1, 1, 1);
+    }
+
+    /// Whether the factor that is kept is worth another try for a matrix with these weights.
+    ///
+    /// The price of a correction is least over the factor's life where it is given up once a correction takes more than
+    /// all have on average, its making included.
+    fn serves(&self, weights: Weights) -> bool {
+        let Kept { weights: kept, corrections, solves, last, .. } = &self.kept;
+        let price = self.factor.price() + f64::from(*solves);
+        kept.is_some_and(|kept| kept.are_about(&weights)) && f64::from(*last) * f64::from(*corrections) <= price
+    }
+
+    /// Replaces the vector over the free unknowns, a residual force, by the correction it needs, to a relative accuracy
+    /// in the norm of the matrix, with the factor that is kept. Gives the back substitutions taken, and whether that
+    /// was enough: if not, the vector is what it was.
+    ///
+    /// Preconditioned conjugate gradients (Hestenes and Stiefel 1952); √(r·P⁻¹r) stands for the norm of the error. The
+    /// last preconditioned residual is added as it is: it is as good as another iteration where the factor is.
+    pub fn correct_with_kept(&mut self, weights: Weights, accuracy: f64, system: &System, state: &State) -> (u32, bool) {
+        if !self.serves(weights) {
+            return (0, false);
+        }
+        let Self { matrix, factor, free, kept, .. } = self;
+        let pattern = system.pattern();
+        nodal_rotations(system, state, &mut kept.since);
+        for (now, then) in kept.since.iter_mut().zip(&kept.then) {
+            *now = Rotation { c: now.c * then.c + now.s * then.s, s: now.s * then.c - now.c * then.s };
+        }
+        let [x, r, z, p] = &mut kept.vectors;
+        [&mut *x, r, z, p].into_iter().for_each(|v| v.resize(free.len(), 0.0));
+        x.fill(0.0);
+        r.copy_from_slice(free);
+        // More than these and a new factor would have cost less.
+        let most = factor.price().ceil() as u32;
+        let (mut first, mut before) = (0.0, 0.0);
+        for solves in 1..=most {
+            z.copy_from_slice(r);
+            turn(pattern, &kept.since, -1.0, z);
+            factor.solve_in_place(z);
+            turn(pattern, &kept.since, 1.0, z);
+            let now = dot(r, z);
+            if !(now.is_finite() && now >= 0.0) {
+                return (solves, false);
+            }
+            if solves == 1 {
+                first = now;
+            }
+            // What this step leaves is less than the last one has left of the one before.
+            if now == 0.0 || (solves > 1 && now * now <= (accuracy * accuracy) * first * before) {
+                free.iter_mut().zip(&*x).zip(&*z).for_each(|((free, x), z)| *free = x + z);
+                kept.corrections += 1;
+                kept.solves += solves;
+                kept.last = solves;
+                return (solves, true);
+            }
+            if solves == 1 {
+                p.copy_from_slice(z);
+            } else {
+                let beta = now / before;
+                p.iter_mut().zip(&*z).for_each(|(p, z)| *p = z + beta * *p);
+            }
+            matrix.multiply(pattern, p, z);
+            let curvature = dot(p, z);
+            if curvature.is_nan() || curvature <= 0.0 {
+                return (solves, false);
+            }
+            let alpha = now / curvature;
+            x.iter_mut().zip(&*p).for_each(|(x, p)| *x += alpha * p);
+            r.iter_mut().zip(&*z).for_each(|(r, z)| *r -= alpha * z);
+            before = now;
+        }
+        (most, false)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Turns the vectors of nodes that are free to move anywhere, forth (1) or back (−1).
+fn turn(pattern: &Pattern, rotations: &[Rotation], direction: f64, free: &mut [f64]) {
+    for &(node, first) in pattern.free_nodes() {
+        let (Some(r), Some([x, y])) = (rotations.get(node as usize), free.get_mut(first as usize..first as usize + 2))
+        else {
+            continue;
+        };
+        let s = direction * r.s;
+        (*x, *y) = (r.c * *x - s * *y, s * *x + r.c * *y);
+    }
+}
+
+/// The mean rotation of the elements around every node.
+fn nodal_rotations(system: &System, state: &State, rotations: &mut Vec<Rotation>) {
+    let (mesh, elements) = (system.mesh(), system.elements());
+    rotations.clear();
+    rotations.resize(mesh.nodes().len(), Rotation { c: 0.0, s: 0.0 });
+    let points = elements.points_per_element();
+    for (e, nodes) in mesh.elements().enumerate() {
+        let own = (points * e..points * (e + 1)).map(|point| state.rotations[elements.rotation_of(point)]);
+        let (c, s) = own.fold((0.0, 0.0), |(c, s), r| (c + r.c, s + r.s));
+        for &node in nodes {
+            let sum = &mut rotations[node as usize];
+            (sum.c, sum.s) = (sum.c + c, sum.s + s);
+        }
+    }
+    for r in rotations {
+        let length = (r.c * r.c + r.s * r.s).sqrt();
+        // Rotations that cancel have no mean.
+        *r = if length > 0.0 { Rotation { c: r.c / length, s: r.s / length } } else { Rotation::IDENTITY };
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::correction::Constant;
+use super::correction::Weights;
 use super::step::{Booking, Counts, Memory, Solves, StepError, combine, work};
 use crate::assembly::{Hand, Kinematics, Mass, Problem};
 use crate::element::{StrainRate, Tangent};
@@ -40,6 +40,10 @@ pub(super) struct Stage<'a> {
 const TERMS: usize = 3;
 /// Solves after which the iteration of a stage counts as failed: two to eight do.
 const MOST_SOLVES: u32 = 30;
+/// Relative accuracy of a correction that is the only one of its stage, over the error asked of the motion …
+const ACCURACY: f64 = 0.03;
+/// … and of one that others follow, whose residual says what is left.
+const ACCURACY_OF_ITERATIONS: f64 = 0.05;
 /// Rounding of K u over its size: residuals are not smaller.
 const ROUNDING: f64 = 4e-16;
 
@@ -59,6 +63,8 @@ pub(crate) struct StageSolver<'a> {
     pub method: MethodKind,
     pub kinematics: Kinematics,
     pub solves: Solves,
+    /// The error asked of a whole motion, as a fraction.
+    pub max_error: f64,
     /// The solver's, for integrators that must iterate.
     pub tolerance: f64,
     pub memory: &'a mut Memory,
@@ -92,10 +98,7 @@ impl StageSolver<'_> {
             if solves == most {
                 return Err(StepError::NotConverged(most));
             }
-            if let Some(tangent) = tangent {
-                self.factorize(stage, tangent, start, state)?;
-            }
-            self.correct(state)?;
+            self.correct(stage, tangent, start, state)?;
             self.follow(state);
         }
         Ok(())
@@ -119,12 +122,17 @@ impl StageSolver<'_> {
     }
 
     /// What the matrix depends on where it is constant: under linear theory, unless a hand pulls.
-    fn constant(&self, stage: &Stage<'_>) -> Option<Constant> {
+    fn constant(&self, stage: &Stage<'_>) -> Option<Weights> {
         let is_constant = self.kinematics == Kinematics::Linear && self.problem.hand().is_none();
-        is_constant.then_some(Constant {
+        is_constant.then(|| self.weights(stage))
+    }
+
+    /// The parts of a stage's matrix.
+    fn weights(&self, stage: &Stage<'_>) -> Weights {
+        Weights {
             inertia: stage.inertia + stage.damping * self.damping.mass * stage.rate,
             stiffness: stage.tangent.warped + stage.damping * self.damping.stiffness * stage.rate,
-        })
+        }
     }
 
     /// The residual force of a state, and a matrix where one is wanted.
@@ -255,20 +263,58 @@ impl StageSolver<'_> {
         timed(&mut self.timings.factorize, || corrector.factor.factorize(corrector.matrix.values()))
     }
 
-    /// u ← u + K⁻¹ r.
-    fn correct(&mut self, state: &mut State) -> Result<(), StepError> {
-        let Memory { corrector, forces, .. } = &mut *self.memory;
+    /// u ← u + K⁻¹ r, with a factor of K where a tangent says of which, else with the one there is.
+    fn correct(
+        &mut self,
+        stage: &Stage<'_>,
+        tangent: Option<Tangent>,
+        start: &State,
+        state: &mut State,
+    ) -> Result<(), StepError> {
         let pattern = self.problem.system().pattern();
-        self.counts.solves += 1;
-        timed(&mut self.timings.solve, || {
-            pattern.restrict(&forces.residual, &mut corrector.free);
-            corrector.factor.solve_in_place(&mut corrector.free);
-            if !corrector.free.iter().all(|v| v.is_finite()) {
-                return Err(StepError::NotFinite);
+        pattern.restrict(&self.memory.forces.residual, &mut self.memory.corrector.free);
+        if let Some(tangent) = tangent
+            && !self.correct_with_kept_factor(stage, state)
+        {
+            self.factorize(stage, tangent, start, state)?;
+            if self.method == MethodKind::Auto {
+                let weights = self.weights(stage);
+                self.memory.corrector.keep(weights, self.problem.system(), state);
             }
-            pattern.add_free(&corrector.free, 1.0, &mut state.displacement);
-            Ok(())
-        })
+            self.back_substitute();
+        } else if tangent.is_none() {
+            self.back_substitute();
+        }
+        let corrector = &self.memory.corrector;
+        if !corrector.free.iter().all(|v| v.is_finite()) {
+            return Err(StepError::NotFinite);
+        }
+        let pattern = self.problem.system().pattern();
+        timed(&mut self.timings.solve, || pattern.add_free(&corrector.free, 1.0, &mut state.displacement));
+        Ok(())
+    }
+
+    fn back_substitute(&mut self) {
+        let corrector = &mut self.memory.corrector;
+        self.counts.solves += 1;
+        timed(&mut self.timings.solve, || corrector.factor.solve_in_place(&mut corrector.free));
+    }
+
+    /// Whether `auto` has found the correction with the factor of an earlier matrix.
+    fn correct_with_kept_factor(&mut self, stage: &Stage<'_>, state: &State) -> bool {
+        if self.method != MethodKind::Auto || self.kinematics != Kinematics::Corotated {
+            return false;
+        }
+        let accuracy = match self.solves {
+            Solves::Times(_) => ACCURACY * self.max_error,
+            Solves::Tolerance(_) => ACCURACY_OF_ITERATIONS,
+        };
+        let (weights, system, corrector) = (self.weights(stage), self.problem.system(), &mut self.memory.corrector);
+        let (solves, done) = timed(&mut self.timings.solve, || {
+            corrector.correct_with_kept(weights, accuracy, system, state)
+        });
+        self.counts.solves += u64::from(solves);
+        done
     }
 
     /// The force f_ext − f_int that accelerates a body at the time of its state, but for that of a hand, into

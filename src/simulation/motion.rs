@@ -173,6 +173,7 @@ impl Motion {
                 method: scene.solver.method,
                 kinematics,
                 solves,
+                max_error: 0.01 * scene.solver.max_error_percent,
                 tolerance: scene.solver.tolerance,
                 memory: &mut self.memory,
                 counts: &mut self.counts,
@@ -215,7 +216,7 @@ impl Motion {
 
     /// A hand has taken hold, moved or let go.
     pub(super) fn pulled(&mut self) {
-        self.memory.corrector.forget();
+        self.memory.corrector.matrix_changes();
     }
 
     /// What the last stage has left unsolved, over the largest of its forces.
