@@ -81,7 +81,7 @@ impl Symbolic {
 /// See [`Factor::price`]: from the operations that the sparsity says, not from a clock.
 fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
     /// What small fronts take, and …
-    const LEAST: f64 = 2.5;
+    const LEAST: f64 = 1.5;
     /// … operations of a factorization in the time of one of a back substitution, which waits for memory: both fitted to
     /// beams of 40 to 33 000 unknowns.
     const FASTER: f64 = 4.0;

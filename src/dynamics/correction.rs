@@ -5,6 +5,8 @@
 //! the matrix only by how much elements have bent and stretched (the warp preconditioner of Courtecuisse, Allard,
 //! Duriez and Cotin 2010, *Asynchronous preconditioners for efficient solving of non-linear deformations*).
 
+use nalgebra::Vector2;
+
 use crate::assembly::{Matrix, Pattern, System};
 use crate::rotation::Rotation;
 use crate::solver::{Factor, SolverError};
@@ -35,7 +37,8 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    fn are_about(&self, other: &Self) -> bool {
+    /// Whether they are the same but for rounding.
+    pub fn are_about(&self, other: &Self) -> bool {
         let close = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs();
         close(self.inertia, other.inertia) && close(self.stiffness, other.stiffness)
     }
@@ -99,11 +102,19 @@ impl Corrector {
 
     /// Replaces the vector over the free unknowns, a residual force, by the correction it needs, to a relative accuracy
     /// in the norm of the matrix, with the factor that is kept. Gives the back substitutions taken, and whether that
-    /// was enough: if not, the vector is what it was.
+    /// was enough: if not, the vector is what it was. Where there is a guess of the correction, m, the accuracy is
+    /// relative to what that leaves.
     ///
     /// Preconditioned conjugate gradients (Hestenes and Stiefel 1952); √(r·P⁻¹r) stands for the norm of the error. The
     /// last preconditioned residual is added as it is: it is as good as another iteration where the factor is.
-    pub fn correct_with_kept(&mut self, weights: Weights, accuracy: f64, system: &System, state: &State) -> (u32, bool) {
+    pub fn correct_with_kept(
+        &mut self,
+        weights: Weights,
+        accuracy: f64,
+        guess: Option<&[Vector2<f64>]>,
+        system: &System,
+        state: &State,
+    ) -> (u32, bool) {
         if !self.serves(weights) {
             return (0, false);
         }
@@ -115,8 +126,15 @@ impl Corrector {
         }
         let [x, r, z, p] = &mut kept.vectors;
         [&mut *x, r, z, p].into_iter().for_each(|v| v.resize(free.len(), 0.0));
-        x.fill(0.0);
         r.copy_from_slice(free);
+        match guess {
+            Some(guess) => {
+                pattern.restrict(guess, x);
+                matrix.multiply(pattern, x, z);
+                r.iter_mut().zip(&*z).for_each(|(r, z)| *r -= z);
+            }
+            None => x.fill(0.0),
+        }
         // More than these and a new factor would have cost less.
         let most = factor.price().ceil() as u32;
         let (mut first, mut before) = (0.0, 0.0);

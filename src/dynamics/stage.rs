@@ -20,6 +20,8 @@ use crate::timings::{Timings, timed};
 pub(super) struct Stage<'a> {
     /// α, 1/s².
     pub inertia: f64,
+    /// Whether the stage is solved from where the step began, and not from where the body would fly.
+    pub from_start: bool,
     /// s, N.
     pub start_force: Option<&'a [Vector2<f64>]>,
     /// Whether forces are those between the start of the step and the end of the stage; else those at its end.
@@ -113,7 +115,9 @@ impl StageSolver<'_> {
     /// Which matrix of the elements the next solve needs; `None` where it has one that is constant.
     fn tangent(&self, stage: &Stage<'_>) -> Option<Tangent> {
         let constant = self.constant(stage);
-        if constant.is_some() && constant == self.memory.corrector.constant {
+        if let (Some(constant), Some(of)) = (constant, self.memory.corrector.constant)
+            && constant.are_about(&of)
+        {
             return None;
         }
         let Tangent { warped, geometric, definite } = stage.tangent;
@@ -152,13 +156,16 @@ impl StageSolver<'_> {
     /// The residual force of a state into the memory's forces, and the elements' matrix where one is wanted. Damping
     /// and what the hand pulls are in the residual only.
     fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
-        let Memory { corrector, forces, free_flight, scratch: [way, momentum], .. } = &mut *self.memory;
+        let Memory { corrector, forces, free_flight, mean, scratch: [way, momentum], .. } = &mut *self.memory;
         let (problem, system) = (&*self.problem, self.problem.system());
         let matrix = tangent.map(|tangent| (tangent, &mut corrector.matrix));
-        if stage.between {
-            problem.linearize_between([start, state], forces, matrix);
-        } else {
-            problem.linearize(state, forces, matrix);
+        match self.kinematics {
+            Kinematics::Corotated if stage.between => problem.linearize_between([start, state], forces, matrix),
+            Kinematics::Linear if stage.between => {
+                combine(&mut mean.displacement, [(0.5, &start.displacement), (0.5, &state.displacement)]);
+                problem.linearize(mean, forces, matrix);
+            }
+            _ => problem.linearize(state, forces, matrix),
         }
         if stage.between && self.kinematics == Kinematics::Corotated {
             problem.loads().force_between(system, [start, state], &mut forces.external);
@@ -309,10 +316,12 @@ impl StageSolver<'_> {
             Solves::Times(_) => ACCURACY * self.max_error,
             Solves::Tolerance(_) => ACCURACY_OF_ITERATIONS,
         };
-        let (weights, system, corrector) = (self.weights(stage), self.problem.system(), &mut self.memory.corrector);
-        let (solves, done) = timed(&mut self.timings.solve, || {
-            corrector.correct_with_kept(weights, accuracy, system, state)
-        });
+        let (weights, system) = (self.weights(stage), self.problem.system());
+        let Memory { corrector, free_flight, scratch: [flight, _], .. } = &mut *self.memory;
+        combine(flight, [(1.0, free_flight), (-1.0, &state.displacement)]);
+        let guess = stage.from_start.then_some(flight.as_slice());
+        let (solves, done) =
+            timed(&mut self.timings.solve, || corrector.correct_with_kept(weights, accuracy, guess, system, state));
         self.counts.solves += u64::from(solves);
         done
     }

@@ -19,8 +19,8 @@ pub struct DiscreteGradient {
 }
 
 impl DiscreteGradient {
-    /// Between the displacement gradients H and rotations of two states. The rotations need not be the polar factors:
-    /// with both the identity this is linear theory's.
+    /// Between the displacement gradients H and rotations of two states. Linear theory's is the stress of the mean
+    /// strain, and not this one with no rotation: the skew part of F̄ − R̄ vanishes only with the polar factors.
     #[must_use]
     #[inline]
     pub fn new([h0, h1]: [Matrix2<f64>; 2], [r0, r1]: [Rotation; 2]) -> Self {

@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
 use crate::dynamics::{
-    Booking, Counts, Inertia, IntegratorEntry, Ledger, Memory, Momentum, Solves, StageSolver, Step, StepError,
-    StopReason, critical_step,
+    Booking, Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionDecision, MotionReport,
+    Solves, StageSolver, Step, StepError, StopReason, critical_step,
 };
 use crate::scene::{MethodKind, Scene, Start};
 use crate::solver::SolverError;
@@ -28,6 +28,8 @@ pub struct Motion {
     start: State,
     middle: State,
     counts: Counts,
+    linear: LinearTheory,
+    report: MotionReport,
     ledger: Ledger,
     keeps_ledger: bool,
     stopped: Option<StopReason>,
@@ -46,6 +48,8 @@ impl Motion {
             start: state.clone(),
             middle: state.clone(),
             counts: Counts::default(),
+            linear: LinearTheory::default(),
+            report: MotionReport::default(),
             ledger: Ledger::default(),
             keeps_ledger: true,
             stopped: None,
@@ -61,9 +65,13 @@ impl Motion {
     /// Begins where the body is, with the velocity it has.
     pub(super) fn begin(&mut self, body: &mut Body) {
         let Body { scene, problem, state } = body;
+        self.linear.forget();
+        // What came before must not be seen in what comes.
+        self.memory.corrector.forget();
         problem.system().follow(state, self.kinematics(scene));
         problem.set_time(state.time);
         self.counts = Counts::default();
+        self.report = MotionReport::default();
         self.stopped = None;
         self.timings = Timings::default();
         self.last_step = Timings::default();
@@ -77,11 +85,13 @@ impl Motion {
         let mass_changes = scene.material.area_density() != before.material.area_density();
         if change == Change::Unknowns {
             self.memory = Memory::new(problem.system())?;
+            self.linear.forget_system();
         }
         if change == Change::Unknowns || mass_changes {
             self.mass = Mass::new(problem.system(), scene.material.area_density());
         }
         self.memory.corrector.forget();
+        self.linear.forget();
         let fixed_stay = problem.system().pattern().are_fixed_at_rest(&state.displacement);
         if !(fixed_stay && state.is_finite()) {
             start(scene, problem, &self.mass, state);
@@ -123,10 +133,11 @@ impl Motion {
         let end = body.state.time + body.scene.dynamics.time_step;
         self.last_step = Timings::default();
         let (mut halvings, mut left) = (0, 1_u32);
+        let factorizations = self.counts.factorizations;
         while left > 0 {
             self.start.copy_from(&body.state);
             let part = body.scene.dynamics.time_step / f64::from(1_u32 << halvings);
-            match self.try_step(body, part) {
+            match self.take_step(body, part) {
                 Ok(booking) => {
                     left -= 1;
                     if self.keeps_ledger {
@@ -150,6 +161,11 @@ impl Motion {
             // Sums of parts round; the steps' own times do not.
             body.state.time = end;
             self.counts.steps += 1;
+            self.report.note(match self.counts.factorizations > factorizations {
+                _ if self.linear.is_in_use() => MotionDecision::Linear,
+                true => MotionDecision::NewFactor,
+                false => MotionDecision::OldFactor,
+            });
             if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
                 self.stopped = Some(StopReason::RanAway(FARTHEST));
             }
@@ -157,8 +173,47 @@ impl Motion {
         self.timings.add(&self.last_step);
     }
 
-    fn try_step(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
-        let kinematics = self.kinematics(&body.scene);
+    /// A step of h; `auto` takes it under linear theory where that serves.
+    fn take_step(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
+        let asked = asked_error(&body.scene);
+        let decides = decides(&body.scene);
+        if decides && body.problem.hand().is_none() && self.linear.is_worth_a_try(&body.state, asked) {
+            let was_in_use = self.linear.is_in_use();
+            if !was_in_use {
+                self.see(body, Kinematics::Linear);
+            }
+            if let Ok(booking) = self.try_step(body, Kinematics::Linear, h)
+                && self.linear.accepts(&body.problem, &self.mass, [&self.start, &body.state], h, asked)?
+            {
+                if !was_in_use && self.keeps_ledger {
+                    self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+                }
+                return Ok(booking);
+            }
+            body.state.copy_from(&self.start);
+            self.linear.leave();
+            self.see(body, Kinematics::Corotated);
+            if was_in_use && self.keeps_ledger {
+                self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+            }
+        } else if self.linear.is_in_use() {
+            self.linear.leave();
+            self.see(body, Kinematics::Corotated);
+            if self.keeps_ledger {
+                self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+            }
+        }
+        self.try_step(body, self.kinematics(&body.scene), h)
+    }
+
+    /// Sees the start of a step under another theory.
+    fn see(&mut self, body: &mut Body, kinematics: Kinematics) {
+        body.problem.system().follow(&mut body.state, kinematics);
+        body.state.knows_net_force = false;
+        self.start.copy_from(&body.state);
+    }
+
+    fn try_step(&mut self, body: &mut Body, kinematics: Kinematics, h: f64) -> Result<Booking, StepError> {
         let Body { scene, problem, state } = body;
         let settings = &scene.dynamics;
         let solves = match settings.iterations {
@@ -173,7 +228,7 @@ impl Motion {
                 method: scene.solver.method,
                 kinematics,
                 solves,
-                max_error: 0.01 * scene.solver.max_error_percent,
+                max_error: asked_error(scene),
                 tolerance: scene.solver.tolerance,
                 memory: &mut self.memory,
                 counts: &mut self.counts,
@@ -197,7 +252,8 @@ impl Motion {
     }
 
     fn kinematics(&self, scene: &Scene) -> Kinematics {
-        if scene.solver.method == MethodKind::Linear { Kinematics::Linear } else { Kinematics::Corotated }
+        let linear = scene.solver.method == MethodKind::Linear || self.linear.is_in_use();
+        if linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
     /// Whether strains are those of linear theory.
@@ -259,6 +315,13 @@ impl Motion {
         self.counts
     }
 
+    /// What `auto` has decided since the start; `None` for other methods, and for integrators that solve nothing.
+    #[must_use]
+    pub fn auto_report(&self, scene: &Scene) -> Option<MotionReport> {
+        let Counts { solves, factorizations, .. } = self.counts;
+        decides(scene).then_some(MotionReport { solves, factorizations, ..self.report })
+    }
+
     /// The longest stable step about rest, s; `None` for an integrator that has no such limit.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
@@ -268,6 +331,16 @@ impl Motion {
 
 fn entry(scene: &Scene) -> &'static IntegratorEntry {
     scene.dynamics.integrator.entry()
+}
+
+/// Whether `auto` decides how steps are solved.
+fn decides(scene: &Scene) -> bool {
+    scene.solver.method == MethodKind::Auto && !entry(scene).is_explicit()
+}
+
+/// The error asked of a motion, as a fraction.
+fn asked_error(scene: &Scene) -> f64 {
+    0.01 * scene.solver.max_error_percent
 }
 
 fn inertia(scene: &Scene) -> Inertia {
