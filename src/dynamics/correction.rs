@@ -44,6 +44,16 @@ impl Weights {
     }
 }
 
+/// How exact a correction must be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Accuracy {
+    /// Of the norm of the error, to that of the whole correction.
+    pub relative: f64,
+    /// Whether what is left is seen in the residual of the state it leads to: then what steps with this factor have left
+    /// before may be trusted.
+    pub is_checked: bool,
+}
+
 /// What is known of the factor of an earlier matrix.
 #[derive(Debug, Default)]
 struct Kept {
@@ -53,11 +63,15 @@ struct Kept {
     then: Vec<Rotation>,
     /// … and since then.
     since: Vec<Rotation>,
-    /// Corrections with this factor, and back substitutions they took.
-    corrections: u32,
+    /// Stages that were solved with this factor, and the back substitutions they took: all, …
+    stages: u32,
     solves: u32,
-    /// Back substitutions of the last correction.
+    /// … the last one, …
     last: u32,
+    /// … and the present one until now.
+    present: u32,
+    /// What a step was last seen to leave of the squared norm of the error.
+    shrinks: f64,
     vectors: [Vec<f64>; 4],
 }
 
@@ -87,17 +101,30 @@ impl Corrector {
     pub fn keep(&mut self, weights: Weights, system: &System, state: &State) {
         let Kept { then, .. } = &mut self.kept;
         nodal_rotations(system, state, then);
-        (self.kept.weights, self.kept.corrections, self.kept.solves, self.kept.last) = (Some(weights), 1, 1, 1);
+        self.kept.weights = Some(weights);
+        (self.kept.stages, self.kept.solves, self.kept.last, self.kept.present) = (0, 0, 0, 1);
+        // A step with the factor of the very matrix leaves nothing.
+        self.kept.shrinks = 0.0;
+    }
+
+    /// A stage begins: what the one before has taken is known.
+    pub fn begin_stage(&mut self) {
+        let Kept { stages, solves, last, present, .. } = &mut self.kept;
+        if *present > 0 {
+            *stages += 1;
+            *solves += *present;
+            (*last, *present) = (*present, 0);
+        }
     }
 
     /// Whether the factor that is kept is worth another try for a matrix with these weights.
     ///
-    /// The price of a correction is least over the factor's life where it is given up once a correction takes more than
-    /// all have on average, its making included.
+    /// The price of a stage is least over the factor's life where it is given up once a stage takes more than all have
+    /// on average, its making included.
     fn serves(&self, weights: Weights) -> bool {
-        let Kept { weights: kept, corrections, solves, last, .. } = &self.kept;
+        let Kept { weights: kept, stages, solves, last, .. } = &self.kept;
         let price = self.factor.price() + f64::from(*solves);
-        kept.is_some_and(|kept| kept.are_about(&weights)) && f64::from(*last) * f64::from(*corrections) <= price
+        kept.is_some_and(|kept| kept.are_about(&weights)) && f64::from(*last) * f64::from(*stages) <= price
     }
 
     /// Replaces the vector over the free unknowns, a residual force, by the correction it needs, to a relative accuracy
@@ -110,7 +137,7 @@ impl Corrector {
     pub fn correct_with_kept(
         &mut self,
         weights: Weights,
-        accuracy: f64,
+        accuracy: Accuracy,
         guess: Option<&[Vector2<f64>]>,
         system: &System,
         state: &State,
@@ -150,12 +177,15 @@ impl Corrector {
             if solves == 1 {
                 first = now;
             }
-            // What this step leaves is less than the last one has left of the one before.
-            if now == 0.0 || (solves > 1 && now * now <= (accuracy * accuracy) * first * before) {
+            // What this step leaves is less of it than the step before has left of the one before that.
+            let shrinks = if solves > 1 { now / before } else { kept.shrinks };
+            if solves == 2 {
+                kept.shrinks = shrinks;
+            }
+            let is_known = solves > 1 || accuracy.is_checked;
+            if now == 0.0 || (is_known && now * shrinks <= accuracy.relative.powi(2) * first) {
                 free.iter_mut().zip(&*x).zip(&*z).for_each(|((free, x), z)| *free = x + z);
-                kept.corrections += 1;
-                kept.solves += solves;
-                kept.last = solves;
+                kept.present += solves;
                 return (solves, true);
             }
             if solves == 1 {

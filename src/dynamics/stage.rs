@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::correction::Weights;
+use super::correction::{Accuracy, Weights};
 use super::step::{Booking, Counts, Memory, Solves, StepError, combine, work};
 use crate::assembly::{Hand, Kinematics, Mass, Problem};
 use crate::element::{StrainRate, Tangent};
@@ -46,6 +46,8 @@ const MOST_SOLVES: u32 = 30;
 const ACCURACY: f64 = 0.03;
 /// … and of one that others follow, whose residual says what is left.
 const ACCURACY_OF_ITERATIONS: f64 = 0.05;
+/// A residual that has shrunk to less than this fraction needs no new matrix.
+const PROGRESS: f64 = 0.25;
 /// Rounding of K u over its size: residuals are not smaller.
 const ROUNDING: f64 = 4e-16;
 
@@ -84,12 +86,16 @@ impl StageSolver<'_> {
             Solves::Times(most) => (most, None),
             Solves::Tolerance(tolerance) => (MOST_SOLVES, Some(tolerance)),
         };
+        self.memory.corrector.begin_stage();
+        let mut before = f64::INFINITY;
         for solves in 0..=most {
             if solves == most && tolerance.is_none() {
                 break;
             }
             let tangent = self.tangent(stage);
-            let residual = self.assemble(stage, tangent, start, state);
+            // An iteration can do without the present matrix as long as the residual says that it gets on.
+            let old = solves > 0 && tolerance.is_some() && self.keeps_factors();
+            let residual = self.assemble(stage, tangent.filter(|_| !old), start, state);
             if !residual.norm.is_finite() {
                 return Err(StepError::NotFinite);
             }
@@ -100,7 +106,12 @@ impl StageSolver<'_> {
             if solves == most {
                 return Err(StepError::NotConverged(most));
             }
-            self.correct(stage, tangent, start, state)?;
+            let gets_on = old && residual.norm <= PROGRESS * before;
+            if old && !gets_on {
+                self.assemble(stage, tangent, start, state);
+            }
+            before = residual.norm;
+            self.correct(stage, tangent, gets_on, start, state)?;
             self.follow(state);
         }
         Ok(())
@@ -270,19 +281,29 @@ impl StageSolver<'_> {
         timed(&mut self.timings.factorize, || corrector.factor.factorize(corrector.matrix.values()))
     }
 
-    /// u ← u + K⁻¹ r, with a factor of K where a tangent says of which, else with the one there is.
+    /// Whether `auto` looks for corrections with factors of earlier matrices.
+    fn keeps_factors(&self) -> bool {
+        self.method == MethodKind::Auto && self.kinematics == Kinematics::Corotated
+    }
+
+    /// u ← u + K⁻¹ r, with a factor of K where a tangent says of which, else with the one there is. K is at hand, or that
+    /// of an earlier solve of the same stage.
     fn correct(
         &mut self,
         stage: &Stage<'_>,
         tangent: Option<Tangent>,
+        earlier: bool,
         start: &State,
         state: &mut State,
     ) -> Result<(), StepError> {
         let pattern = self.problem.system().pattern();
         pattern.restrict(&self.memory.forces.residual, &mut self.memory.corrector.free);
         if let Some(tangent) = tangent
-            && !self.correct_with_kept_factor(stage, state)
+            && !self.correct_with_kept_factor(stage, earlier, state)
         {
+            if earlier {
+                self.assemble(stage, Some(tangent), start, state);
+            }
             self.factorize(stage, tangent, start, state)?;
             if self.method == MethodKind::Auto {
                 let weights = self.weights(stage);
@@ -308,14 +329,15 @@ impl StageSolver<'_> {
     }
 
     /// Whether `auto` has found the correction with the factor of an earlier matrix.
-    fn correct_with_kept_factor(&mut self, stage: &Stage<'_>, state: &State) -> bool {
-        if self.method != MethodKind::Auto || self.kinematics != Kinematics::Corotated {
+    fn correct_with_kept_factor(&mut self, stage: &Stage<'_>, earlier: bool, state: &State) -> bool {
+        if !self.keeps_factors() {
             return false;
         }
         let accuracy = match self.solves {
             Solves::Times(_) => ACCURACY * self.max_error,
             Solves::Tolerance(_) => ACCURACY_OF_ITERATIONS,
         };
+        let accuracy = Accuracy { relative: accuracy, is_checked: earlier };
         let (weights, system) = (self.weights(stage), self.problem.system());
         let Memory { corrector, free_flight, scratch: [flight, _], .. } = &mut *self.memory;
         combine(flight, [(1.0, free_flight), (-1.0, &state.displacement)]);
