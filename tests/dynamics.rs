@@ -6,7 +6,7 @@ mod common;
 use std::f64::consts::TAU;
 
 use common::motion::{beam, drift, first_mode, momentum, run, with};
-use common::{ids_of, scene};
+use common::{ids_of, scene, solve_json, stdout, warpbeam};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::assembly::Mass;
 use warpbeam::dynamics::{MotionDecision, MotionReport, lowest_frequency};
@@ -454,8 +454,11 @@ fn auto_sees_a_column_buckle() {
 /// The same scene gives bitwise the same motion, whatever was kept before: what `auto` decides depends on no clock.
 #[test]
 fn auto_is_reproduced_to_the_last_bit() {
-    for (id, kind) in [("flick", TR_BDF2), ("swing", ENERGY_MOMENTUM), ("sway", EULER)] {
-        let scene = with(id, kind, 1.0 / 120.0, 1, 0.5).with_method(MethodKind::Auto);
+    // The smaller load is left to linear theory until that may have lost the phase.
+    for (id, kind, load) in [("flick", TR_BDF2, 1.0), ("swing", ENERGY_MOMENTUM, 1.0), ("swing", TR_BDF2, 2e-3)] {
+        let mut scene =
+            with(id, kind, 1.0 / 120.0, 1, if load < 1.0 { 8.0 } else { 0.5 }).with_method(MethodKind::Auto);
+        scene.scale_loads(load);
         let (mut a, mut b) = (Simulation::new(&scene).unwrap(), Simulation::new(&scene).unwrap());
         b.keep_ledger(false);
         a.solve();
@@ -513,6 +516,19 @@ fn auto_follows_a_hand_and_edits() {
         assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{ledger:?}");
         assert!(report(auto).linear_steps >= 20, "{:?}", report(auto));
     }
+}
+
+/// What is decided is shown, to programs and to people.
+#[test]
+fn auto_says_what_it_did() {
+    let args = ["swing", "--set", "solver.method=\"auto\"", "--set", "dynamics.duration=0.5"];
+    let json = solve_json(&args);
+    let number = |key: &str| json["auto"][key].as_u64().unwrap();
+    let steps = ["linear_steps", "old_factor_steps", "new_factor_steps"].map(number);
+    assert_eq!(steps.iter().sum::<u64>(), json["steps"].as_u64().unwrap(), "{json}");
+    assert!(number("factorizations") < 30 && number("solves") >= 60, "{json}");
+    let text = stdout(&warpbeam(&[&["solve"], &args[..]].concat()));
+    assert!(text.contains("with an old factor"), "{text}");
 }
 
 /// Whatever the stiffness and the step.
