@@ -224,6 +224,7 @@ impl Method for Auto {
                 refused: old.refused,
                 accepted: old.accepted,
                 linear: old.linear,
+                step: old.step,
                 ..Self::default()
             },
         };
