@@ -29,7 +29,7 @@ fn harness_of(id: &str) -> Harness<'static, Lab> {
     Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
         |ui, lab: &mut Lab| {
             lab.advance(ui.input(|i| i.time));
-            lab.ui(ui, None);
+            lab.ui(ui);
         },
         lab,
     )

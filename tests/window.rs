@@ -252,7 +252,7 @@ fn force_slider() -> egui::Rect {
     let lab = Lab::new(Source { name: "article".to_owned(), assignments: Vec::new() }, scene, simulation);
     let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
         |ui, lab: &mut Lab| {
-            lab.ui(ui, None);
+            lab.ui(ui);
         },
         lab,
     );

@@ -39,6 +39,8 @@ pub(super) enum Action {
     ToggleTheme,
     /// Save a picture.
     Screenshot,
+    /// Record the scene, or end the recording.
+    Record,
     /// Copy the scene.
     Copy,
     /// Start the study, or call it off.

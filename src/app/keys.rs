@@ -37,6 +37,7 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::P, "Panel on or off", || Action::Toggle(Toggle::Panel)),
     key(Key::T, "Light or dark", || Action::ToggleTheme),
     key(Key::S, "Save a screenshot (PNG) here", || Action::Screenshot),
+    key(Key::V, "Record the scene as a GIF here; again: stop", || Action::Record),
     key(Key::C, "Copy the scene as TOML, with its command", || Action::Copy),
     key(Key::F1, "This list", || Action::Toggle(Toggle::Help)),
 ];

@@ -2,18 +2,20 @@
 
 use std::time::Duration;
 
-use egui::{CentralPanel, Panel, Rect, Sense, TextureId, Ui};
+use egui::{CentralPanel, Color32, Panel, Rect, Sense, Ui};
 use nalgebra::Vector2;
 
+use super::ThemeChoice;
 use super::action::{Action, Drawer, MOST_ITERATIONS, ViewOptions};
 use super::budget::{Budget, question};
 use super::drawing::Drawing;
-use super::finder::Finder;
+use super::finder::{Finder, LISTEN};
 use super::motion_plot;
 use super::overlay::{self, Overlay};
 use super::panel::{self, PanelInput, PanelState, status_words};
 use super::playback::Playback;
 use super::pointer::{self, Look, Reach};
+use super::recorder::Recorder;
 use super::{help, keys, plot};
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
@@ -71,6 +73,7 @@ pub struct Lab {
     playback: Playback,
     /// Of a body in motion: all that it has swept, m.
     swept: Option<[Vector2<f64>; 2]>,
+    recorder: Option<Recorder>,
     /// Iterations a displayed frame.
     iterations: u32,
     /// Time of the last iterations made for one displayed frame.
@@ -98,6 +101,7 @@ struct Shape {
     field: Option<Field>,
     line_color: [u8; 4],
     background: [u8; 3],
+    surround: [u8; 3],
     absent_color: [u8; 3],
 }
 
@@ -127,6 +131,7 @@ impl Lab {
             frequency: Finder::new(natural_frequency),
             playback: Playback::default(),
             swept: None,
+            recorder: None,
             iterations: 1,
             timings: Timings::default(),
         };
@@ -317,6 +322,7 @@ impl Lab {
             lines: if self.view.wireframe { &self.drawing.lines } else { &[] },
             line_color: shape.line_color,
             background: shape.background,
+            surround: shape.surround,
             absent_color: shape.absent_color,
         }
     }
@@ -337,6 +343,9 @@ impl Lab {
         shape.field = Some(self.view.field);
         shape.range = self.view.fixed_range.unwrap_or(grown);
         shape.background = if visuals.dark_mode { [22, 24, 28] } else { [244, 245, 247] };
+        // What is behind panels: these fill nothing themselves, which is dear where a processor draws.
+        let [r, g, b, _] = visuals.panel_fill.to_array();
+        shape.surround = [r, g, b];
         shape.absent_color = if visuals.dark_mode { [90, 90, 96] } else { [170, 170, 176] };
         shape.line_color = if visuals.dark_mode { [0, 0, 0, 110] } else { [0, 0, 0, 90] };
     }
@@ -348,9 +357,8 @@ impl Lab {
         });
     }
 
-    /// Shows everything, and does what was asked for. `body` is the texture that the body is drawn into after this, if
-    /// there is one.
-    pub fn ui(&mut self, ui: &mut Ui, body: Option<TextureId>) -> Vec<Request> {
+    /// Shows everything but the body, which is drawn under it, and does what was asked for.
+    pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
         Self::style(ui.ctx());
         let mut actions = Vec::new();
         self.find_out(ui.ctx());
@@ -367,7 +375,7 @@ impl Lab {
                 timings: &self.timings,
                 adapter: &self.adapter,
             };
-            let panel = Panel::left("panel").exact_size(PANEL_WIDTH).resizable(false);
+            let panel = Panel::left("panel").exact_size(PANEL_WIDTH).resizable(false).frame(unfilled(ui));
             panel.show(ui, |ui| panel::show(ui, &input, &mut self.panel, &mut self.view, &mut actions));
         }
         actions.extend(keys::actions(ui.ctx(), self.view.help));
@@ -376,7 +384,7 @@ impl Lab {
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
-        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, body));
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui));
         help::show(ui.ctx(), &mut self.view.help);
         if self.iterates() {
             ui.ctx().request_repaint();
@@ -404,7 +412,7 @@ impl Lab {
 
     fn drawer(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let Some(drawer) = self.view.drawer else { return };
-        let panel = Panel::bottom("drawer").exact_size(DRAWER_HEIGHT).resizable(false);
+        let panel = Panel::bottom("drawer").exact_size(DRAWER_HEIGHT).resizable(false).frame(unfilled(ui));
         panel.show(ui, |ui| match drawer {
             Drawer::Curve => plot::show(ui, self.curve.get(), !self.curve.is_open()),
             Drawer::Motion => {
@@ -423,7 +431,7 @@ impl Lab {
         }
     }
 
-    fn body_view(&mut self, ui: &mut Ui, body: Option<TextureId>) {
+    fn body_view(&mut self, ui: &mut Ui) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         self.view_rect = rect;
         // What is pressed is what was seen: the last picture.
@@ -437,10 +445,6 @@ impl Lab {
             Look::Fit => self.camera = None,
         }
         let painter = ui.painter_at(rect);
-        if let Some(texture) = body {
-            let uv = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-            painter.image(texture, rect, uv, egui::Color32::WHITE);
-        }
         let (words, bad) = status_words(&self.simulation, true);
         let overlay = Overlay {
             scene: &self.scene,
@@ -457,6 +461,7 @@ impl Lab {
             warning: bad.then_some(&words),
         };
         overlay::paint(&painter, rect, &overlay, ui.visuals());
+        self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
     }
 
@@ -536,6 +541,7 @@ impl Lab {
                 ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
             }
             Action::Screenshot => requests.push(Request::Screenshot),
+            Action::Record => self.record(ctx),
             Action::Copy => self.copy(ctx),
             Action::Measure(true) => self.budget.measure(&self.scene),
             Action::Measure(false) => self.budget.cancel(),
@@ -625,6 +631,32 @@ impl Lab {
         }
     }
 
+    /// Records the scene beside the window, or ends the recording that is made.
+    fn record(&mut self, ctx: &egui::Context) {
+        if let Some(recorder) = &self.recorder {
+            return recorder.stop();
+        }
+        let theme = if ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
+        match Recorder::start(self.source.clone(), self.scene.clone(), theme) {
+            Ok(recorder) => self.recorder = Some(recorder),
+            Err(reason) => self.say(ctx, format!("No recording: {reason}")),
+        }
+    }
+
+    /// Shows how far the recording is.
+    fn paint_recording(&mut self, ui: &Ui, painter: &egui::Painter, rect: Rect) {
+        let Some(recorder) = &mut self.recorder else { return };
+        if let Some(words) = recorder.listen() {
+            self.recorder = None;
+            return self.say(ui.ctx(), words);
+        }
+        let words = format!("{}: {:.0} % (V stops it)", recorder.words, 100.0 * recorder.fraction);
+        let place = rect.center_bottom() - egui::vec2(0.0, 48.0);
+        let color = ui.visuals().strong_text_color();
+        overlay::boxed_text(painter, place, egui::Align2::CENTER_BOTTOM, &words, ui.visuals(), color, 400.0);
+        ui.ctx().request_repaint_after(LISTEN);
+    }
+
     /// Shows a message for a while.
     pub fn say(&mut self, ctx: &egui::Context, message: String) {
         self.toast = Some((message, ctx.input(|i| i.time) + TOAST.as_secs_f64()));
@@ -658,4 +690,9 @@ fn natural_frequency(scene: &Scene) -> Option<f64> {
     let problem = simulation.problem();
     let mass = Mass::new(problem.system(), scene.material.area_density());
     Some(lowest_frequency(problem, &mass)? / std::f64::consts::TAU)
+}
+
+/// A panel's frame without its background: the body's pass has filled that.
+fn unfilled(ui: &Ui) -> egui::Frame {
+    egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
 }

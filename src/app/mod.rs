@@ -1,6 +1,8 @@
 //! The window and its pictures. [`lab::Lab`] is what is shown: a scene, its simulation and how to look at it. The
 //! window, the offscreen shot and the tests of the panel all show the same lab through [`lab::Lab::ui`].
 
+use std::path::PathBuf;
+
 use thiserror::Error;
 
 use crate::render::RenderError;
@@ -24,14 +26,28 @@ mod playback;
 mod plot;
 mod pointer;
 mod record;
+mod recorder;
 mod shot;
 mod stage;
 mod window;
 
 pub use lab::{Lab, PANEL_WIDTH};
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
-pub use shot::{MAX_SHOT_SIDE, ShotOptions, picture, shot};
+pub use shot::{Canvas, MAX_SHOT_SIDE, ShotOptions, picture, shot};
 pub use window::{Display, NoDisplay, run};
+
+/// No number is free for a file's name.
+#[derive(Debug, Error)]
+#[error("warpbeam-001.{extension} to warpbeam-999.{extension} all exist")]
+struct NoName {
+    extension: &'static str,
+}
+
+/// The first of `warpbeam-001.png`, … that does not exist.
+fn free_name(extension: &'static str) -> Result<PathBuf, NoName> {
+    let mut names = (1..1000).map(|i| PathBuf::from(format!("warpbeam-{i:03}.{extension}")));
+    names.find(|path| !path.exists()).ok_or(NoName { extension })
+}
 
 /// Why the window closed.
 #[derive(Debug, Error)]

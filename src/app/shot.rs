@@ -89,7 +89,7 @@ pub fn picture(
 }
 
 /// What pictures of one size are drawn with, one after the other.
-pub(super) struct Canvas<'a> {
+pub struct Canvas<'a> {
     gpu: &'a Gpu,
     ctx: egui::Context,
     stage: Stage,
@@ -100,21 +100,18 @@ pub(super) struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
+    /// One of this many pixels.
+    ///
     /// # Errors
     /// [`RenderError::TooLarge`].
-    pub(super) fn new(
-        gpu: &'a Gpu,
-        size: [u32; 2],
-        pixels_per_point: f32,
-        theme: egui::Theme,
-    ) -> Result<Self, RenderError> {
+    pub fn new(gpu: &'a Gpu, size: [u32; 2], pixels_per_point: f32, theme: egui::Theme) -> Result<Self, RenderError> {
         if size.iter().any(|&side| side > gpu.max_side()) {
             return Err(RenderError::TooLarge { size, limit: gpu.max_side() });
         }
         let ctx = egui::Context::default();
         ctx.set_theme(theme);
         let stage = Stage::new(gpu, FORMAT);
-        let target = gpu.target("shot", size, 1, wgpu::TextureUsages::COPY_SRC);
+        let target = gpu.target("shot", FORMAT, size, 1, wgpu::TextureUsages::COPY_SRC);
         let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
         Ok(Self { gpu, ctx, stage, target, screen, passes: 0 })
     }
@@ -124,6 +121,21 @@ impl<'a> Canvas<'a> {
     /// # Errors
     /// [`RenderError::ReadBack`].
     pub(super) fn draw(&mut self, lab: &mut Lab, over: &mut dyn FnMut(&egui::Context)) -> Result<Picture, RenderError> {
+        self.submit(lab, over);
+        read_texture(self.gpu, &self.target)
+    }
+
+    /// Draws the lab as it stands and waits for the end of it, without looking: the price of a frame.
+    ///
+    /// # Errors
+    /// [`RenderError::ReadBack`].
+    pub fn paint(&mut self, lab: &mut Lab) -> Result<(), RenderError> {
+        self.submit(lab, &mut |_| {});
+        let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        done.map(|_| ()).map_err(|error| RenderError::ReadBack(error.to_string()))
+    }
+
+    fn submit(&mut self, lab: &mut Lab, over: &mut dyn FnMut(&egui::Context)) {
         /// egui needs a pass to learn sizes, another to use them, and one more to come to rest.
         const FIRST_PASSES: u32 = 3;
         let Self { gpu, ctx, stage, target, screen, passes } = self;
@@ -142,7 +154,7 @@ impl<'a> Canvas<'a> {
             };
             input.viewports.entry(egui::ViewportId::ROOT).or_default().native_pixels_per_point = Some(pixels_per_point);
             let mut output = ctx.run_ui(input, |ui| {
-                lab.ui(ui, Some(stage.body_texture()));
+                lab.ui(ui);
                 over(ui.ctx());
             });
             stage.set_textures(gpu, &mut output.textures_delta);
@@ -156,6 +168,5 @@ impl<'a> Canvas<'a> {
         for mut textures in unused {
             stage.free_textures(&mut textures);
         }
-        read_texture(gpu, target)
     }
 }

@@ -1,30 +1,22 @@
 //! The one way a lab gets onto a texture: the body's pass, then egui over it. Window and shot both draw through here.
 
-use egui::{ClippedPrimitive, TextureId, TexturesDelta};
+use egui::{ClippedPrimitive, TexturesDelta};
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 
 use super::lab::Lab;
-use crate::render::{BodyRenderer, Gpu};
+use crate::render::{BodyRenderer, Gpu, Viewport};
 
 /// Draws labs with one device into targets of one format.
 pub(super) struct Stage {
     egui: egui_wgpu::Renderer,
     body: BodyRenderer,
-    body_texture: TextureId,
 }
 
 impl Stage {
     pub(super) fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         // Predictable: the same picture in the window, in a shot, and on another machine.
-        let mut egui = egui_wgpu::Renderer::new(&gpu.device, format, RendererOptions::PREDICTABLE);
-        let body = BodyRenderer::new(gpu);
-        let body_texture = egui.register_native_texture(&gpu.device, body.texture(), wgpu::FilterMode::Nearest);
-        Self { egui, body, body_texture }
-    }
-
-    /// The texture the body is drawn into, for [`Lab::ui`].
-    pub(super) fn body_texture(&self) -> TextureId {
-        self.body_texture
+        let egui = egui_wgpu::Renderer::new(&gpu.device, format, RendererOptions::PREDICTABLE);
+        Self { egui, body: BodyRenderer::new(gpu, format) }
     }
 
     /// Uploads what egui changed of its textures.
@@ -52,18 +44,14 @@ impl Stage {
         primitives: &[ClippedPrimitive],
         lab: &Lab,
     ) {
-        let pixels_per_point = f64::from(screen.pixels_per_point);
-        let view = lab.view_rect().size() * screen.pixels_per_point;
-        if self.body.resize(gpu, [view.x.round() as u32, view.y.round() as u32]) {
-            self.egui.update_egui_texture_from_wgpu_texture(
-                &gpu.device,
-                self.body.texture(),
-                wgpu::FilterMode::Nearest,
-                self.body_texture,
-            );
-        }
+        let ScreenDescriptor { size_in_pixels, pixels_per_point } = *screen;
+        let view = lab.view_rect() * pixels_per_point;
+        let [corner, end] = [view.min, view.max].map(|p| [p.x, p.y].map(|v| v.round().max(0.0) as u32));
+        let viewport = Viewport { corner, size: [0, 1].map(|axis| end[axis].saturating_sub(corner[axis])) };
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.body.draw(gpu, &mut encoder, &lab.frame(), &lab.camera(), pixels_per_point);
+        let camera = lab.camera();
+        let eye = (&camera, f64::from(pixels_per_point));
+        self.body.draw(gpu, &mut encoder, (target, size_in_pixels), viewport, &lab.frame(), eye);
         let callbacks = self.egui.update_buffers(&gpu.device, &gpu.queue, &mut encoder, primitives, screen);
         let mut pass = encoder
             .begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -72,10 +60,7 @@ impl Stage {
                     view: target,
                     depth_slice: None,
                     resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
                 })],
                 ..Default::default()
             })

@@ -1,6 +1,5 @@
 //! The window: winit events in, frames out. At rest nothing is drawn.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -13,10 +12,10 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
-use super::AppError;
 use super::lab::{Lab, Request};
 use super::shot::picture;
 use super::stage::Stage;
+use super::{AppError, NoName, free_name};
 use crate::render::{Gpu, RenderError};
 use crate::scene::{Scene, Source};
 use crate::simulation::Simulation;
@@ -206,8 +205,7 @@ impl App {
         self.lab.advance(self.start.elapsed().as_secs_f64());
         let input = open.input.take_egui_input(&open.window);
         let mut requests = Vec::new();
-        let body = open.stage.body_texture();
-        let mut output = self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui, Some(body))));
+        let mut output = self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui)));
         open.input.handle_platform_output_with_event_loop(
             &open.window,
             event_loop,
@@ -246,7 +244,7 @@ impl App {
     fn screenshot(&mut self, pixels_per_point: f32) {
         let Some(open) = &self.open else { return };
         let size = [open.configuration.width, open.configuration.height];
-        let saved = free_name().and_then(|path| {
+        let saved = free_name("png").map_err(ScreenshotError::from).and_then(|path| {
             let picture = picture(&open.gpu, &mut self.lab, size, pixels_per_point, self.ctx.theme())?;
             picture.write_png(&path).map_err(RenderError::from)?;
             Ok(path)
@@ -270,18 +268,10 @@ impl App {
 /// Why there is no screenshot.
 #[derive(Debug, Error)]
 enum ScreenshotError {
-    #[error("warpbeam-001.png to warpbeam-999.png all exist")]
-    NoName,
+    #[error(transparent)]
+    NoName(#[from] NoName),
     #[error(transparent)]
     Render(#[from] RenderError),
-}
-
-/// The first of `warpbeam-001.png`, … that does not exist.
-fn free_name() -> Result<PathBuf, ScreenshotError> {
-    (1..1000)
-        .map(|i| PathBuf::from(format!("warpbeam-{i:03}.png")))
-        .find(|path| !path.exists())
-        .ok_or(ScreenshotError::NoName)
 }
 
 impl ApplicationHandler for App {

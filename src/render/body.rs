@@ -1,9 +1,9 @@
-//! The body's pass: coloured triangles and the wireframe, multisampled into a texture.
+//! The body's pass: coloured triangles and the wireframe, multisampled, straight into the frame.
 
 use bytemuck::{Pod, Zeroable};
 use nalgebra::Vector2;
 
-use super::{Camera, FORMAT, Gpu, colormap};
+use super::{Camera, Gpu, colormap};
 
 /// What is drawn of a body.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +24,25 @@ pub struct Frame<'a> {
     pub line_color: [u8; 4],
     /// What is behind the body, gamma space.
     pub background: [u8; 3],
+    /// What is beside the view, gamma space.
+    pub surround: [u8; 3],
+}
+
+/// A rectangle of a target, pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Viewport {
+    /// Left and top.
+    pub corner: [u32; 2],
+    /// Width and height.
+    pub size: [u32; 2],
+}
+
+impl Viewport {
+    /// The part of it that is in a target of this size.
+    fn within(self, target: [u32; 2]) -> Self {
+        let corner = [0, 1].map(|axis| self.corner[axis].min(target[axis]));
+        Self { corner, size: [0, 1].map(|axis| self.size[axis].min(target[axis] - corner[axis])) }
+    }
 }
 
 /// Four samples are what every WebGPU adapter has.
@@ -43,7 +62,7 @@ struct CameraUniform {
     padding: [f32; 2],
 }
 
-/// Draws bodies into a texture of its own.
+/// Draws bodies into targets of one format.
 #[derive(Debug)]
 pub struct BodyRenderer {
     triangles: wgpu::RenderPipeline,
@@ -52,15 +71,16 @@ pub struct BodyRenderer {
     bind_group: wgpu::BindGroup,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
+    format: wgpu::TextureFormat,
     multisampled: wgpu::TextureView,
-    resolved: wgpu::TextureView,
+    /// Of the target, pixels.
     size: [u32; 2],
 }
 
 impl BodyRenderer {
-    /// Pipelines and a 1×1 target; [`Self::resize`] gives it its size.
+    /// Pipelines for targets of this format.
     #[must_use]
-    pub fn new(gpu: &Gpu) -> Self {
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("body"),
@@ -117,7 +137,7 @@ impl BodyRenderer {
                     entry_point: Some("fragment"),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     targets: &[Some(wgpu::ColorTargetState {
-                        format: FORMAT,
+                        format,
                         blend: Some(wgpu::BlendState::ALPHA_BLENDING),
                         write_mask: wgpu::ColorWrites::ALL,
                     })],
@@ -126,7 +146,6 @@ impl BodyRenderer {
                 cache: None,
             })
         };
-        let [multisampled, resolved] = Self::targets(gpu, [1, 1]);
         Self {
             triangles: pipeline(wgpu::PrimitiveTopology::TriangleList),
             lines: pipeline(wgpu::PrimitiveTopology::LineList),
@@ -134,18 +153,15 @@ impl BodyRenderer {
             bind_group,
             vertices: Self::vertex_buffer(gpu, 1024),
             scratch: Vec::new(),
-            multisampled,
-            resolved,
+            format,
+            multisampled: Self::multisampled(gpu, format, [1, 1]),
             size: [1, 1],
         }
     }
 
-    fn targets(gpu: &Gpu, size: [u32; 2]) -> [wgpu::TextureView; 2] {
-        let view = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        [
-            view(gpu.target("body, multisampled", size, SAMPLES, wgpu::TextureUsages::empty())),
-            view(gpu.target("body", size, 1, wgpu::TextureUsages::TEXTURE_BINDING)),
-        ]
+    fn multisampled(gpu: &Gpu, format: wgpu::TextureFormat, size: [u32; 2]) -> wgpu::TextureView {
+        let texture = gpu.target("body, multisampled", format, size, SAMPLES, wgpu::TextureUsages::empty());
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
     fn vertex_buffer(gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
@@ -157,49 +173,41 @@ impl BodyRenderer {
         })
     }
 
-    /// Gives the target this size in pixels, within what the device can; says whether it is a new texture.
-    pub fn resize(&mut self, gpu: &Gpu, size: [u32; 2]) -> bool {
-        let size = size.map(|side| side.clamp(1, gpu.max_side()));
-        if size == self.size {
-            return false;
-        }
-        [self.multisampled, self.resolved] = Self::targets(gpu, size);
-        self.size = size;
-        true
-    }
-
-    /// The texture drawn into.
-    #[must_use]
-    pub fn texture(&self) -> &wgpu::TextureView {
-        &self.resolved
-    }
-
-    /// Draws `frame` as `camera` sees it, with this many pixels a point.
+    /// Draws `frame` as `camera` sees it, with this many pixels a point, into a part of a target of this size (pixels),
+    /// all of which it fills.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
+        (target, size): (&wgpu::TextureView, [u32; 2]),
+        viewport: Viewport,
         frame: &Frame<'_>,
-        camera: &Camera,
-        pixels_per_point: f64,
+        (camera, pixels_per_point): (&Camera, f64),
     ) {
-        let triangle_vertices = self.fill_vertices(frame, camera);
+        if size != self.size {
+            self.multisampled = Self::multisampled(gpu, self.format, size);
+            self.size = size;
+        }
+        let viewport = viewport.within(size);
+        let pixels_per_metre = camera.scale * pixels_per_point;
+        let triangle_vertices =
+            self.fill_vertices(frame, camera, viewport.size.map(|s| f64::from(s) / pixels_per_metre));
         let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
         if self.vertices.size() < bytes.len() as u64 {
             self.vertices = Self::vertex_buffer(gpu, (bytes.len() as u64).next_power_of_two());
         }
         gpu.queue.write_buffer(&self.vertices, 0, bytes);
-        let clip_per_metre = self.size.map(|side| (2.0 * camera.scale * pixels_per_point / f64::from(side)) as f32);
+        let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side.max(1))) as f32);
         let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
         gpu.queue.write_buffer(&self.camera, 0, bytemuck::bytes_of(&uniform));
 
-        let [r, g, b] = frame.background.map(|c| f64::from(c) / 255.0);
+        let [r, g, b] = frame.surround.map(|c| f64::from(c) / 255.0);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("body"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: &self.multisampled,
                 depth_slice: None,
-                resolve_target: Some(&self.resolved),
+                resolve_target: Some(target),
                 ops: wgpu::Operations {
                     load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
                     store: wgpu::StoreOp::Discard,
@@ -207,6 +215,12 @@ impl BodyRenderer {
             })],
             ..Default::default()
         });
+        let Viewport { corner: [x, y], size: [width, height] } = viewport;
+        if width == 0 || height == 0 {
+            return;
+        }
+        pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
+        pass.set_scissor_rect(x, y, width, height);
         pass.set_bind_group(0, &self.bind_group, &[]);
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_pipeline(&self.triangles);
@@ -215,14 +229,19 @@ impl BodyRenderer {
         pass.draw(triangle_vertices..self.scratch.len() as u32, 0..1);
     }
 
-    /// Triangle vertices, then line vertices; returns how many of the former.
-    fn fill_vertices(&mut self, frame: &Frame<'_>, camera: &Camera) -> u32 {
+    /// Triangle vertices, the background's before the body's, then line vertices; returns how many of the former.
+    /// `view` is what is seen, m.
+    fn fill_vertices(&mut self, frame: &Frame<'_>, camera: &Camera, view: [f64; 2]) -> u32 {
         // Relative to the camera before it becomes f32: zoomed in far from the origin, digits matter.
         let position = |node: u32| {
             let d = frame.positions.get(node as usize).copied().unwrap_or_default() - camera.center;
             [d.x as f32, d.y as f32]
         };
         self.scratch.clear();
+        let [r, g, b] = frame.background;
+        let [x, y] = view.map(|side| (0.5 * side) as f32);
+        let corners = [[-x, -y], [x, -y], [x, y], [-x, -y], [x, y], [-x, y]];
+        self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255] }));
         for (triangle, &value) in frame.triangles.iter().zip(frame.values) {
             let color = |value| colormap::color(colormap::position(value, frame.range));
             let [r, g, b] = value.map_or(frame.absent_color, color);

@@ -1,4 +1,4 @@
-//! Drawing with wgpu: the body's own multisampled pass, the camera, the colour map, offscreen pictures.
+//! Drawing with wgpu: the body's multisampled pass, the camera, the colour map, offscreen pictures.
 //!
 //! The renderer borrows a [`Frame`] (positions, triangles, a value a triangle), never the simulation. The window and the
 //! offscreen picture go through the same calls.
@@ -12,7 +12,7 @@ mod camera;
 pub mod colormap;
 mod offscreen;
 
-pub use body::{BodyRenderer, Frame};
+pub use body::{BodyRenderer, Frame, Viewport};
 pub use camera::{Camera, Margins};
 pub use offscreen::read_texture;
 
@@ -152,6 +152,7 @@ impl Gpu {
     pub(crate) fn target(
         &self,
         label: &str,
+        format: wgpu::TextureFormat,
         size: [u32; 2],
         samples: u32,
         usage: wgpu::TextureUsages,
@@ -162,7 +163,7 @@ impl Gpu {
             mip_level_count: 1,
             sample_count: samples,
             dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
+            format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
             view_formats: &[],
         })

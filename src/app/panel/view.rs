@@ -74,6 +74,10 @@ pub(super) fn options(
         if ui.button("Screenshot").on_hover_text("Save this picture as a PNG file here (S)").clicked() {
             actions.push(Action::Screenshot);
         }
+        let tip = "Record the scene from its start as a GIF here; again: stop (V)";
+        if ui.button("Record").on_hover_text(tip).clicked() {
+            actions.push(Action::Record);
+        }
         if ui
             .button("Copy scene")
             .on_hover_text("Copy the scene as TOML, with the command that solves it (C)")

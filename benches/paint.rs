@@ -1,0 +1,40 @@
+//! What a frame of the window costs to draw, offscreen at 1280×800: with the panel, without it, and of a fine mesh.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a bench may fail")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use warpbeam::Simulation;
+use warpbeam::app::{Canvas, Lab};
+use warpbeam::render::Gpu;
+use warpbeam::scene::{Source, open};
+
+fn frames(c: &mut Criterion) {
+    let Ok(gpu) = Gpu::headless() else {
+        eprintln!("no graphics adapter: nothing is drawn");
+        return;
+    };
+    println!("{}", gpu.describe());
+    let cases = [("article", "beam.cells=[5,1]", true), ("article", "beam.cells=[5,1]", false)];
+    let fine = ("cantilever", "beam.cells=[1000,100]", false);
+    for (id, cells, panel) in cases.into_iter().chain([fine]) {
+        let mut assignments = vec![cells.to_owned()];
+        if id == "cantilever" {
+            assignments.extend(["beam.element=\"t3\"".to_owned(), "solver.method=\"linear\"".to_owned()]);
+        }
+        let source = Source { name: id.to_owned(), assignments };
+        let scene = open(&source).unwrap();
+        let simulation = Simulation::new(&scene).unwrap();
+        let mut lab = Lab::new(source, scene, simulation);
+        lab.set_panel(panel);
+        let mut canvas = Canvas::new(&gpu, [1280, 800], 1.0, egui::Theme::Dark).unwrap();
+        let triangles = lab.simulation().system().mesh().element_count();
+        let name = format!("paint/{triangles} triangles{}", if panel { ", with the panel" } else { "" });
+        c.bench_function(&name, |b| b.iter(|| canvas.paint(&mut lab).unwrap()));
+    }
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(20);
+    targets = frames
+}
+criterion_main!(benches);
