@@ -1,7 +1,7 @@
 //! A recording that is made beside the window: the scene from its start, into a GIF in the present folder.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -71,7 +71,7 @@ fn work(
     source: &Source,
     scene: Scene,
     theme: ThemeChoice,
-    path: &PathBuf,
+    path: &Path,
     sender: &Sender<Message>,
     cancelled: &AtomicBool,
 ) {
