@@ -45,9 +45,6 @@ impl Viewport {
     }
 }
 
-/// Four samples are what every WebGPU adapter has.
-const SAMPLES: u32 = 4;
-
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 struct Vertex {
@@ -72,7 +69,8 @@ pub struct BodyRenderer {
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
     format: wgpu::TextureFormat,
-    multisampled: wgpu::TextureView,
+    /// Where pixels have several samples; resolved into the target.
+    multisampled: Option<wgpu::TextureView>,
     /// Of the target, pixels.
     size: [u32; 2],
 }
@@ -131,7 +129,7 @@ impl BodyRenderer {
                 },
                 primitive: wgpu::PrimitiveState { topology, ..Default::default() },
                 depth_stencil: None,
-                multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
+                multisample: wgpu::MultisampleState { count: gpu.samples(), ..Default::default() },
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
                     entry_point: Some("fragment"),
@@ -159,9 +157,10 @@ impl BodyRenderer {
         }
     }
 
-    fn multisampled(gpu: &Gpu, format: wgpu::TextureFormat, size: [u32; 2]) -> wgpu::TextureView {
-        let texture = gpu.target("body, multisampled", format, size, SAMPLES, wgpu::TextureUsages::empty());
-        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    fn multisampled(gpu: &Gpu, format: wgpu::TextureFormat, size: [u32; 2]) -> Option<wgpu::TextureView> {
+        let several = Some(gpu.samples()).filter(|&samples| samples > 1)?;
+        let texture = gpu.target("body, multisampled", format, size, several, wgpu::TextureUsages::empty());
+        Some(texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
     fn vertex_buffer(gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
@@ -205,12 +204,12 @@ impl BodyRenderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("body"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.multisampled,
+                view: self.multisampled.as_ref().unwrap_or(target),
                 depth_slice: None,
-                resolve_target: Some(target),
+                resolve_target: self.multisampled.is_some().then_some(target),
                 ops: wgpu::Operations {
                     load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
-                    store: wgpu::StoreOp::Discard,
+                    store: if self.multisampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
                 },
             })],
             ..Default::default()
