@@ -100,17 +100,17 @@ pub(super) enum Command {
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
-    /// A built-in scene (see `warpbeam scenes`) or a scene file.
+    /// A built-in scene (see `warpbeam scenes`) or a scene file; `-` reads it from standard input.
     #[arg(default_value = scene::registry::DEFAULT)]
-    pub scene: String,
+    pub scene: PathBuf,
     #[command(flatten)]
     pub set: SetArgs,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct RequiredSceneArgs {
-    /// A built-in scene (see `warpbeam scenes`) or a scene file.
-    pub scene: String,
+    /// A built-in scene (see `warpbeam scenes`) or a scene file; `-` reads it from standard input.
+    pub scene: PathBuf,
     #[command(flatten)]
     pub set: SetArgs,
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use super::args::{FolderArgs, SolveArgs, TuneArgs};
 use super::progress::Watch;
-use super::{CliError, NOT_CONVERGED, exit_code, json, simulate, text};
+use super::{CliError, NOT_CONVERGED, exit_code, json, named, simulate, text};
 use crate::dynamics::StopReason;
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::picture::draw_svg;
@@ -77,7 +77,7 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>) -> (Stat
 
 pub(super) fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
-    let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoBeam(source.name.clone()))?;
+    let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoBeam(named(source)))?;
     if let Some(path) = out {
         export::write_text(path, &text::curve_table(&curve))?;
     }
@@ -151,10 +151,10 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
 /// The scene with what was chosen, to be written to `path`.
 fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) -> Scene {
     let mut tuned = tuning.chosen.setting.apply(scene);
-    if let (Some(mesh), false) = (&mut tuned.mesh, scene::registry::find(&source.name).is_some()) {
+    if let (Some(mesh), false) = (&mut tuned.mesh, source.built_in().is_some()) {
         // The mesh is named relative to the scene file, which is another one now.
         let folder = |path: &Path| path.parent().and_then(|folder| std::path::absolute(folder).ok());
-        let old = folder(Path::new(&source.name));
+        let old = folder(&source.name);
         if let Some(old) = old.filter(|old| Some(old) != folder(path).as_ref()) {
             mesh.file = old.join(&mesh.file).display().to_string();
         }
@@ -192,7 +192,7 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
 }
 
 fn failed(source: &scene::Source) -> impl Fn(StudyError) -> CliError {
-    |error| CliError::Study { scene: source.name.clone(), error }
+    |error| CliError::Study { scene: named(source), error }
 }
 
 fn extent(out: &FolderArgs) -> Extent {

@@ -23,7 +23,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
 
 /// `warpbeam` without a command.
 pub(super) fn run_default() -> Result<ExitCode, CliError> {
-    let source = scene::Source { name: registry::DEFAULT.to_owned(), assignments: Vec::new() };
+    let source = scene::Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
     run(source, Path::new(DEFAULT_PICTURE))
 }
 
