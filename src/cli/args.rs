@@ -96,6 +96,14 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),
+    /// Print the completions of a shell.
+    #[command(after_help = "bash: warpbeam completions bash > ~/.local/share/bash-completion/completions/warpbeam")]
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page: `warpbeam man | man -l -`.
+    Man,
 }
 
 #[derive(Debug, Args)]
@@ -117,7 +125,8 @@ pub(super) struct RequiredSceneArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct SetArgs {
-    /// Change a value of the scene: material.young=2e6, beam.cells=[40,2], load.0.force=[0,-5].
+    /// Change a value of the scene: material.young=2e6, beam.cells=[40,2], load.0.force=[0,-5]. Numbers may have units:
+    /// material.young="210 GPa", load.0.force=[0 N, -12 kN].
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub assignments: Vec<String>,
 }
@@ -135,6 +144,9 @@ pub(super) struct SolveArgs {
     /// Do not look for the truth that errors are measured against: it takes a solve on a finer mesh.
     #[arg(long)]
     pub no_truth: bool,
+    /// Do not certify the result: whether it is stable, and ρ. That takes some more solves.
+    #[arg(long)]
+    pub no_certificate: bool,
 }
 
 #[derive(Debug, Args)]

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 use super::args::{FolderArgs, SolveArgs, TuneArgs};
 use super::progress::Watch;
@@ -15,20 +16,61 @@ use crate::study::{
     Demand, Extent, LoadCurve, MotionStudy, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map,
     motion_heat_map, plot,
 };
+use crate::timings::Timings;
 use crate::words::count;
 
+/// Where the time of a command went.
+pub(super) struct Spent {
+    /// All of it, by the clock.
+    total: Duration,
+    /// Reading, meshing, the order of elimination.
+    set_up: Duration,
+    /// The solve.
+    stages: Timings,
+    /// Finding the truth that errors are measured against.
+    truth: Duration,
+}
+
+impl Spent {
+    /// The total.
+    pub(super) fn total(&self) -> Duration {
+        self.total
+    }
+
+    /// Its parts, which sum to it, each with the name it has in JSON.
+    pub(super) fn parts(&self) -> [(&'static str, Duration); 8] {
+        let Self { total, set_up, stages, truth } = *self;
+        let Timings { rotate, assemble, factorize, solve, certify } = stages;
+        let other = total.saturating_sub(set_up + stages.total() + truth);
+        [
+            ("rotate", rotate),
+            ("assemble", assemble),
+            ("factorize", factorize),
+            ("solve", solve),
+            ("certify", certify),
+            ("set_up", set_up),
+            ("truth", truth),
+            ("other", other),
+        ]
+    }
+}
+
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
-    let SolveArgs { scene, json, out, no_truth } = args;
+    let SolveArgs { scene, json, out, no_truth, no_certificate } = args;
+    let began = Instant::now();
     // A wrong file name is said before the work, not after.
     let format = out.as_deref().map(Format::of).transpose()?;
     let (scene, mut simulation) = simulate(&scene.into())?;
+    let set_up = began.elapsed();
     let (status, written) = match (scene.analysis, &out) {
         (Analysis::Static, Some(path)) if format == Some(Format::Pvd) => {
             return Err(ExportError::NotInMotion(path.display().to_string()).into());
         }
         (Analysis::Static, _) => {
             let status = simulation.solve().clone();
-            simulation.certify();
+            if !no_certificate {
+                simulation.certify();
+            }
             (status, out.as_deref().map_or(Ok(()), |path| export::write(&simulation, path)))
         }
         (Analysis::Dynamic, _) => {
@@ -37,12 +79,15 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         }
     };
     // A scene without a truth has a result all the same.
+    let sought = Instant::now();
     let truth = if no_truth { None } else { Reference::of(&scene).ok() };
+    let truth_time = sought.elapsed();
     let solution = Solution { status, ..simulation.solution() };
+    let spent = Spent { total: began.elapsed(), set_up, stages: solution.time, truth: truth_time };
     text::print(&if json {
-        json::solution(&scene, &solution, truth.as_ref())
+        json::solution(&scene, &solution, truth.as_ref(), &spent)
     } else {
-        text::solution(&scene, &solution, truth.as_ref())
+        text::solution(&scene, &solution, truth.as_ref(), &spent)
     })?;
     // What could not be written is no reason to keep the result from who waits for it.
     written?;

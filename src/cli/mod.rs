@@ -1,5 +1,5 @@
-//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`. Without the feature `app`,
-//! those that need no window and no GPU.
+//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `completions`, `man`.
+//! Without the feature `app`, those that need no window and no GPU.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge or was interrupted, 2 bad input or usage, or a result that
 //! could not be written, 3 no graphics adapter.
@@ -22,6 +22,7 @@ mod commands;
 #[cfg(feature = "app")]
 mod draw_args;
 mod json;
+mod manual;
 mod progress;
 #[cfg(feature = "app")]
 mod record;
@@ -95,6 +96,8 @@ pub fn main() -> ExitCode {
         Some(Command::Shot(args)) => window::shot(args),
         #[cfg(feature = "app")]
         Some(Command::Record(args)) => record::record(args),
+        Some(Command::Completions { shell }) => manual::completions(shell),
+        Some(Command::Man) => manual::man(),
     };
     result.unwrap_or_else(|error| {
         eprintln!("warpbeam: {error}");

@@ -38,7 +38,7 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
                 scene: source.name.clone(),
                 set: SetArgs { assignments: source.assignments.clone() },
             };
-            commands::solve(SolveArgs { scene: args, json: false, out: None, no_truth: false })?;
+            commands::solve(SolveArgs { scene: args, json: false, out: None, no_truth: false, no_certificate: false })?;
             app::shot(source, scene, simulation, &app::ShotOptions::default(), output)?;
         }
     }

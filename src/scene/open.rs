@@ -119,14 +119,14 @@ fn read(path: &Path) -> Result<String, SceneError> {
 
 /// Reads a scene from the text of `file`, with assignments, and its mesh from `folder`.
 fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[String]) -> Result<Scene, SceneError> {
+    let plain = units::plain(text, str::to_owned).map_err(|invalid| located(text, file, invalid))?;
+    // The lines of the plain text are those of the file.
+    let text = plain.as_ref();
     let syntax = |e: toml::de::Error| SceneError::Syntax {
         file: file.map(Path::to_owned),
         line: e.span().map(|span| line_of(text, span.start)),
         message: e.message().trim().replace('\n', ", "),
     };
-    let plain = units::plain(text, str::to_owned).map_err(|invalid| located(text, file, invalid))?;
-    // The lines of the plain text are those of the file.
-    let text = plain.as_ref();
     // The file alone first, so that its own errors have lines.
     let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
     if !assignments.is_empty() {
