@@ -242,7 +242,7 @@ fn shown(text: &str) -> String {
 fn scale_of(text: &str) -> Option<Scale> {
     let mut all = Scale { dimension: NUMBER, factor: 1.0, tens: 0 };
     for (i, part) in text.split('/').enumerate() {
-        let mut factors = part.split([' ', '·', '⋅', '*']).filter(|f| !f.is_empty()).peekable();
+        let mut factors = part.split([' ', '·', '\u{22c5}', '*']).filter(|f| !f.is_empty()).peekable();
         // Nothing may be left out beside a stroke.
         if factors.peek().is_none() && !text.is_empty() {
             return None;
@@ -267,7 +267,7 @@ fn with_power(text: &str) -> Option<(Scale, i32)> {
     if let Some(unit) = with_prefix(text) {
         return Some((unit, 1));
     }
-    let is_power = |c: char| c.is_ascii_digit() || "^-⁻¹²³".contains(c);
+    let is_power = |c: char| c.is_ascii_digit() || "^-\u{207b}¹²³".contains(c);
     let unit = text.trim_end_matches(is_power);
     let power: String = text.get(unit.len()..)?.chars().map(plain_digit).collect();
     let power: i32 = power.strip_prefix('^').unwrap_or(&power).parse().ok()?;
@@ -276,7 +276,7 @@ fn with_power(text: &str) -> Option<(Scale, i32)> {
 
 fn plain_digit(c: char) -> char {
     match c {
-        '⁻' => '-',
+        '\u{207b}' => '-',
         '¹' => '1',
         '²' => '2',
         '³' => '3',
