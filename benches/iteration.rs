@@ -16,7 +16,7 @@ use warpbeam::simulation::Simulation;
 use warpbeam::solver::Factor;
 
 fn scene(id: &str, set: &[String]) -> Scene {
-    open(&Source { name: id.to_owned(), assignments: set.to_vec() }).unwrap()
+    open(&Source { name: id.into(), assignments: set.to_vec() }).unwrap()
 }
 
 /// A cantilever of about 120, 1 440, 5 440 and 20 000 unknowns.

@@ -12,7 +12,7 @@ use warpbeam::{MethodKind, Simulation};
 const STEPS: u32 = 30;
 
 fn swing(cells: &str, integrator: IntegratorKind, method: MethodKind) -> Scene {
-    let source = Source { name: "swing".to_owned(), assignments: vec![format!("beam.cells={cells}")] };
+    let source = Source { name: "swing".into(), assignments: vec![format!("beam.cells={cells}")] };
     let mut scene = open(&source).unwrap().with_method(method);
     scene.dynamics.integrator = integrator;
     scene

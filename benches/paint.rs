@@ -20,7 +20,7 @@ fn frames(c: &mut Criterion) {
         if id == "cantilever" {
             assignments.extend(["beam.element=\"t3\"".to_owned(), "solver.method=\"linear\"".to_owned()]);
         }
-        let source = Source { name: id.to_owned(), assignments };
+        let source = Source { name: id.into(), assignments };
         let scene = open(&source).unwrap();
         let simulation = Simulation::new(&scene).unwrap();
         let mut lab = Lab::new(source, scene, simulation);

@@ -14,7 +14,7 @@ fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     for [nx, ny] in [[20, 2], [40, 4], [80, 8]] {
         let assignments = vec![format!("beam.cells=[{nx},{ny}]"), "solver.method=newton".to_owned()];
-        let scene = open(&Source { name: "cantilever".to_owned(), assignments }).unwrap();
+        let scene = open(&Source { name: "cantilever".into(), assignments }).unwrap();
         let mut newton = Simulation::new(&scene).unwrap();
         newton.solve();
         let end = newton.probe("tip").unwrap();

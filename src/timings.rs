@@ -13,13 +13,15 @@ pub struct Timings {
     pub factorize: Duration,
     /// Forward and back substitution, update.
     pub solve: Duration,
+    /// What is known of the result: its stability, and ρ.
+    pub certify: Duration,
 }
 
 impl Timings {
     /// All stages together.
     #[must_use]
     pub fn total(&self) -> Duration {
-        self.rotate + self.assemble + self.factorize + self.solve
+        self.rotate + self.assemble + self.factorize + self.solve + self.certify
     }
 
     /// Adds other timings, stage by stage.
@@ -28,6 +30,7 @@ impl Timings {
         self.assemble += other.assemble;
         self.factorize += other.factorize;
         self.solve += other.solve;
+        self.certify += other.certify;
     }
 }
 

@@ -134,11 +134,11 @@ fn setters_name_what_is_not_there() {
 #[test]
 fn sources_that_are_none_are_refused() {
     for name in ["", "no-such-scene", "/", "\0", "assets"] {
-        let source = Source { name: name.to_owned(), assignments: Vec::new() };
+        let source = Source { name: name.into(), assignments: Vec::new() };
         assert!(open(&source).is_err(), "{name:?}");
     }
     for assignment in ["", "=", "a", "a=", ".=1", "load.0=1", "load.-1.force=[0,1]", "load.99999999999999999999.x=1"] {
-        let source = Source { name: "article".to_owned(), assignments: vec![assignment.to_owned()] };
+        let source = Source { name: "article".into(), assignments: vec![assignment.to_owned()] };
         assert!(open(&source).is_err(), "{assignment:?}");
     }
     for text in ["", "name", "[beam]", "name = 1", "\u{0}", "name = \"x\""] {

@@ -5,10 +5,10 @@ mod common;
 
 use std::fs;
 
-use common::{stderr, warpbeam};
+use common::{stderr, stdout, warpbeam};
 use nalgebra::Vector2;
-use warpbeam::ElementKind;
 use warpbeam::mesh::{GmshError, Mesh, MeshError};
+use warpbeam::{ElementKind, Scene, Simulation};
 
 /// Two triangles, the second clockwise; the left side is a physical curve.
 const SQUARE: &str = r#"$MeshFormat
@@ -95,15 +95,28 @@ fn what_cannot_be_used_is_said_with_its_line() {
         (
             "4.1 0 8",
             "2.2 0 8",
-            "line 2: expected format 4.1, ASCII, as `gmsh -format msh41` writes it (\"4.1 0 8\"), got version 2.2",
+            "line 2: expected Gmsh format 4.1, ASCII, got version 2.2; save it with `gmsh in.msh -save",
         ),
-        ("4.1 0 8", "4.1 1 8", "got version 4.1 of type 1"),
-        ("1 1 0\n0 1 0\n", "1 1 0.5\n0 1 0\n", "line 27: expected a mesh in the plane z = 0"),
+        ("4.1 0 8", "4.1 1 8", "got version 4.1, binary; save it with"),
+        ("4.1 0 8", "four", "(\"4.1 0 8\"); save it with"),
+        (
+            "$MeshFormat",
+            "*Heading",
+            "line 1: expected $MeshFormat, Gmsh format 4.1, ASCII; if Gmsh reads the file, save",
+        ),
+        ("1 1 0\n0 1 0\n", "1 1 0.5\n0 1 0\n", "line 27: expected a mesh in the plane z = 0, got z = 0.5 m"),
         ("1 1 0\n0 1 0\n", "1 inf 0\n0 1 0\n", "line 27: expected coordinates within 1e6 m"),
         ("1 1 0\n0 1 0\n", "1 one 0\n0 1 0\n", "line 27: expected the coordinates of a node"),
         ("3 1 4 3", "3 1 4 8", "expected nodes that exist, got 8"),
         ("3 1 4 3", "3 1 4", "expected an element: tag, nodes"),
-        ("2 1 2 2", "2 1 3 2", "expected lines and triangles"),
+        ("2 1 2 2", "2 1 3 2", "first or second order, got quadrangles (element type 3): mesh without recombining"),
+        ("2 1 2 2", "2 1 21 2", "got triangles of third order (element type 21): mesh with `-order 1` or `-order 2`"),
+        ("2 1 2 2", "2 1 4 2", "got volumes (element type 4): mesh with `gmsh -2`"),
+        (
+            "2 3 1 3\n1 5 1 1\n1 4 1\n2 1 2 2\n2 1 2 3\n3 1 4 3\n",
+            "1 1 1 1\n1 5 1 1\n1 4 1\n",
+            "got 1 lines and none; Gmsh saves only physical groups once there is one",
+        ),
         ("2 1 2 2", "2 1 2 2000000000", "expected an element"),
         ("$EndElements", "", "expected $EndElements"),
         ("2 1 2 3\n3 1 4 3", "2 1 2 3\n3 1 2 5\n4 1 2 2", "$EndElements"),
@@ -150,15 +163,99 @@ fn a_scene_file_names_its_mesh_relative_to_itself() {
     };
     fs::write(folder.path().join("square.msh"), SQUARE).unwrap();
     fs::write(folder.path().join("old.msh"), SQUARE.replacen("4.1 0 8", "2.2 0 8", 1)).unwrap();
+    fs::write(folder.path().join("binary.msh"), [&SQUARE.as_bytes()[..40], &[0xff, 0, 0xfe]].concat()).unwrap();
+    fs::write(folder.path().join("unnamed.msh"), SQUARE.replacen("1 7 0\n", "0 0\n", 1)).unwrap();
+    fs::write(folder.path().join("parts.msh"), in_parts()).unwrap();
     for (file, edge, code, message) in [
         ("square.msh", "wall", 0, ""),
         ("missing.msh", "wall", 2, "scene.toml:3: mesh.file:"),
-        ("old.msh", "wall", 2, "format 4.1"),
-        ("square.msh", "left", 2, "expected one of wall, got \"left\""),
+        ("old.msh", "wall", 2, "scene.toml:3: mesh.file: old.msh: line 2: expected Gmsh format 4.1"),
+        ("binary.msh", "wall", 2, "got a binary file; save it with `gmsh in.msh -save -format msh41 -o out.msh`"),
+        ("square.msh", "left", 2, "scene.toml:9: support.0.edge: expected one of wall, got \"left\""),
+        ("unnamed.msh", "wall", 2, "Gmsh saves only physical groups once there is one"),
+        ("parts.msh", "wall", 2, "scene.toml:2: mesh: expected one connected body, got 2 parts that share no nodes"),
     ] {
         fs::write(&path, scene(file, edge)).unwrap();
         let output = warpbeam(&["solve", path.to_str().unwrap()]);
         assert_eq!(output.status.code(), Some(code), "{file}: {}", stderr(&output));
         assert!(stderr(&output).contains(message), "{file}: {}", stderr(&output));
+    }
+}
+
+/// The square, and a third triangle that shares no node with it.
+fn in_parts() -> String {
+    let text = SQUARE.replacen("1 5 1 5\n2 1 0 5\n1\n2\n3\n4\n5\n", "1 7 1 7\n2 1 0 7\n1\n2\n3\n4\n5\n6\n7\n", 1);
+    let text = text.replacen("9 9 0\n", "9 9 0\n10 9 0\n9 10 0\n", 1);
+    let text = text.replacen("2 3 1 3", "2 4 1 4", 1).replacen("2 1 2 2\n", "2 1 2 3\n", 1);
+    text.replacen("3 1 4 3\n", "3 1 4 3\n4 5 6 7\n", 1)
+}
+
+/// Parts that are held one by one are no mistake, and in motion a part may fly.
+#[test]
+fn held_parts_are_solved() {
+    let scene = |support: &str, rest: &str| {
+        let text = format!(
+            "name = \"Parts\"\n{rest}[mesh]\nfile = \"parts.msh\"\n[material]\nyoung = 1e6\npoisson = 0.3\n\
+             [[support]]\nedge = \"wall\"\nfix = [\"x\", \"y\"]\n{support}"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("parts.msh"), in_parts()).unwrap();
+        Simulation::new(&Scene::from_toml_in(&text, folder.path()).unwrap())
+    };
+    let pin = |x: f64, y: f64| format!("[[support]]\nat = [{x:?}, {y:?}]\nfix = [\"x\", \"y\"]\n");
+    assert!(scene("", "").is_err());
+    assert!(scene(&pin(9.0, 9.0), "").is_err());
+    assert!(scene(&(pin(9.0, 9.0) + &pin(10.0, 9.0)), "").is_ok());
+    assert!(scene("", "analysis = \"dynamic\"\n").is_ok());
+}
+
+#[test]
+fn a_plane_up_to_rounding_is_a_plane() {
+    for (z, flat) in [("1e-12", true), ("-3e-10", true), ("1e-6", false)] {
+        let text = SQUARE.replacen("1 1 0\n0 1 0\n", &format!("1 1 {z}\n0 1 0\n"), 1);
+        assert_eq!(Mesh::from_gmsh(&text, ElementKind::T3).is_ok(), flat, "{z}");
+        // The same in any unit.
+        assert_eq!(Mesh::from_gmsh_scaled(&text, ElementKind::T3, 1e-3).is_ok(), flat, "{z}");
+    }
+}
+
+#[test]
+fn a_mesh_has_the_unit_and_the_element_of_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let large = SQUARE.replace("1 0 0\n1 1 0\n0 1 0\n", "60 0 0\n60 60 0\n0 60 0\n");
+    fs::write(folder.path().join("large.msh"), large).unwrap();
+    fs::write(folder.path().join("bracket.msh"), include_str!("../assets/meshes/bracket.msh")).unwrap();
+    let path = folder.path().join("scene.toml");
+    let solve = |file: &str, keys: &str| {
+        let text = format!(
+            "name = \"Part\"\n[mesh]\nfile = \"{file}.msh\"\n{keys}[material]\nyoung = 1e9\npoisson = 0.3\n\
+             [[support]]\nedge = \"wall\"\nfix = [\"x\", \"y\"]\n[[load]]\nkind = \"gravity\"\nacceleration = [0.0, -1.0]\n"
+        );
+        fs::write(&path, text).unwrap();
+        warpbeam(&["solve", path.to_str().unwrap(), "--json", "--no-truth"])
+    };
+    let json = |output: &std::process::Output| serde_json::from_str::<serde_json::Value>(&stdout(output)).unwrap();
+    // No element: that of the file.
+    assert_eq!(json(&solve("bracket", ""))["element"], "t6");
+    assert_eq!(json(&solve("bracket", "element = \"t3\"\n"))["element"], "t3");
+    let metres = solve("large", "");
+    assert_eq!(json(&metres)["element"], "t3");
+    let warning = "warning: large.msh is 85 m across; if it is in millimetres, write scale = 0.001";
+    assert!(stderr(&metres).contains(warning), "{}", stderr(&metres));
+    for (keys, size, warns) in [
+        ("", 60.0, true),
+        ("scale = 0.001\n", 0.06, false),
+        ("scale = \"1 mm\"\n", 0.06, false),
+        ("scale = 1\n", 60.0, false),
+    ] {
+        let output = solve("large", keys);
+        assert_eq!(stderr(&output).is_empty(), !warns, "{}", stderr(&output));
+        let weight = json(&output)["reaction"]["force"][1].as_f64().unwrap();
+        assert!((weight - 1000.0 * size * size).abs() < 1e-6 * weight, "{weight}");
+    }
+    for wrong in ["scale = 0.0\n", "scale = -1\n", "scale = \"1 N\"\n"] {
+        let output = solve("large", wrong);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("scene.toml:4: mesh.scale: "), "{}", stderr(&output));
     }
 }

@@ -25,7 +25,7 @@ fn harness(id: &str) -> Harness<'static, Lab> {
 fn harness_of(id: &str) -> Harness<'static, Lab> {
     let scene = scene(id);
     let simulation = Simulation::new(&scene).unwrap();
-    let lab = Lab::new(Source { name: id.to_owned(), assignments: Vec::new() }, scene, simulation);
+    let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
     Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
         |ui, lab: &mut Lab| {
             lab.advance(ui.input(|i| i.time));

@@ -249,7 +249,7 @@ fn wait_for<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
 fn force_slider() -> egui::Rect {
     let scene = scene("article");
     let simulation = Simulation::new(&scene).unwrap();
-    let lab = Lab::new(Source { name: "article".to_owned(), assignments: Vec::new() }, scene, simulation);
+    let lab = Lab::new(Source { name: "article".into(), assignments: Vec::new() }, scene, simulation);
     let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
         |ui, lab: &mut Lab| {
             lab.ui(ui);

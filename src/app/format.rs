@@ -1,5 +1,7 @@
 //! Numbers as people read them, and as they type them.
 
+use crate::scene::units;
+
 /// Four significant digits, with an exponent where that is shorter.
 pub(super) fn short(value: f64) -> String {
     significant(value, 4)
@@ -46,19 +48,11 @@ pub(super) fn round_to_slider(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
 
-/// A typed number, with an optional SI prefix and this unit: `2.5`, `1e4`, `12 kN`, `0.3 MPa`.
-pub(super) fn parse(text: &str, unit: &str) -> Option<f64> {
+/// A typed number, in this unit where it has none: `2.5`, `1e4`, `12 kN`, `0.3 MPa`, and `3k` for 3 kN.
+pub(super) fn parse(text: &str, unit: &'static str) -> Option<f64> {
     let text = text.trim().replace(',', ".").replace('\u{2212}', "-");
-    if let Ok(value) = text.parse() {
-        return Some(value);
-    }
-    let without_unit = text.strip_suffix(unit).unwrap_or(&text).trim_end();
-    if let Ok(value) = without_unit.parse() {
-        return Some(value);
-    }
-    let prefixes = [('k', 1e3), ('M', 1e6), ('G', 1e9), ('m', 1e-3)];
-    let (prefix, factor) = prefixes.into_iter().find(|(p, _)| without_unit.ends_with(*p))?;
-    without_unit.strip_suffix(prefix)?.trim_end().parse::<f64>().ok().map(|v| v * factor)
+    // A prefix alone is that of the field's unit.
+    units::parse(&text, unit).or_else(|_| units::parse(&format!("{text}{unit}"), unit)).ok()
 }
 
 #[cfg(test)]
@@ -99,6 +93,8 @@ mod tests {
             assert_eq!(parse(text, "N"), Some(value), "{text}");
         }
         assert_eq!(parse("1.5 GPa", "Pa"), Some(1.5e9));
+        assert_eq!((parse("3 mm", "m"), parse("7.8 g/cm³", "kg/m³")), (Some(0.003), Some(7800.0)));
+        assert_eq!((parse("2 m", "m"), parse("45 °", "°"), parse("12 kN", "Pa")), (Some(2.0), Some(45.0), None));
         assert_eq!(parse("two", "N"), None);
         assert_eq!(parse("", "N"), None);
     }

@@ -367,7 +367,7 @@ impl Lab {
             let input = PanelInput {
                 truth: self.truth.get(),
                 scene: &self.scene,
-                scene_name: &self.source.name,
+                scene_name: self.source.name.to_str().unwrap_or_default(),
                 simulation: &self.simulation,
                 running: self.running,
                 playback: &self.playback,
@@ -583,7 +583,7 @@ impl Lab {
     }
 
     fn open(&mut self, ctx: &egui::Context, id: &str) {
-        let source = Source { name: id.to_owned(), assignments: Vec::new() };
+        let source = Source { name: id.into(), assignments: Vec::new() };
         let opened = scene::open(&source).map_err(OpenError::from).and_then(|scene| Ok(self.set_scene(scene)?));
         match opened {
             Ok(()) => {

@@ -121,6 +121,13 @@ fn arms(mesh: &Mesh, weights: &[(u32, f64)]) -> Option<(NodeWeights, Vector2<f64
 
 /// The complaint of a scene's table `key` that names an edge that is not there.
 pub(super) fn no_such_edge(mesh: &Mesh, name: &str, key: &str) -> Invalid {
+    if mesh.edges().is_empty() {
+        let message = format!(
+            "expected a named edge, got \"{name}\", but the mesh names none; in Gmsh, make curves physical groups, and the \
+             surface too: Gmsh saves only physical groups once there is one"
+        );
+        return Invalid::new(format!("{key}.edge"), message);
+    }
     let known: Vec<&str> = mesh.edges().keys().map(String::as_str).collect();
     Invalid::new(format!("{key}.edge"), format!("expected one of {}, got \"{name}\"", known.join(", ")))
 }

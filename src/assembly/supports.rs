@@ -32,10 +32,26 @@ pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bo
     Ok(fixed)
 }
 
+/// How the supports hold a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Hold {
+    /// Parts that share no nodes.
+    parts: usize,
+    /// Those of them that can still move freely.
+    loose: usize,
+}
+
 /// Refuses to look for the equilibrium of a body that is not held; in motion it may be free.
-pub(super) fn check_held(held: bool, analysis: Analysis) -> Result<(), Invalid> {
-    if held || analysis == Analysis::Dynamic {
+pub(super) fn check_held(hold: Hold, analysis: Analysis) -> Result<(), Invalid> {
+    if hold.loose == 0 || analysis == Analysis::Dynamic {
         return Ok(());
+    }
+    if hold.parts > 1 {
+        let Hold { parts, loose } = hold;
+        let message = format!(
+            "expected one connected body, got {parts} parts that share no nodes; supports leave {loose} of them free to move"
+        );
+        return Err(Invalid::new("mesh", message));
     }
     Err(Invalid::new(
         "support",
@@ -43,23 +59,35 @@ pub(super) fn check_held(held: bool, analysis: Analysis) -> Result<(), Invalid> 
     ))
 }
 
-/// Whether the fixed unknowns leave no translation and no small rotation: the Gram matrix of the three rigid modes,
-/// restricted to them, is regular.
-pub(super) fn is_held(mesh: &Mesh, fixed: &[bool]) -> bool {
+impl Hold {
+    pub(super) fn of(mesh: &Mesh, fixed: &[bool]) -> Self {
+        let (parts, part_of) = mesh.parts();
+        let mut held_nodes = vec![Vec::new(); parts];
+        for ((x, fixed), &part) in mesh.nodes().iter().zip(fixed.chunks_exact(2)).zip(&part_of) {
+            // Nodes without an element are in no part.
+            if let (true, Some(nodes)) = (fixed.contains(&true), held_nodes.get_mut(part as usize)) {
+                nodes.push((*x, fixed));
+            }
+        }
+        Self { parts, loose: held_nodes.iter().filter(|nodes| !is_held(nodes)).count() }
+    }
+}
+
+/// Whether the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of the three
+/// rigid modes, restricted to them, is regular.
+fn is_held(nodes: &[(Vector2<f64>, &[bool])]) -> bool {
     const SINGULAR: f64 = 1e-12;
-    let nodes = || mesh.nodes().iter().zip(fixed.chunks_exact(2)).filter(|(_, fixed)| fixed.contains(&true));
     // Seen from the fixed nodes themselves: a clamp stays a clamp however long the body.
-    let count = nodes().count();
-    if count == 0 {
+    if nodes.is_empty() {
         return false;
     }
-    let centre = nodes().map(|(x, _)| x).sum::<Vector2<f64>>() / count as f64;
-    let size = nodes().map(|(x, _)| (x - centre).norm()).fold(0.0, f64::max);
+    let centre = nodes.iter().map(|(x, _)| x).sum::<Vector2<f64>>() / nodes.len() as f64;
+    let size = nodes.iter().map(|(x, _)| (x - centre).norm()).fold(0.0, f64::max);
     if size == 0.0 {
         return false;
     }
     let mut gram = Matrix3::zeros();
-    for (node, fixed) in nodes() {
+    for (node, fixed) in nodes {
         let arm = (node - centre) / size;
         for (axis, mode) in [Vector3::new(1.0, 0.0, -arm.y), Vector3::new(0.0, 1.0, arm.x)].iter().enumerate() {
             if fixed[axis] {

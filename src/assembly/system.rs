@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::edge::no_such_edge;
-use super::supports::{check_held, fixed_unknowns, is_held};
+use super::supports::{Hold, check_held, fixed_unknowns};
 use super::{Edge, Pattern};
 use crate::element::Elements;
 use crate::mesh::Mesh;
@@ -88,7 +88,7 @@ pub struct System {
     body: Arc<Body>,
     supports: Vec<Support>,
     /// Whether the supports leave no rigid motion.
-    held: bool,
+    hold: Hold,
     /// Numbers of the edges whose nodes are coupled, for moments.
     coupled: Vec<usize>,
     pattern: Pattern,
@@ -111,7 +111,8 @@ impl System {
                 let failed = |message: String| Invalid::new("mesh.file", format!("{}: {message}", file.file));
                 let unread = "its contents are not there: open the scene from its folder".to_owned();
                 let text = file.text.as_deref().ok_or_else(|| failed(unread))?;
-                (Origin::File(file.clone()), Mesh::from_gmsh(text, file.element).map_err(|e| failed(e.to_string()))?)
+                let mesh = Mesh::from_gmsh_scaled(text, scene.element(), file.scale.unwrap_or(1.0));
+                (Origin::File(file.clone()), mesh.map_err(|e| failed(e.to_string()))?)
             }
             (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither").into()),
         };
@@ -148,7 +149,7 @@ impl System {
         }
         let couples = || self.moment_edges(scene).iter().all(|edge| self.coupled.contains(edge));
         if scene.supports == self.supports && couples() {
-            check_held(self.held, scene.analysis)?;
+            check_held(self.hold, scene.analysis)?;
             return Ok(self.clone());
         }
         Ok(Arc::new(Self::of_body(self.body.clone(), scene)?))
@@ -156,8 +157,8 @@ impl System {
 
     fn of_body(body: Arc<Body>, scene: &Scene) -> Result<Self, SystemError> {
         let fixed = fixed_unknowns(&scene.supports, &body.mesh)?;
-        let held = is_held(&body.mesh, &fixed);
-        check_held(held, scene.analysis)?;
+        let hold = Hold::of(&body.mesh, &fixed);
+        check_held(hold, scene.analysis)?;
         let coupled = moment_edges(&body.edges, scene);
         let groups: Vec<Vec<u32>> =
             coupled.iter().map(|&edge| body.edges[edge].weights().iter().map(|&(node, _)| node).collect()).collect();
@@ -165,7 +166,7 @@ impl System {
         let slots = body.mesh.elements().flat_map(|nodes| pattern.block_slots(nodes)).collect();
         let symbolic = Symbolic::new(pattern.column_starts(), pattern.row_indices())
             .map_err(|_| SystemError::TooLarge { unknowns: pattern.dofs() })?;
-        Ok(Self { body, supports: scene.supports.clone(), held, coupled, pattern, slots, symbolic })
+        Ok(Self { body, supports: scene.supports.clone(), hold, coupled, pattern, slots, symbolic })
     }
 
     fn moment_edges(&self, scene: &Scene) -> Vec<usize> {

@@ -96,28 +96,37 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),
+    /// Print the completions of a shell.
+    #[command(after_help = "bash: warpbeam completions bash > ~/.local/share/bash-completion/completions/warpbeam")]
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page: `warpbeam man | man -l -`.
+    Man,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
-    /// A built-in scene (see `warpbeam scenes`) or a scene file.
+    /// A built-in scene (see `warpbeam scenes`) or a scene file; `-` reads it from standard input.
     #[arg(default_value = scene::registry::DEFAULT)]
-    pub scene: String,
+    pub scene: PathBuf,
     #[command(flatten)]
     pub set: SetArgs,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct RequiredSceneArgs {
-    /// A built-in scene (see `warpbeam scenes`) or a scene file.
-    pub scene: String,
+    /// A built-in scene (see `warpbeam scenes`) or a scene file; `-` reads it from standard input.
+    pub scene: PathBuf,
     #[command(flatten)]
     pub set: SetArgs,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SetArgs {
-    /// Change a value of the scene: material.young=2e6, beam.cells=[40,2], load.0.force=[0,-5].
+    /// Change a value of the scene: material.young=2e6, beam.cells=[40,2], load.0.force=[0,-5]. Numbers may have units:
+    /// material.young="210 GPa", load.0.force=[0 N, -12 kN].
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub assignments: Vec<String>,
 }
@@ -135,6 +144,9 @@ pub(super) struct SolveArgs {
     /// Do not look for the truth that errors are measured against: it takes a solve on a finer mesh.
     #[arg(long)]
     pub no_truth: bool,
+    /// Do not certify the result: whether it is stable, and ρ. That takes some more solves.
+    #[arg(long)]
+    pub no_certificate: bool,
 }
 
 #[derive(Debug, Args)]

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 use super::args::{FolderArgs, SolveArgs, TuneArgs};
 use super::progress::Watch;
-use super::{CliError, NOT_CONVERGED, exit_code, json, simulate, text};
+use super::{CliError, NOT_CONVERGED, exit_code, json, named, simulate, text};
 use crate::dynamics::StopReason;
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::picture::draw_svg;
@@ -15,20 +16,66 @@ use crate::study::{
     Demand, Extent, LoadCurve, MotionStudy, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map,
     motion_heat_map, plot,
 };
+use crate::timings::Timings;
 use crate::words::count;
 
+/// Where the time of a command went.
+pub(super) struct Spent {
+    /// All of it, by the clock.
+    wall: Duration,
+    /// Reading, meshing, the order of elimination.
+    set_up: Duration,
+    /// The solve.
+    stages: Timings,
+    /// Finding the truth that errors are measured against.
+    truth: Duration,
+}
+
+impl Spent {
+    /// All of it.
+    pub(super) fn wall(&self) -> Duration {
+        self.wall
+    }
+
+    /// What the solve took: its four stages.
+    pub(super) fn solve(&self) -> Duration {
+        self.stages.total().saturating_sub(self.stages.certify)
+    }
+
+    /// The parts that sum to all of it, each with the name it has in JSON.
+    pub(super) fn parts(&self) -> [(&'static str, Duration); 8] {
+        let Self { wall, set_up, stages, truth } = *self;
+        let Timings { rotate, assemble, factorize, solve, certify } = stages;
+        let other = wall.saturating_sub(set_up + stages.total() + truth);
+        [
+            ("rotate", rotate),
+            ("assemble", assemble),
+            ("factorize", factorize),
+            ("solve", solve),
+            ("certify", certify),
+            ("set_up", set_up),
+            ("truth", truth),
+            ("other", other),
+        ]
+    }
+}
+
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
-    let SolveArgs { scene, json, out, no_truth } = args;
+    let SolveArgs { scene, json, out, no_truth, no_certificate } = args;
+    let began = Instant::now();
     // A wrong file name is said before the work, not after.
     let format = out.as_deref().map(Format::of).transpose()?;
     let (scene, mut simulation) = simulate(&scene.into())?;
+    let set_up = began.elapsed();
     let (status, written) = match (scene.analysis, &out) {
         (Analysis::Static, Some(path)) if format == Some(Format::Pvd) => {
             return Err(ExportError::NotInMotion(path.display().to_string()).into());
         }
         (Analysis::Static, _) => {
             let status = simulation.solve().clone();
-            simulation.certify();
+            if !no_certificate {
+                simulation.certify();
+            }
             (status, out.as_deref().map_or(Ok(()), |path| export::write(&simulation, path)))
         }
         (Analysis::Dynamic, _) => {
@@ -37,12 +84,15 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         }
     };
     // A scene without a truth has a result all the same.
+    let sought = Instant::now();
     let truth = if no_truth { None } else { Reference::of(&scene).ok() };
+    let truth_time = sought.elapsed();
     let solution = Solution { status, ..simulation.solution() };
+    let spent = Spent { wall: began.elapsed(), set_up, stages: solution.time, truth: truth_time };
     text::print(&if json {
-        json::solution(&scene, &solution, truth.as_ref())
+        json::solution(&scene, &solution, truth.as_ref(), &spent)
     } else {
-        text::solution(&scene, &solution, truth.as_ref())
+        text::solution(&scene, &solution, truth.as_ref(), &spent)
     })?;
     // What could not be written is no reason to keep the result from who waits for it.
     written?;
@@ -77,7 +127,7 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>) -> (Stat
 
 pub(super) fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
-    let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoBeam(source.name.clone()))?;
+    let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoBeam(named(source)))?;
     if let Some(path) = out {
         export::write_text(path, &text::curve_table(&curve))?;
     }
@@ -151,10 +201,10 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
 /// The scene with what was chosen, to be written to `path`.
 fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) -> Scene {
     let mut tuned = tuning.chosen.setting.apply(scene);
-    if let (Some(mesh), false) = (&mut tuned.mesh, scene::registry::find(&source.name).is_some()) {
+    if let (Some(mesh), false) = (&mut tuned.mesh, source.built_in().is_some()) {
         // The mesh is named relative to the scene file, which is another one now.
         let folder = |path: &Path| path.parent().and_then(|folder| std::path::absolute(folder).ok());
-        let old = folder(Path::new(&source.name));
+        let old = folder(&source.name);
         if let Some(old) = old.filter(|old| Some(old) != folder(path).as_ref()) {
             mesh.file = old.join(&mesh.file).display().to_string();
         }
@@ -192,7 +242,7 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
 }
 
 fn failed(source: &scene::Source) -> impl Fn(StudyError) -> CliError {
-    |error| CliError::Study { scene: source.name.clone(), error }
+    |error| CliError::Study { scene: named(source), error }
 }
 
 fn extent(out: &FolderArgs) -> Extent {

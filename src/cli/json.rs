@@ -3,24 +3,30 @@
 use std::time::Duration;
 
 use nalgebra::Vector2;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
+use super::commands::Spent;
 use crate::scene::Scene;
 use crate::simulation::{MotionResult, ProbeResult, Solution};
 use crate::study::{ProbeTruth, Reference};
 
 /// A result.
-pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>) -> String {
+pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>, spent: &Spent) -> String {
     let truths = truth.map_or(&[][..], Reference::probes);
     let probes: Vec<Value> = solution.probes.iter().enumerate().map(|(i, p)| probe(p, truths.get(i))).collect();
     let certificate = solution.certificate.unwrap_or_default();
-    let (deformation, time) = (&solution.deformation, &solution.time);
+    let deformation = &solution.deformation;
+    let parts = spent.parts().map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
+    let sums = [("total", spent.solve()), ("wall", spent.wall())];
+    let sums = sums.map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
+    let time_us: Map<String, Value> = sums.into_iter().chain(parts).collect();
     let mut object = json!({
         "scene": scene.name,
         "element": scene.element().id(),
         "method": scene.solver.method.id(),
         "dofs": solution.dofs,
         "status": solution.status.id(),
+        "reason": solution.status.failure(),
         "stable": certificate.stable,
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
@@ -38,13 +44,7 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
             "dissipated": solution.motion.map(|m| number(m.ledger.dissipated)),
         },
         "reaction": { "force": pair(solution.reaction.force), "moment": number(solution.reaction.moment) },
-        "time_us": {
-            "total": microseconds(time.total()),
-            "rotate": microseconds(time.rotate),
-            "assemble": microseconds(time.assemble),
-            "factorize": microseconds(time.factorize),
-            "solve": microseconds(time.solve),
-        },
+        "time_us": time_us,
     });
     // Only where it decided: everyone else gets the documented object and nothing more.
     if let Some(auto) = &solution.auto {

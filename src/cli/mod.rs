@@ -1,5 +1,5 @@
-//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`. Without the feature `app`,
-//! those that need no window and no GPU.
+//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `completions`, `man`.
+//! Without the feature `app`, those that need no window and no GPU.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge or was interrupted, 2 bad input or usage, or a result that
 //! could not be written, 3 no graphics adapter.
@@ -9,17 +9,20 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use self::args::{Cli, Command};
+use crate::assembly::SystemError;
 use crate::export::ExportError;
 use crate::picture::PictureError;
 use crate::scene::{self, Scene, SceneError};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::StudyError;
+use crate::words::number;
 
 mod args;
 mod commands;
 #[cfg(feature = "app")]
 mod draw_args;
 mod json;
+mod manual;
 mod progress;
 #[cfg(feature = "app")]
 mod record;
@@ -93,6 +96,8 @@ pub fn main() -> ExitCode {
         Some(Command::Shot(args)) => window::shot(args),
         #[cfg(feature = "app")]
         Some(Command::Record(args)) => record::record(args),
+        Some(Command::Completions { shell }) => manual::completions(shell),
+        Some(Command::Man) => manual::man(),
     };
     result.unwrap_or_else(|error| {
         eprintln!("warpbeam: {error}");
@@ -102,9 +107,30 @@ pub fn main() -> ExitCode {
 
 fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
     let scene = scene::open(source)?;
-    let simulation =
-        Simulation::new(&scene).map_err(|error| CliError::Simulation { scene: source.name.clone(), error })?;
+    let simulation = Simulation::new(&scene).map_err(|error| match error {
+        SimulationError::System(SystemError::Scene(invalid)) => scene::locate(source, invalid).into(),
+        error => CliError::Simulation { scene: named(source), error },
+    })?;
+    warn_of_millimetres(&scene, simulation.system().size());
     Ok((scene, simulation))
+}
+
+/// What a scene is called in messages.
+fn named(source: &scene::Source) -> String {
+    source.name.display().to_string()
+}
+
+/// Says so where a mesh file seems to be in millimetres: `size` is the body's, m. Nothing is changed.
+fn warn_of_millimetres(scene: &Scene, size: f64) {
+    /// Larger than the parts that are meshed, m.
+    const LARGE: f64 = 50.0;
+    if let Some(mesh) = scene.mesh.as_ref().filter(|mesh| mesh.scale.is_none() && size > LARGE) {
+        let size = number(size.round());
+        eprintln!(
+            "warpbeam: warning: {} is {size} m across; if it is in millimetres, write scale = 0.001 under [mesh], else scale = 1",
+            mesh.file
+        );
+    }
 }
 
 fn exit_code(status: &Status) -> ExitCode {

@@ -3,12 +3,15 @@
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 
+use nalgebra::Vector2;
+
 use super::CliError;
+use super::commands::Spent;
 use crate::method::{Certificate, rho_words};
 use crate::scene::{Analysis, MethodKind, Scene, registry};
 use crate::simulation::{MotionResult, Solution, Status};
 use crate::study::{LoadCurve, Reference};
-use crate::words::count;
+use crate::words::{count, engineering, engineering_pair, prefix};
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
 pub(super) fn print(text: &str) -> Result<(), CliError> {
@@ -32,7 +35,7 @@ pub(super) fn scenes() -> String {
 }
 
 /// A result.
-pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>) -> String {
+pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>, spent: &Spent) -> String {
     let mut text = format!(
         "{}: element {}, {}, {} unknowns\n",
         scene.name,
@@ -44,9 +47,10 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
     let _ = match &solution.motion {
         Some(MotionResult { time, counts, .. }) => writeln!(
             text,
-            "{word} at {time:.6} s after {} of {:.6} s and {}",
+            "{word} at {} after {} of {} and {}",
+            engineering(*time, "s"),
             count(counts.steps, "step"),
-            scene.dynamics.time_step,
+            engineering(scene.dynamics.time_step, "s"),
             count(counts.solves, "solve"),
         ),
         None => writeln!(
@@ -88,15 +92,11 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
     }
     let truths = truth.map_or(&[][..], Reference::probes);
     for (i, probe) in solution.probes.iter().enumerate() {
-        let _ = writeln!(
-            text,
-            "{}: at ({:.6}, {:.6}) m, moved by ({:.6}, {:.6}) m",
-            probe.name, probe.x.x, probe.x.y, probe.u.x, probe.u.y
-        );
+        let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), pair(probe.u, "m"));
         let truth = truths.get(i).and_then(|truth| Some((truth, truth.error_percent(probe)?)));
         if let Some((truth, error)) = truth {
-            let u = truth.displacement;
-            let _ = writeln!(text, "  {}: ({:.6}, {:.6}) m, error {error:.3} %", truth.source, u.x, u.y);
+            let u = pair(truth.displacement, "m");
+            let _ = writeln!(text, "  {}: {u}, error {error:.3} %", truth.source);
         }
     }
     if let Some(off) = truth.and_then(|t| t.beam_off_by_percent) {
@@ -105,34 +105,41 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
     let deformation = &solution.deformation;
     let _ = writeln!(
         text,
-        "largest rotation {:.2}°, largest strain {:.4}, inverted elements {}",
-        deformation.max_rotation_deg, deformation.max_strain, deformation.inverted_elements
+        "largest rotation {}, largest strain {}, inverted elements {}",
+        engineering(deformation.max_rotation_deg, "°"),
+        engineering(100.0 * deformation.max_strain, "%"),
+        deformation.inverted_elements
     );
     let _ = writeln!(
         text,
-        "reaction ({:.6}, {:.6}) N, moment about the origin {:.6} N m",
-        solution.reaction.force.x, solution.reaction.force.y, solution.reaction.moment
+        "reaction {}, moment about the origin {}",
+        pair(solution.reaction.force, "N"),
+        engineering(solution.reaction.moment, "N m")
     );
     let _ = writeln!(
         text,
-        "elastic energy {:.6} J, work of the loads {:.6} J",
-        solution.energy.elastic, solution.energy.external
+        "elastic energy {}, work of the loads {}",
+        joules(solution.energy.elastic),
+        joules(solution.energy.external)
     );
     if let Some(motion) = &solution.motion {
         text.push_str(&books(motion));
     }
-    let time = &solution.time;
-    let us = |time: std::time::Duration| time.as_secs_f64() * 1e6;
-    let _ = writeln!(
-        text,
-        "time {:.0} µs: rotate {:.0}, assemble {:.0}, factorize {:.0}, solve {:.0}",
-        us(time.total()),
-        us(time.rotate),
-        us(time.assemble),
-        us(time.factorize),
-        us(time.solve)
-    );
+    let seconds = |time: std::time::Duration| engineering(time.as_secs_f64(), "s");
+    let parts = spent.parts();
+    let shown = parts.iter().filter(|(_, time)| !time.is_zero());
+    let shown: Vec<String> =
+        shown.map(|(name, time)| format!("{} {}", name.replace('_', " "), seconds(*time))).collect();
+    let _ = writeln!(text, "time {}: {}", seconds(spent.wall()), shown.join(", "));
     text
+}
+
+fn pair(v: Vector2<f64>, unit: &str) -> String {
+    engineering_pair(v.into(), unit)
+}
+
+fn joules(energy: f64) -> String {
+    engineering(energy, "J")
 }
 
 /// What finds the state: a method, or an integrator with its theory where that is not the corotational one.
@@ -150,31 +157,34 @@ fn solver_words(scene: &Scene) -> String {
 fn books(motion: &MotionResult) -> String {
     let MotionResult { counts, ledger, momentum, critical_step, .. } = motion;
     let mut text = format!(
-        "kinetic energy {:.6} J, potential of the loads {:.6} J, dissipated {:.6} J, put in by pulses {:.6} J\n\
-         lost by the integrator {:.6} J: energy drift {:.2e} of the largest kinetic energy\n\
-         momentum ({:.6}, {:.6}) kg m/s, angular momentum about the origin {:.6} kg m²/s\n",
-        ledger.kinetic,
-        ledger.potential,
-        ledger.dissipated,
-        ledger.pulses,
-        ledger.integrator,
+        "kinetic energy {}, potential of the loads {}, dissipated {}, put in by pulses {}\n\
+         lost by the integrator {}: energy drift {:.2e} of the largest kinetic energy\n\
+         momentum {}, angular momentum about the origin {}\n",
+        joules(ledger.kinetic),
+        joules(ledger.potential),
+        joules(ledger.dissipated),
+        joules(ledger.pulses),
+        joules(ledger.integrator),
         ledger.drift(),
-        momentum.linear.x,
-        momentum.linear.y,
-        momentum.angular
+        pair(momentum.linear, "kg m/s"),
+        engineering(momentum.angular, "kg m²/s")
     );
     if counts.halvings > 0 {
         let _ = writeln!(text, "{} of a step that did not converge", count(counts.halvings, "halving"));
     }
     if let Some(critical) = critical_step {
-        let _ = writeln!(text, "the longest stable step about rest is {critical:.3e} s");
+        let _ = writeln!(text, "the longest stable step about rest is {}", engineering(*critical, "s"));
     }
     text
 }
 
 /// A load–deflection curve for people.
 pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
-    let mut text = format!("{}: tip displacement, m\n\n", scene.name);
+    // One prefix for the whole table.
+    let tips = curve.samples.iter().flat_map(|s| [s.linear.x, s.linear.y, s.truth.x, s.truth.y]);
+    let (power, symbol) = prefix(&tips.collect::<Vec<_>>(), "m");
+    let scale = 10f64.powi(-power);
+    let mut text = format!("{}: tip displacement, {symbol}m\n\n", scene.name);
     let _ =
         writeln!(text, "  load   linear theory            exact beam               linear error   tip turn   strain");
     for sample in curve.samples.iter().step_by(5).skip(1) {
@@ -182,10 +192,10 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
             text,
             "{:5.1} %  ({:9.4}, {:9.4})   ({:9.4}, {:9.4})   {:9.2} %   {:7.2}°   {:.5}",
             100.0 * sample.factor,
-            sample.linear.x,
-            sample.linear.y,
-            sample.truth.x,
-            sample.truth.y,
+            scale * sample.linear.x,
+            scale * sample.linear.y,
+            scale * sample.truth.x,
+            scale * sample.truth.y,
             sample.linear_error_percent(),
             sample.rotation.to_degrees(),
             sample.strain
@@ -205,8 +215,7 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     text.push('\n');
     for point in &curve.methods {
         let word = point.status.word();
-        let _ =
-            writeln!(text, "{:<7} at full load: ({:.4}, {:.4}) m, {word}", point.method.id(), point.tip.x, point.tip.y);
+        let _ = writeln!(text, "{:<7} at full load: {}, {word}", point.method.id(), pair(point.tip, "m"));
     }
     text
 }

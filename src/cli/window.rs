@@ -23,7 +23,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
 
 /// `warpbeam` without a command.
 pub(super) fn run_default() -> Result<ExitCode, CliError> {
-    let source = scene::Source { name: registry::DEFAULT.to_owned(), assignments: Vec::new() };
+    let source = scene::Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
     run(source, Path::new(DEFAULT_PICTURE))
 }
 
@@ -38,7 +38,7 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
                 scene: source.name.clone(),
                 set: SetArgs { assignments: source.assignments.clone() },
             };
-            commands::solve(SolveArgs { scene: args, json: false, out: None, no_truth: false })?;
+            commands::solve(SolveArgs { scene: args, json: false, out: None, no_truth: false, no_certificate: false })?;
             app::shot(source, scene, simulation, &app::ShotOptions::default(), output)?;
         }
     }

@@ -12,6 +12,7 @@ use super::{Mesh, MeshError, Segment, side_key};
 use crate::element::{ELEMENTS, ElementType};
 use crate::scene::ElementKind;
 use crate::scene::limits::{COORDINATE, TOTAL_CELLS};
+use crate::words::number;
 
 /// Why a mesh file cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -25,6 +26,9 @@ pub enum GmshError {
         /// What the format has there.
         expected: String,
     },
+    /// A binary file, or no file of Gmsh's.
+    #[error("expected Gmsh format 4.1, ASCII, got a binary file; {SAVE_IT}")]
+    NotText,
     /// The file as a whole lacks something.
     #[error("{0}")]
     Content(String),
@@ -32,6 +36,12 @@ pub enum GmshError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
+
+const SAVE_IT: &str = "save it with `gmsh in.msh -save -format msh41 -o out.msh`";
+const ONLY_PHYSICAL: &str = "Gmsh saves only physical groups once there is one";
+
+/// Distance from z = 0, relative to the size of the mesh, that is taken for rounding.
+const FLAT: f64 = 1e-9;
 
 /// Gmsh's numbers for what it has beside elements of ours, and how many nodes each has.
 const LINES: [(i64, usize); 2] = [(1, 2), (8, 3)];
@@ -86,6 +96,10 @@ struct File {
     elements: Vec<(usize, &'static ElementType, Vec<u64>)>,
     /// Line of the file, curve, and the tags of both ends.
     lines: Vec<(usize, i64, [u64; 2])>,
+    /// Metres per unit of the file.
+    scale: f64,
+    /// The largest distance from z = 0, m, and its line.
+    out_of_plane: (f64, usize),
 }
 
 impl Mesh {
@@ -95,21 +109,60 @@ impl Mesh {
     /// # Errors
     /// [`GmshError`], with the line where there is one.
     pub fn from_gmsh(text: &str, element: ElementKind) -> Result<Self, GmshError> {
-        File::read(text)?.into_mesh(element)
+        Self::from_gmsh_scaled(text, element, 1.0)
+    }
+
+    /// [`Self::from_gmsh`] of a file whose unit is `scale` metres: 0.001 for millimetres.
+    ///
+    /// # Errors
+    /// As [`Self::from_gmsh`].
+    pub fn from_gmsh_scaled(text: &str, element: ElementKind, scale: f64) -> Result<Self, GmshError> {
+        File::read(text, scale)?.into_mesh(element)
+    }
+}
+
+/// The element that a file has, by the headers of its blocks alone; of several, that with the most nodes, so that none is
+/// lost. What is wrong with the file is said when it is read.
+pub(crate) fn gmsh_element(text: &str) -> Option<ElementKind> {
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    lines.find(|line| *line == "$Elements")?;
+    lines.next()?;
+    let mut own: Option<&'static ElementType> = None;
+    while let Some(line) = lines.next() {
+        let block: Option<Vec<usize>> = line.split_ascii_whitespace().map(|n| n.parse().ok()).collect();
+        let Some([_, _, kind, count]) = block.as_deref() else { break };
+        let found = ELEMENTS.iter().copied().find(|e| e.gmsh_type as usize == *kind);
+        own = own.into_iter().chain(found).max_by_key(|e| e.nodes.len());
+        lines.by_ref().take(*count).for_each(drop);
+    }
+    own.map(|e| e.kind)
+}
+
+/// What an element type of Gmsh's is that cannot be read, and what to do about it.
+fn foreign(kind: i64) -> String {
+    let order = "mesh with `-order 1` or `-order 2`";
+    match kind {
+        3 | 10 | 16 => format!("quadrangles (element type {kind}): mesh without recombining"),
+        20 | 21 => format!("triangles of third order (element type {kind}): {order}"),
+        22..=25 => format!("triangles of fourth order or more (element type {kind}): {order}"),
+        26..=28 => format!("lines of third order or more (element type {kind}): {order}"),
+        4..=7 | 11..=14 | 17..=19 | 29..=31 => format!("volumes (element type {kind}): mesh with `gmsh -2`"),
+        _ => format!("element type {kind}"),
     }
 }
 
 impl File {
-    fn read(text: &str) -> Result<Self, GmshError> {
+    fn read(text: &str, scale: f64) -> Result<Self, GmshError> {
         let mut lines = Lines { lines: text.lines().enumerate(), number: 0 };
-        let mut file = Self::default();
-        if lines.next("$MeshFormat")? != "$MeshFormat" {
-            return Err(lines.error("$MeshFormat: a Gmsh file of format 4.1, ASCII"));
+        let mut file = Self { scale, ..Self::default() };
+        let supported = "Gmsh format 4.1, ASCII";
+        if lines.next(&format!("$MeshFormat, {supported}"))? != "$MeshFormat" {
+            return Err(lines.error(&format!("$MeshFormat, {supported}; if Gmsh reads the file, {SAVE_IT}")));
         }
-        let supported = "format 4.1, ASCII, as `gmsh -format msh41` writes it (\"4.1 0 8\")";
-        let format: Vec<f64> = lines.numbers(3, supported)?;
+        let format: Vec<f64> = lines.numbers(3, &format!("{supported} (\"4.1 0 8\"); {SAVE_IT}"))?;
         if format[0] != 4.1 || format[1] != 0.0 {
-            return Err(lines.error(&format!("{supported}, got version {} of type {}", format[0], format[1])));
+            let binary = if format[1] == 0.0 { "" } else { ", binary" };
+            return Err(lines.error(&format!("{supported}, got version {}{binary}; {SAVE_IT}", format[0])));
         }
         lines.finish("MeshFormat")?;
         while let Ok(section) = lines.next("a section") {
@@ -167,13 +220,14 @@ impl File {
             }
             for tag in tags {
                 let x: Vec<f64> = lines.numbers(3, "the coordinates of a node")?;
-                if x[..2].iter().any(|&v| COORDINATE.check(v).is_err()) {
+                let [x, y, z] = [x[0], x[1], x[2]].map(|v| v * self.scale);
+                if [x, y, z].iter().any(|&v| COORDINATE.check(v).is_err()) {
                     return Err(lines.error("coordinates within 1e6 m"));
                 }
-                if x[2] != 0.0 {
-                    return Err(lines.error("a mesh in the plane z = 0"));
+                if z.abs() > self.out_of_plane.0 {
+                    self.out_of_plane = (z.abs(), lines.number);
                 }
-                self.nodes.insert(tag, Vector2::new(x[0], x[1]));
+                self.nodes.insert(tag, Vector2::new(x, y));
             }
         }
         Ok(())
@@ -187,7 +241,9 @@ impl File {
             let element = ELEMENTS.iter().copied().find(|e| i64::from(e.gmsh_type) == kind);
             let line = LINES.iter().find(|l| l.0 == kind).map(|l| l.1);
             if element.is_none() && line.is_none() && kind != POINT {
-                return Err(lines.error("lines and triangles of 2, 3 or 6 nodes (element types 1, 2, 8, 9)"));
+                return Err(
+                    lines.error(&format!("lines and triangles of first or second order, got {}", foreign(kind)))
+                );
             }
             for _ in 0..count {
                 let least = 1 + element.map_or(line.unwrap_or(1), |e| e.nodes.len());
@@ -202,11 +258,26 @@ impl File {
         Ok(())
     }
 
+    fn check_flat(&self) -> Result<(), GmshError> {
+        let (distance, line) = self.out_of_plane;
+        let size = self.nodes.values().map(|x| x.amax()).fold(0.0, f64::max);
+        if distance <= FLAT * size {
+            return Ok(());
+        }
+        let expected = format!("a mesh in the plane z = 0, got z = {} m", number(distance));
+        Err(GmshError::Syntax { line, expected })
+    }
+
     fn into_mesh(self, kind: ElementKind) -> Result<Mesh, GmshError> {
         let entry = kind.entry();
         if self.elements.is_empty() {
-            return Err(GmshError::Content("expected triangles, got none".to_owned()));
+            let message = match self.lines.len() {
+                0 => "expected triangles, got none; mesh with `gmsh -2`".to_owned(),
+                n => format!("expected triangles, got {n} lines and none; {ONLY_PHYSICAL}: make the surface one, too"),
+            };
+            return Err(GmshError::Content(message));
         }
+        self.check_flat()?;
         TOTAL_CELLS
             .check(0.5 * self.elements.len() as f64)
             .map_err(|_| GmshError::Content(format!("expected at most {} triangles", 2.0 * TOTAL_CELLS.max)))?;

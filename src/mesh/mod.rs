@@ -14,6 +14,7 @@ mod locate;
 mod refine;
 
 pub use gmsh::GmshError;
+pub(crate) use gmsh::gmsh_element;
 pub use locate::MaterialPoint;
 
 /// A mesh that cannot be used. Elements are numbered from 0.
@@ -229,6 +230,40 @@ impl Mesh {
     pub fn moved(&self, place: impl Fn(Vector2<f64>) -> Vector2<f64>) -> Result<Self, MeshError> {
         let nodes = self.nodes.iter().map(|&x| place(x)).collect();
         Self::new(nodes, self.element, self.connectivity.clone(), self.edges.clone())
+    }
+
+    /// How many parts it has that share no nodes, and the part of every node; `u32::MAX` for nodes without an element.
+    pub(crate) fn parts(&self) -> (usize, Vec<u32>) {
+        // Union-find: every node points towards the first of its part.
+        fn first(of: &mut [u32], mut node: u32) -> u32 {
+            while of[node as usize] != node {
+                let next = of[of[node as usize] as usize];
+                of[node as usize] = next;
+                node = next;
+            }
+            node
+        }
+        let mut of: Vec<u32> = (0..self.nodes.len() as u32).collect();
+        let mut used = vec![false; self.nodes.len()];
+        for nodes in self.elements() {
+            for &node in nodes {
+                used[node as usize] = true;
+                let (a, b) = (first(&mut of, nodes[0]), first(&mut of, node));
+                of[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut parts = 0;
+        let mut part_of = vec![u32::MAX; of.len()];
+        for node in (0..of.len()).filter(|&node| used[node]) {
+            let first = first(&mut of, node as u32) as usize;
+            // The first of a part has the smallest number, so it comes first.
+            if first == node {
+                part_of[node] = parts;
+                parts += 1;
+            }
+            part_of[node] = part_of[first];
+        }
+        (parts as usize, part_of)
     }
 
     /// The mesh with these edges in the place of its own.

@@ -207,7 +207,7 @@ impl Scene {
     #[must_use]
     pub fn element(&self) -> ElementKind {
         let beam = self.beam.as_ref().map(|b| b.element);
-        beam.or(self.mesh.as_ref().map(|m| m.element)).unwrap_or_default()
+        beam.or(self.mesh.as_ref().and_then(|m| m.element)).unwrap_or_default()
     }
 
     /// Makes every cell of its mesh this element.
@@ -216,7 +216,7 @@ impl Scene {
             beam.element = element;
         }
         if let Some(mesh) = &mut self.mesh {
-            mesh.element = element;
+            mesh.element = Some(element);
         }
     }
 }

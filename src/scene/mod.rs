@@ -14,11 +14,12 @@ pub mod limits;
 mod open;
 mod place;
 pub mod registry;
+pub mod units;
 
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
 pub use error::{Invalid, SceneError};
 pub use limits::OutOfRange;
-pub use open::{Source, open};
+pub use open::{STANDARD_INPUT, Source, locate, open};
 pub use place::{Axis, Load, Place, Probe, Support, TableError};
 
 use crate::words::number;
@@ -102,9 +103,12 @@ pub struct Beam {
 pub struct MeshFile {
     /// The file, relative to the scene file. Its physical curves name the edges.
     pub file: String,
-    /// The element every triangle becomes.
-    #[serde(default)]
-    pub element: ElementKind,
+    /// The element every cell becomes; without one, what the file has, which is found when the scene is opened.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub element: Option<ElementKind>,
+    /// Metres per unit of the file; 1 where it is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
     /// What is in the file; read when the scene is opened.
     #[serde(skip)]
     pub text: Option<Arc<str>>,
@@ -225,7 +229,7 @@ impl Scene {
     pub fn validate(&self) -> Result<(), Invalid> {
         match (&self.beam, &self.mesh) {
             (Some(beam), None) => beam.validate()?,
-            (None, Some(_)) => {}
+            (None, Some(mesh)) => mesh.scale.map_or(Ok(()), |scale| check("mesh.scale", limits::MESH_SCALE, scale))?,
             (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither")),
             (Some(_), Some(_)) => return Err(Invalid::new("mesh", "expected [beam] or [mesh], got both")),
         }

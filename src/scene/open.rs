@@ -1,13 +1,16 @@
 //! From a name or a path, and `--set` assignments, to a validated scene; errors with file and line.
 
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
 use super::error::{Invalid, SceneError};
-use super::{Scene, registry};
+use super::{Scene, registry, units};
+use crate::mesh::{GmshError, gmsh_element};
 
 /// Scene files are small; anything larger is refused before it is read.
 const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -15,11 +18,14 @@ const MAX_FILE_BYTES: u64 = 4 << 20;
 /// Room for the largest mesh that is solved.
 const MAX_MESH_BYTES: u64 = 256 << 20;
 
+/// The name of a scene that is read from standard input.
+pub const STANDARD_INPUT: &str = "-";
+
 /// Where a scene came from: its text and the assignments made to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// The built-in name or the path, as typed.
-    pub name: String,
+    /// The built-in name, the path, or [`STANDARD_INPUT`], as typed. A path may be no text.
+    pub name: PathBuf,
     /// `PATH=VALUE` assignments, in order.
     pub assignments: Vec<String>,
 }
@@ -29,13 +35,55 @@ pub struct Source {
 /// # Errors
 /// [`SceneError`], each with one message that says what was expected.
 pub fn open(source: &Source) -> Result<Scene, SceneError> {
-    let file = PathBuf::from(&source.name);
-    let folder = file.parent().unwrap_or(Path::new("")).to_owned();
-    let text = match registry::find(&source.name) {
-        Some(built_in) => built_in.toml.to_owned(),
-        None => read(&file)?,
-    };
-    parse(&text, Some(&file), Some(&folder), &source.assignments)
+    // The folder of standard input is the current one.
+    let folder = source.name.parent().unwrap_or(Path::new(""));
+    parse(&source.text()?, Some(&source.name), Some(folder), &source.assignments)
+}
+
+/// The place in its scene of what turned out to be wrong only when it was simulated: the `--set`, or file and line.
+#[must_use]
+pub fn locate(source: &Source, invalid: Invalid) -> SceneError {
+    blame(&source.text().unwrap_or_default(), Some(&source.name), &source.assignments, invalid)
+}
+
+impl Source {
+    /// The built-in scene it names.
+    #[must_use]
+    pub fn built_in(&self) -> Option<&'static registry::BuiltIn> {
+        self.name.to_str().and_then(registry::find)
+    }
+
+    fn text(&self) -> Result<String, SceneError> {
+        match self.built_in() {
+            Some(built_in) => Ok(built_in.toml.to_owned()),
+            None if self.name == Path::new(STANDARD_INPUT) => read_standard_input(),
+            None => read(&self.name),
+        }
+    }
+}
+
+/// What standard input holds. It can be read only once, so it is kept for who asks again.
+fn read_standard_input() -> Result<String, SceneError> {
+    static TEXT: OnceLock<Result<String, String>> = OnceLock::new();
+    let text = TEXT.get_or_init(|| {
+        let mut text = String::new();
+        let read = std::io::stdin().lock().take(MAX_FILE_BYTES + 1).read_to_string(&mut text);
+        match read {
+            Err(error) => Err(error.to_string()),
+            Ok(bytes) if bytes as u64 > MAX_FILE_BYTES => Err(too_large(bytes as u64)),
+            Ok(_) => Ok(text),
+        }
+    });
+    text.clone().map_err(|reason| unreadable(Path::new("standard input"), reason))
+}
+
+fn too_large(bytes: u64) -> String {
+    format!("{bytes} bytes, more than the {MAX_FILE_BYTES} a scene may have")
+}
+
+fn unreadable(path: &Path, reason: String) -> SceneError {
+    let built_in = registry::BUILT_IN.iter().map(|b| b.id).collect::<Vec<_>>().join(", ");
+    SceneError::Read { path: path.to_owned(), reason, built_in }
 }
 
 impl Scene {
@@ -58,26 +106,22 @@ impl Scene {
 }
 
 fn read(path: &Path) -> Result<String, SceneError> {
-    let failed = |reason: String| SceneError::Read {
-        path: path.to_owned(),
-        reason,
-        built_in: registry::BUILT_IN.iter().map(|b| b.id).collect::<Vec<_>>().join(", "),
-    };
+    let failed = |reason: String| unreadable(path, reason);
     let metadata = std::fs::metadata(path).map_err(|e| failed(e.to_string()))?;
     if !metadata.is_file() {
         return Err(failed("not a file".to_owned()));
     }
     if metadata.len() > MAX_FILE_BYTES {
-        return Err(failed(format!(
-            "the file has {} bytes, more than the {MAX_FILE_BYTES} a scene may have",
-            metadata.len()
-        )));
+        return Err(failed(too_large(metadata.len())));
     }
     std::fs::read_to_string(path).map_err(|e| failed(e.to_string()))
 }
 
 /// Reads a scene from the text of `file`, with assignments, and its mesh from `folder`.
 fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[String]) -> Result<Scene, SceneError> {
+    let plain = units::plain(text, str::to_owned).map_err(|invalid| located(text, file, invalid))?;
+    // The lines of the plain text are those of the file.
+    let text = plain.as_ref();
     let syntax = |e: toml::de::Error| SceneError::Syntax {
         file: file.map(Path::to_owned),
         line: e.span().map(|span| line_of(text, span.start)),
@@ -95,13 +139,7 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
         }
     }
     let valid = scene.validate().and_then(|()| folder.map_or(Ok(()), |folder| read_mesh(&mut scene, folder)));
-    valid.map_err(|invalid| {
-        let blamed = assignments.iter().rev().find(|a| a.split('=').next().is_some_and(|k| same_key(k, &invalid.key)));
-        match blamed {
-            Some(assignment) => SceneError::Set { assignment: assignment.clone(), message: invalid.message },
-            None => located(text, file, invalid),
-        }
-    })?;
+    valid.map_err(|invalid| blame(text, file, assignments, invalid))?;
     Ok(scene)
 }
 
@@ -118,11 +156,22 @@ fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
             if size > MAX_MESH_BYTES {
                 return Err(failed(format!("expected at most {MAX_MESH_BYTES} bytes, got {size}")));
             }
-            std::fs::read_to_string(&path).map_err(|e| failed(format!("{e}; expected Gmsh format 4.1, ASCII")))?
+            let bytes = std::fs::read(&path).map_err(|e| failed(e.to_string()))?;
+            String::from_utf8(bytes).map_err(|_| failed(GmshError::NotText.to_string()))?
         }
     };
+    mesh.element = mesh.element.or_else(|| gmsh_element(&text));
     mesh.text = Some(text.into());
     Ok(())
+}
+
+/// What is wrong, with the `--set` that made it so, else with its line.
+fn blame(text: &str, file: Option<&Path>, assignments: &[String], invalid: Invalid) -> SceneError {
+    let blamed = assignments.iter().rev().find(|a| a.split('=').next().is_some_and(|k| same_key(k, &invalid.key)));
+    match blamed {
+        Some(assignment) => SceneError::Set { assignment: assignment.clone(), message: invalid.message },
+        None => located(text, file, invalid),
+    }
 }
 
 /// `Invalid` with the line its key is written on, if it is.
@@ -155,16 +204,15 @@ enum AssignError {
     NoPlace { part: String, kind: &'static str },
     #[error("expected an index below {length}, got {part}")]
     Index { part: String, length: usize },
+    #[error("{}", .0.message)]
+    Value(#[from] Invalid),
 }
 
 /// Sets `a.0.b=value` in the table. A value that is no TOML is taken as a string, so that quotes can be left out.
 fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), AssignError> {
     let (key, text) = assignment.split_once('=').ok_or(AssignError::NoAssignment)?;
     let (key, text) = (key.trim(), text.trim());
-    let value = toml::from_str::<Table>(&format!("value = {text}"))
-        .ok()
-        .and_then(|mut t| if t.len() == 1 { t.remove("value") } else { None })
-        .unwrap_or_else(|| Value::String(text.to_owned()));
+    let value = value(key, text)?;
     let mut parts: Vec<&str> = key.split('.').collect();
     let last = parts.pop().filter(|k| !k.is_empty()).ok_or(AssignError::EmptyPath)?;
     let mut place = PlaceMut::Table(table);
@@ -173,6 +221,23 @@ fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), Assign
     }
     *place.slot(last)? = value.clone();
     Ok((key.to_owned(), value))
+}
+
+/// What is assigned to a key: TOML, or text without its quotes, with numbers in any unit.
+fn value(key: &str, text: &str) -> Result<Value, AssignError> {
+    let typed = format!("value = {text}");
+    let plain = units::plain(&typed, |name| name.replacen("value", key, 1))?;
+    let read = toml::from_str::<Table>(&plain).ok();
+    if let Some(value) = read.and_then(|mut t| if t.len() == 1 { t.remove("value") } else { None }) {
+        return Ok(value);
+    }
+    let number = |text: &str| units::number_for(key, text).transpose();
+    let list = text.strip_prefix('[').and_then(|text| text.strip_suffix(']'));
+    if let (Some(list), Ok(Some(_))) = (list, number("0")) {
+        let items = list.split(',').map(|item| Ok(number(item)?.map_or(Value::Boolean(false), Value::Float)));
+        return Ok(Value::Array(items.collect::<Result<_, Invalid>>()?));
+    }
+    Ok(number(text)?.map_or_else(|| Value::String(text.to_owned()), Value::Float))
 }
 
 enum PlaceMut<'a> {

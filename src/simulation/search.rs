@@ -216,10 +216,10 @@ impl Search {
         }
         let Self { forces, workspace, method, .. } = self;
         let load_factor = method.load_factor();
-        let certificate = Certificate {
+        let certificate = timed(&mut self.timings.certify, || Certificate {
             fixed_point_rho: fixed_point_rho(problem, state, load_factor, forces, workspace),
             stable: Some(is_stable(problem, state, load_factor, forces, workspace)),
-        };
+        });
         *self.certificate.insert(certificate)
     }
 

@@ -46,6 +46,7 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
                 assemble: median(|p| p.assemble),
                 factorize: median(|p| p.factorize),
                 solve: median(|p| p.solve),
+                certify: median(|p| p.certify),
             }
         })
         .collect()

@@ -21,7 +21,7 @@ pub fn scene(id: &str) -> Scene {
 
 /// A built-in scene with `--set` assignments.
 pub fn scene_with(id: &str, set: &[&str]) -> Scene {
-    open(&Source { name: id.to_owned(), assignments: set.iter().map(|s| (*s).to_owned()).collect() }).unwrap()
+    open(&Source { name: id.into(), assignments: set.iter().map(|s| (*s).to_owned()).collect() }).unwrap()
 }
 
 /// The names of all built-in scenes.

@@ -24,7 +24,7 @@ pub fn for_picture(id: &str) -> &'static [&'static str] {
 pub fn lab(id: &str) -> Lab {
     let scene = scene_with(id, for_picture(id));
     let simulation = Simulation::new(&scene).unwrap();
-    Lab::new(Source { name: id.to_owned(), assignments: Vec::new() }, scene, simulation)
+    Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation)
 }
 
 pub fn read_png(path: &Path) -> Picture {

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use peak_alloc::PeakAlloc;
 use warpbeam::element::ELEMENTS;
 use warpbeam::mesh::Mesh;
+use warpbeam::scene::units::parse;
 use warpbeam::scene::{ElementKind, Scene, registry};
 use warpbeam::simulation::{Field, Simulation, Status};
 
@@ -187,6 +188,39 @@ fn the_scene_parser_reads_or_refuses_any_text() {
         }
         memory_is_bounded();
     });
+}
+
+/// Any text is a number in any unit, or is refused; a scene reads the same number.
+#[test]
+fn units_are_read_or_refused() {
+    let words = [
+        "1", "12", "-3.5", "1e9", "nan", "inf", " ", "k", "M", "G", "µ", "m", "N", "Pa", "g", "cm", "s", "rad", "°",
+        "%", "/", "·", "^", "²", "³", "-1", "⁻¹", "\"", "\n", "in", "é",
+    ];
+    let accepted = AtomicU32::new(0);
+    bolero::check!().with_iterations(20_000).with_max_len(64).for_each(|bytes: &[u8]| {
+        let mut choices = Choices::new(bytes);
+        let text = match choices.below(4) {
+            0 => String::from_utf8_lossy(bytes).into_owned(),
+            1 => format!("{}{}", choices.of(&["1 ", "-2.5", "1e9 "]), choices.of(&words)),
+            _ => (0..=choices.below(8)).map(|_| choices.of(&words)).collect(),
+        };
+        let unit = choices.of(&["Pa", "N", "m", "kg/m³", "m/s²", "1/s", "rad/s", "°", "%", ""]);
+        match parse(&text, unit) {
+            Ok(value) => {
+                accepted.fetch_add(1, Ordering::Relaxed);
+                assert_eq!(parse(&format!(" {text} "), unit).unwrap().to_bits(), value.to_bits(), "{text}");
+            }
+            Err(error) => assert!(error.to_string().chars().count() < 400, "{error}"),
+        }
+        let file = registry::find("article").unwrap().toml.replacen("young = ", &format!("young = '{text}' #"), 1);
+        if let Ok(scene) = Scene::from_toml(&file) {
+            let value = parse(&text, "Pa").unwrap();
+            assert_eq!(scene.material.young.to_bits(), value.to_bits(), "{text}");
+        }
+        memory_is_bounded();
+    });
+    assert!(accepted.into_inner() > 200);
 }
 
 /// A square of two triangles, its left side named.

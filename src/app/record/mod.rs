@@ -150,7 +150,7 @@ pub fn record(
     if let Some(seconds) = options.seconds {
         scene.dynamics.duration = seconds;
     }
-    let failed = |error| RecordError::Simulation { scene: source.name.clone(), error };
+    let failed = |error| RecordError::Simulation { scene: source.name.display().to_string(), error };
     let simulation = Simulation::new(&scene).map_err(failed)?;
     let again = || Simulation::with_system(&scene, simulation.system().clone()).map_err(failed);
     let gpu = Gpu::headless()?;
@@ -404,7 +404,7 @@ mod tests {
 
     fn simulation(id: &str, set: &[&str]) -> Simulation {
         let assignments = set.iter().map(|s| (*s).to_owned()).collect();
-        Simulation::new(&crate::scene::open(&Source { name: id.to_owned(), assignments }).unwrap()).unwrap()
+        Simulation::new(&crate::scene::open(&Source { name: id.into(), assignments }).unwrap()).unwrap()
     }
 
     fn reel(simulation: &Simulation, between: f64) -> Reel {

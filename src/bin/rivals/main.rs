@@ -29,7 +29,7 @@ mod rapier;
 #[command(name = "rivals")]
 struct Args {
     /// A built-in scene or a scene file.
-    scene: String,
+    scene: PathBuf,
     /// Change a value of the scene.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     assignments: Vec<String>,

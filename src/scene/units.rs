@@ -1,0 +1,367 @@
+//! Numbers with units, wherever a number is typed: `210 GPa`, `-12 kN`, `7.8 g/cm³`. One table of units for scene files,
+//! `--set` and the window; what is read is in the unit that [`limits`] give the value.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use thiserror::Error;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::Invalid;
+use super::limits::{self, Limit};
+
+/// Exponents of metre, kilogram, second and radian. The radian counts, so that `1/s` is no angular velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dimension([i32; 4]);
+
+const LENGTH: Dimension = Dimension([1, 0, 0, 0]);
+const MASS: Dimension = Dimension([0, 1, 0, 0]);
+const TIME: Dimension = Dimension([0, 0, 1, 0]);
+const ANGLE: Dimension = Dimension([0, 0, 0, 1]);
+const NUMBER: Dimension = Dimension([0; 4]);
+const FORCE: Dimension = Dimension([1, 1, -2, 0]);
+const PRESSURE: Dimension = Dimension([-1, 1, -2, 0]);
+const MOMENT: Dimension = Dimension([2, 1, -2, 0]);
+const RATE: Dimension = Dimension([0, 0, -1, 0]);
+
+/// What dimensions are called, and their SI units.
+const NAMES: &[(Dimension, &str, &str)] = &[
+    (NUMBER, "a pure number", ""),
+    (LENGTH, "a length", "m"),
+    (MASS, "a mass", "kg"),
+    (TIME, "a time", "s"),
+    (ANGLE, "an angle", "rad"),
+    (FORCE, "a force", "N"),
+    (PRESSURE, "a pressure", "Pa"),
+    (MOMENT, "a moment or an energy", "N m"),
+    (RATE, "a rate", "1/s"),
+    (Dimension([2, 0, 0, 0]), "an area", "m²"),
+    (Dimension([3, 0, 0, 0]), "a volume", "m³"),
+    (Dimension([-3, 1, 0, 0]), "a density", "kg/m³"),
+    (Dimension([1, 0, -1, 0]), "a velocity", "m/s"),
+    (Dimension([1, 0, -2, 0]), "an acceleration", "m/s²"),
+    (Dimension([0, 0, -1, 1]), "an angular velocity", "rad/s"),
+    (Dimension([0, 1, -2, 0]), "a force on a length", "N/m"),
+];
+
+/// A symbol, its dimension, its size in SI units as a factor and a power of ten, and whether it takes prefixes.
+struct Unit(&'static str, Dimension, f64, i32, bool);
+
+const UNITS: &[Unit] = &[
+    Unit("1", NUMBER, 1.0, 0, false),
+    Unit("%", NUMBER, 1.0, -2, false),
+    Unit("m", LENGTH, 1.0, 0, true),
+    Unit("in", LENGTH, 0.0254, 0, false),
+    Unit("ft", LENGTH, 0.3048, 0, false),
+    Unit("g", MASS, 1.0, -3, true),
+    Unit("t", MASS, 1.0, 3, false),
+    Unit("s", TIME, 1.0, 0, true),
+    Unit("rad", ANGLE, 1.0, 0, true),
+    Unit("°", ANGLE, std::f64::consts::PI / 180.0, 0, false),
+    Unit("deg", ANGLE, std::f64::consts::PI / 180.0, 0, false),
+    Unit("N", FORCE, 1.0, 0, true),
+    Unit("lbf", FORCE, 4.448_221_615_260_5, 0, false),
+    Unit("Pa", PRESSURE, 1.0, 0, true),
+    Unit("bar", PRESSURE, 1.0, 5, true),
+    Unit("psi", PRESSURE, 6_894.757_293_168_361, 0, false),
+    Unit("ksi", PRESSURE, 6_894.757_293_168_361, 3, false),
+    Unit("Nm", MOMENT, 1.0, 0, true),
+    Unit("J", MOMENT, 1.0, 0, true),
+    Unit("Hz", RATE, 1.0, 0, true),
+];
+
+/// SI prefixes and their powers of ten. The micro sign has two code points.
+const PREFIXES: &[(&str, i32)] = &[
+    ("T", 12),
+    ("G", 9),
+    ("M", 6),
+    ("k", 3),
+    ("h", 2),
+    ("d", -1),
+    ("c", -2),
+    ("m", -3),
+    ("µ", -6),
+    ("μ", -6),
+    ("u", -6),
+    ("n", -9),
+    ("p", -12),
+];
+
+/// The numbers of a scene that have a unit, or could be taken to, without their places in lists.
+const KEYS: &[(&str, Limit)] = &[
+    ("beam.length", limits::LENGTH),
+    ("beam.height", limits::HEIGHT),
+    ("mesh.scale", limits::MESH_SCALE),
+    ("material.young", limits::YOUNG),
+    ("material.poisson", limits::POISSON_STRESS),
+    ("material.density", limits::DENSITY),
+    ("material.thickness", limits::THICKNESS),
+    ("support.at", limits::COORDINATE),
+    ("load.at", limits::COORDINATE),
+    ("load.force", limits::FORCE),
+    ("load.acceleration", limits::ACCELERATION),
+    ("load.moment", limits::MOMENT),
+    ("load.pulse.start", limits::PULSE_START),
+    ("load.pulse.duration", limits::PULSE_DURATION),
+    ("probe.at", limits::COORDINATE),
+    ("solver.tolerance", limits::TOLERANCE),
+    ("solver.max_error_percent", limits::MAX_ERROR_PERCENT),
+    ("dynamics.time_step", limits::TIME_STEP),
+    ("dynamics.duration", limits::DURATION),
+    ("dynamics.damping.mass", limits::MASS_DAMPING),
+    ("dynamics.damping.stiffness", limits::STIFFNESS_DAMPING),
+    ("start.velocity", limits::SPEED),
+    ("start.spin", limits::SPIN),
+];
+
+/// Why a text is no number in the unit that was asked for.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum UnitError {
+    /// No number to begin with.
+    #[error("`{text}` is no number; expected {expected}")]
+    NoNumber {
+        /// What was typed.
+        text: String,
+        /// What would have been right.
+        expected: Quantity,
+    },
+    /// What follows the number is no unit.
+    #[error("`{text}` has the unknown unit `{unit}`; expected {expected}")]
+    UnknownUnit {
+        /// What was typed.
+        text: String,
+        /// What is no unit.
+        unit: String,
+        /// What would have been right.
+        expected: Quantity,
+    },
+    /// A unit of something else.
+    #[error("`{text}` is {got}; expected {expected}")]
+    WrongDimension {
+        /// What was typed.
+        text: String,
+        /// What that is.
+        got: Quantity,
+        /// What would have been right.
+        expected: Quantity,
+    },
+}
+
+/// A dimension in words, with the unit it is asked for in: "a pressure (Pa)".
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    dimension: Dimension,
+    unit: Option<&'static str>,
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let known = NAMES.iter().find(|(dimension, ..)| *dimension == self.dimension);
+        let unit = self.unit.or(known.map(|known| known.2)).unwrap_or_default();
+        match known {
+            Some((_, name, _)) if unit.is_empty() => f.write_str(name),
+            Some((_, name, _)) => write!(f, "{name} ({unit})"),
+            None => {
+                f.write_str("a quantity in")?;
+                for (base, power) in ["m", "kg", "s", "rad"].iter().zip(self.dimension.0).filter(|(_, p)| *p != 0) {
+                    write!(f, " {base}")?;
+                    if power != 1 {
+                        write!(f, "^{power}")?;
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// How large a unit is: the factor apart from the power of ten, which is kept whole so that 3 mm is 0.003 m to the last
+/// digit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Scale {
+    dimension: Dimension,
+    factor: f64,
+    tens: i32,
+}
+
+/// A number with an optional unit, in `unit`: a text without one is in `unit` already.
+///
+/// ```
+/// use warpbeam::scene::units::parse;
+/// assert_eq!(parse("210 GPa", "Pa"), Ok(210e9));
+/// assert_eq!(parse("7.8 g/cm³", "kg/m³"), Ok(7800.0));
+/// assert_eq!(
+///     parse("12 kN", "Pa").map_err(|e| e.to_string()),
+///     Err("`12 kN` is a force (N); expected a pressure (Pa)".to_owned())
+/// );
+/// ```
+///
+/// # Errors
+/// [`UnitError`]. Whether the number is in range is not asked here; it may be infinite.
+pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
+    let text = text.trim();
+    let target = scale_of(unit).unwrap_or(Scale { dimension: NUMBER, factor: 1.0, tens: 0 });
+    let expected = || Quantity { dimension: target.dimension, unit: Some(unit) };
+    let (number, rest) = split(text).ok_or_else(|| UnitError::NoNumber { text: shown(text), expected: expected() })?;
+    let rest = rest.trim();
+    if rest.is_empty() {
+        return Ok(number);
+    }
+    let unknown = || UnitError::UnknownUnit { text: shown(text), unit: shown(rest), expected: expected() };
+    let typed = scale_of(rest).ok_or_else(unknown)?;
+    if typed.dimension != target.dimension {
+        let got = Quantity { dimension: typed.dimension, unit: None };
+        return Err(UnitError::WrongDimension { text: shown(text), got, expected: expected() });
+    }
+    let value = if typed.factor == target.factor { number } else { number * (typed.factor / target.factor) };
+    // Powers of ten are exact as they are, their inverses are not.
+    let tens = typed.tens - target.tens;
+    Ok(if tens < 0 { value / 10f64.powi(-tens) } else { value * 10f64.powi(tens) })
+}
+
+/// The number that a text begins with, and what follows.
+fn split(text: &str) -> Option<(f64, &str)> {
+    // Longer than any number that is typed.
+    const LONGEST: usize = 64;
+    let ends = text.char_indices().map(|(i, c)| i + c.len_utf8()).take(LONGEST);
+    ends.filter_map(|end| Some((text.get(..end)?.parse().ok()?, text.get(end..)?))).last()
+}
+
+/// As much of a text as fits a message.
+fn shown(text: &str) -> String {
+    const FITS: usize = 40;
+    if text.chars().nth(FITS).is_none() {
+        return text.to_owned();
+    }
+    text.chars().take(FITS).chain(['…']).collect()
+}
+
+/// Products and quotients of units: `N m`, `kg/m³`, `m/s^2`.
+fn scale_of(text: &str) -> Option<Scale> {
+    let mut all = Scale { dimension: NUMBER, factor: 1.0, tens: 0 };
+    for (i, part) in text.split('/').enumerate() {
+        let mut factors = part.split([' ', '·', '\u{22c5}', '*']).filter(|f| !f.is_empty()).peekable();
+        // Nothing may be left out beside a stroke.
+        if factors.peek().is_none() && !text.is_empty() {
+            return None;
+        }
+        for (j, factor) in factors.enumerate() {
+            let (unit, power) = with_power(factor)?;
+            // A stroke divides by what follows it at once: N/m m is N.
+            let power = if i > 0 && j == 0 { -power } else { power };
+            all.factor *= unit.factor.powi(power);
+            all.tens += unit.tens * power;
+            for (sum, own) in all.dimension.0.iter_mut().zip(unit.dimension.0) {
+                *sum += own * power;
+            }
+        }
+    }
+    // A few units: what is beyond is no unit of anything.
+    (all.tens.abs() <= 60 && all.dimension.0.iter().all(|p| p.abs() <= 12)).then_some(all)
+}
+
+/// A unit and its exponent: `mm`, `cm³`, `s^-1`, `m2`.
+fn with_power(text: &str) -> Option<(Scale, i32)> {
+    if let Some(unit) = with_prefix(text) {
+        return Some((unit, 1));
+    }
+    let is_power = |c: char| c.is_ascii_digit() || "^-\u{207b}¹²³".contains(c);
+    let unit = text.trim_end_matches(is_power);
+    let power: String = text.get(unit.len()..)?.chars().map(plain_digit).collect();
+    let power: i32 = power.strip_prefix('^').unwrap_or(&power).parse().ok()?;
+    Some((with_prefix(unit)?, power)).filter(|_| (1..=4).contains(&power.abs()))
+}
+
+fn plain_digit(c: char) -> char {
+    match c {
+        '\u{207b}' => '-',
+        '¹' => '1',
+        '²' => '2',
+        '³' => '3',
+        c => c,
+    }
+}
+
+fn with_prefix(text: &str) -> Option<Scale> {
+    let find = |symbol: &str| UNITS.iter().find(|unit| unit.0 == symbol);
+    if let Some(&Unit(_, dimension, factor, tens, _)) = find(text) {
+        return Some(Scale { dimension, factor, tens });
+    }
+    PREFIXES.iter().find_map(|(prefix, power)| {
+        let &Unit(_, dimension, factor, tens, _) = find(text.strip_prefix(prefix)?).filter(|unit| unit.4)?;
+        Some(Scale { dimension, factor, tens: tens + power })
+    })
+}
+
+/// The unit of what `key` holds; `None` for what is no such number.
+fn unit_of(key: &str) -> Option<&'static str> {
+    let is_name = |part: &&str| part.parse::<usize>().is_err();
+    let key: Vec<&str> = key.split('.').filter(is_name).collect();
+    let key = key.join(".");
+    KEYS.iter().find(|(known, _)| *known == key).map(|(_, limit)| limit.unit)
+}
+
+/// A number that is typed as text for `key`; `None` where `key` holds no number with a unit.
+pub(super) fn number_for(key: &str, text: &str) -> Option<Result<f64, Invalid>> {
+    let unit = unit_of(key)?;
+    Some(parse(text, unit).map_err(|error| Invalid::new(key, error.to_string())))
+}
+
+/// The text of a TOML file with every number that is typed with its unit replaced by the plain number, line by line, so
+/// that the lines of later errors are those of the file. `rename` says which key of a scene a key of the text is. A text
+/// that is no TOML is left to whoever reads it.
+pub(super) fn plain<'a>(text: &'a str, rename: impl Fn(&str) -> String) -> Result<Cow<'a, str>, Invalid> {
+    // Most scenes have no unit in quotes; all of them have quotes.
+    let Ok(table) = DeTable::parse(text) else { return Ok(Cow::Borrowed(text)) };
+    let mut found = Vec::new();
+    for (name, value) in table.get_ref() {
+        collect(&rename(name.get_ref()), value, &mut found)?;
+    }
+    if found.is_empty() {
+        return Ok(Cow::Borrowed(text));
+    }
+    found.sort_by_key(|(span, _)| span.start);
+    let (mut plain, mut at) = (String::with_capacity(text.len()), 0);
+    for (span, value) in found {
+        let (Some(before), Some(literal)) = (text.get(at..span.start), text.get(span.clone())) else { continue };
+        // Text in three quotes may go over lines, and the lines after it must stay where they are.
+        if literal.contains('\n') {
+            continue;
+        }
+        plain.push_str(before);
+        plain.push_str(&toml_number(value));
+        at = span.end;
+    }
+    plain.push_str(text.get(at..).unwrap_or_default());
+    Ok(Cow::Owned(plain))
+}
+
+type Found = Vec<(std::ops::Range<usize>, f64)>;
+
+fn collect(key: &str, value: &Spanned<DeValue<'_>>, found: &mut Found) -> Result<(), Invalid> {
+    match value.get_ref() {
+        DeValue::String(text) => {
+            if let Some(number) = number_for(key, text) {
+                found.push((value.span(), number?));
+            }
+        }
+        DeValue::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                collect(&format!("{key}.{i}"), item, found)?;
+            }
+        }
+        DeValue::Table(table) => {
+            for (name, inner) in table {
+                collect(&format!("{key}.{}", name.get_ref()), inner, found)?;
+            }
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+fn toml_number(value: f64) -> String {
+    if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
+}
