@@ -120,6 +120,8 @@ pub enum ElementKind {
     T3,
     /// Six nodes, linear strain, curved edges.
     T6,
+    /// Four nodes, incompatible modes, one rotation.
+    Q4,
 }
 
 /// Which way the cells of a beam are cut.
