@@ -600,7 +600,7 @@ fn json_certifies_its_result() {
         ("elastica", "the exact beam"),
         ("article", "a fine t6 solution"),
         ("shear", "a fine t6 solution"),
-        ("bracket", "the t6 solution of its refined mesh"),
+        ("bracket", "the fine solution on its refined mesh"),
     ] {
         let probe = &solve_json(&[id])["probes"][0];
         assert_eq!(probe["truth_source"], source, "{id}");
@@ -674,7 +674,7 @@ fn study_measures_error_against_time() {
     let folder = tempfile::tempdir().unwrap();
     for (id, source) in [
         ("cantilever", "the exact beam"),
-        ("bracket", "the t6 solution of its refined mesh"),
+        ("bracket", "the fine solution on its refined mesh"),
         ("shear", "a fine t6 solution"),
         ("article", "a fine t6 solution"),
     ] {

@@ -111,7 +111,8 @@ impl System {
                 let failed = |message: String| Invalid::new("mesh.file", format!("{}: {message}", file.file));
                 let unread = "its contents are not there: open the scene from its folder".to_owned();
                 let text = file.text.as_deref().ok_or_else(|| failed(unread))?;
-                (Origin::File(file.clone()), Mesh::from_gmsh(text, file.element).map_err(|e| failed(e.to_string()))?)
+                let element = file.element.or_else(|| Mesh::gmsh_element(text)).unwrap_or_default();
+                (Origin::File(file.clone()), Mesh::from_gmsh(text, element).map_err(|e| failed(e.to_string()))?)
             }
             (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither").into()),
         };

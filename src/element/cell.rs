@@ -3,6 +3,8 @@
 /// A reference shape: what elements of any degree on it have in common.
 #[derive(Debug)]
 pub struct Cell {
+    /// What one is called.
+    pub name: &'static str,
     /// Corners, counter-clockwise.
     pub corners: &'static [[f64; 2]],
     /// Area in reference coordinates.
@@ -30,6 +32,7 @@ pub struct Lattice {
 
 /// The triangle (0, 0), (1, 0), (0, 1): ξ and η are the second and the third area coordinate.
 pub const TRIANGLE: Cell = Cell {
+    name: "triangle",
     corners: &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
     area: 0.5,
     children: &[
@@ -45,6 +48,7 @@ pub const TRIANGLE: Cell = Cell {
 
 /// The square [−1, 1]².
 pub const SQUARE: Cell = Cell {
+    name: "quadrilateral",
     corners: &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
     area: 4.0,
     children: &[

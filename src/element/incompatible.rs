@@ -228,8 +228,7 @@ fn add_twist(
     for (a, g) in quad.centre.gradients.iter().enumerate() {
         let g = g * inverse_trace;
         follow[a] = r.apply(quarter(g));
-        other[a] =
-            r.apply(twisted.cross * quad.gamma[a] + quarter(g) * (0.5 * twisted.second) - g * twisted.moment);
+        other[a] = r.apply(twisted.cross * quad.gamma[a] + quarter(g) * (0.5 * twisted.second) - g * twisted.moment);
     }
     if tangent.definite {
         let norm = |v: &[Vector2<f64>; 4]| v.iter().map(Vector2::norm_squared).sum::<f64>().sqrt();
@@ -309,12 +308,7 @@ impl IncompatibleQuads {
 
 /// Adds nodal forces and their absolute values.
 #[inline]
-fn add_forces(
-    nodes: &[u32; 4],
-    own: [Vector2<f64>; 4],
-    force: &mut [Vector2<f64>],
-    magnitude: &mut [Vector2<f64>],
-) {
+fn add_forces(nodes: &[u32; 4], own: [Vector2<f64>; 4], force: &mut [Vector2<f64>], magnitude: &mut [Vector2<f64>]) {
     for (&node, f) in nodes.iter().zip(own) {
         force[node as usize] += f;
         magnitude[node as usize] += f.abs();
@@ -513,8 +507,7 @@ impl Elements for IncompatibleQuads {
             let u = gather(nodes, u);
             let strain = warped_strain(r, &quad.centre.displacement_gradient(&u));
             let q = back(r, quad.twist(&u));
-            energy += quad.centre.area * moduli.energy_density(&strain)
-                + 0.5 * moduli.mu * q.dot(&(symmetric(k) * q));
+            energy += quad.centre.area * moduli.energy_density(&strain) + 0.5 * moduli.mu * q.dot(&(symmetric(k) * q));
         }
         energy
     }

@@ -118,6 +118,12 @@ impl ElementType {
         jacobian
     }
 
+    /// Whether both are of the same shape: a mesh of one can be made a mesh of the other.
+    #[must_use]
+    pub fn shares_cell(&self, other: &Self) -> bool {
+        self.cell.corners == other.cell.corners
+    }
+
     /// The element's nodes in the order that turns it over: counter-clockwise becomes clockwise.
     #[must_use]
     pub fn turned_over(&self) -> Vec<usize> {

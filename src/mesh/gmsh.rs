@@ -1,5 +1,5 @@
-//! Reads Gmsh's MSH format, version 4.1, ASCII: triangles of 3 or 6 nodes in the plane z = 0, and physical curves as
-//! named edges. Own code because what we found on the registry leaves physical names out and panics on damaged files.
+//! Reads Gmsh's MSH format, version 4.1, ASCII: triangles of 3 or 6 nodes or quadrilaterals of 4 in the plane z = 0, and
+//! physical curves as named edges. Own code because what we found on the registry leaves physical names out and panics on damaged files.
 //!
 //! Counts in the file are never trusted with memory: everything read is a line that is there.
 
@@ -9,6 +9,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::{Mesh, MeshError, Segment, side_key};
+use crate::element::cell::{SQUARE, TRIANGLE};
 use crate::element::{ELEMENTS, ElementType};
 use crate::scene::ElementKind;
 use crate::scene::limits::{COORDINATE, TOTAL_CELLS};
@@ -28,7 +29,7 @@ pub enum GmshError {
     /// The file as a whole lacks something.
     #[error("{0}")]
     Content(String),
-    /// The triangles make no mesh.
+    /// The elements make no mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
@@ -89,13 +90,33 @@ struct File {
 }
 
 impl Mesh {
-    /// Reads a mesh. Its triangles become `element`: nodes that the file lacks are put in the middle of straight sides,
-    /// those that `element` does not have are left out.
+    /// Reads a mesh. Its triangles or quadrilaterals become `element`: nodes that the file lacks are put in the middle of
+    /// straight sides, those that `element` does not have are left out.
     ///
     /// # Errors
     /// [`GmshError`], with the line where there is one.
     pub fn from_gmsh(text: &str, element: ElementKind) -> Result<Self, GmshError> {
         File::read(text)?.into_mesh(element)
+    }
+
+    /// The first element of the registry that is shaped like the first triangle or quadrilateral of a file; `None` where
+    /// there is none, or the file is damaged before it.
+    #[must_use]
+    pub fn gmsh_element(text: &str) -> Option<ElementKind> {
+        const EXPECTED: &str = "";
+        let mut lines = Lines { lines: text.lines().enumerate(), number: 0 };
+        while lines.next(EXPECTED).ok()? != "$Elements" {}
+        let header: Vec<u64> = lines.numbers(4, EXPECTED).ok()?;
+        for _ in 0..header[0] {
+            let block: Vec<i64> = lines.numbers(4, EXPECTED).ok()?;
+            if let Some(found) = ELEMENTS.iter().find(|e| i64::from(e.gmsh_type) == block[2]) {
+                return ELEMENTS.iter().find(|e| e.shares_cell(found)).map(|e| e.kind);
+            }
+            for _ in 0..block[3] {
+                lines.next(EXPECTED).ok()?;
+            }
+        }
+        None
     }
 }
 
@@ -187,7 +208,9 @@ impl File {
             let element = ELEMENTS.iter().copied().find(|e| i64::from(e.gmsh_type) == kind);
             let line = LINES.iter().find(|l| l.0 == kind).map(|l| l.1);
             if element.is_none() && line.is_none() && kind != POINT {
-                return Err(lines.error("lines and triangles of 2, 3 or 6 nodes (element types 1, 2, 8, 9)"));
+                return Err(lines.error(
+                    "lines of 2 or 3 nodes, triangles of 3 or 6, quadrilaterals of 4 (element types 1, 8, 2, 9, 3)",
+                ));
             }
             for _ in 0..count {
                 let least = 1 + element.map_or(line.unwrap_or(1), |e| e.nodes.len());
@@ -202,14 +225,40 @@ impl File {
         Ok(())
     }
 
+    /// Refuses elements of another shape than `entry`'s, and says what to do.
+    fn check_shapes(&self, entry: &ElementType) -> Result<(), GmshError> {
+        let mut others = self.elements.iter().filter(|(_, own, _)| !own.shares_cell(entry));
+        let Some((_, other, _)) = others.next() else { return Ok(()) };
+        let (wrong, all) = (1 + others.count(), self.elements.len());
+        let (found, expected) = (other.cell.name, entry.cell.name);
+        let fitting: Vec<String> =
+            ELEMENTS.iter().filter(|e| e.shares_cell(other)).map(|e| format!("\"{}\"", e.id)).collect();
+        let remedy = if wrong == all {
+            format!("set element = {}, or mesh it anew in {expected}s", fitting.join(" or "))
+        } else {
+            format!(
+                "mesh it anew in one shape; in Gmsh, `Recombine Surface` with Mesh.RecombinationAlgorithm = 2 or 3 leaves \
+                 {}s only, and no recombination {}s only",
+                SQUARE.name, TRIANGLE.name
+            )
+        };
+        Err(GmshError::Content(format!(
+            "expected {expected}s for {}, got {wrong} {found}s of {all}: {remedy}",
+            entry.id
+        )))
+    }
+
     fn into_mesh(self, kind: ElementKind) -> Result<Mesh, GmshError> {
         let entry = kind.entry();
         if self.elements.is_empty() {
-            return Err(GmshError::Content("expected triangles, got none".to_owned()));
+            return Err(GmshError::Content("expected triangles or quadrilaterals, got none".to_owned()));
         }
-        TOTAL_CELLS
-            .check(0.5 * self.elements.len() as f64)
-            .map_err(|_| GmshError::Content(format!("expected at most {} triangles", 2.0 * TOTAL_CELLS.max)))?;
+        self.check_shapes(entry)?;
+        // A cell of a beam is two triangles.
+        let a_cell = if entry.cell.corners.len() == 3 { 2.0 } else { 1.0 };
+        TOTAL_CELLS.check(self.elements.len() as f64 / a_cell).map_err(|_| {
+            GmshError::Content(format!("expected at most {} {}s", a_cell * TOTAL_CELLS.max, entry.cell.name))
+        })?;
         // Only the nodes of elements: what else the file holds would be free to float away.
         let mut builder =
             Builder { tags: &self.nodes, numbers: HashMap::new(), between: HashMap::new(), nodes: Vec::new() };

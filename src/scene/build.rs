@@ -207,7 +207,13 @@ impl Scene {
     #[must_use]
     pub fn element(&self) -> ElementKind {
         let beam = self.beam.as_ref().map(|b| b.element);
-        beam.or(self.mesh.as_ref().map(|m| m.element)).unwrap_or_default()
+        beam.or(self.mesh.as_ref().and_then(|m| m.element)).unwrap_or_default()
+    }
+
+    /// The elements that its mesh can be made of: all of a beam's, those of the same shape of a file's.
+    pub fn elements(&self) -> impl Iterator<Item = ElementKind> + Clone + use<> {
+        let (any, own) = (self.mesh.is_none(), self.element().entry());
+        ElementKind::all().filter(move |e| any || e.entry().shares_cell(own))
     }
 
     /// Makes every cell of its mesh this element.
@@ -216,7 +222,7 @@ impl Scene {
             beam.element = element;
         }
         if let Some(mesh) = &mut self.mesh {
-            mesh.element = element;
+            mesh.element = Some(element);
         }
     }
 }

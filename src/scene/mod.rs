@@ -85,12 +85,12 @@ pub struct Beam {
     pub length: f64,
     /// Height, m.
     pub height: f64,
-    /// Cells along and across; each is cut into two triangles.
+    /// Cells along and across; each is a quadrilateral, or is cut into two triangles.
     pub cells: [u32; 2],
-    /// The element every triangle becomes.
+    /// What every cell, or each of its triangles, becomes.
     #[serde(default)]
     pub element: ElementKind,
-    /// Which way cells are cut.
+    /// Which way cells are cut into triangles; quadrilaterals are not cut.
     #[serde(default)]
     pub diagonals: Diagonals,
 }
@@ -102,9 +102,10 @@ pub struct Beam {
 pub struct MeshFile {
     /// The file, relative to the scene file. Its physical curves name the edges.
     pub file: String,
-    /// The element every triangle becomes.
-    #[serde(default)]
-    pub element: ElementKind,
+    /// What every triangle or quadrilateral of the file becomes. Where the scene does not say, it is `t3` or `q4`, found
+    /// when the scene is opened.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub element: Option<ElementKind>,
     /// What is in the file; read when the scene is opened.
     #[serde(skip)]
     pub text: Option<Arc<str>>,

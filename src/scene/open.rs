@@ -8,6 +8,7 @@ use toml::{Table, Value};
 
 use super::error::{Invalid, SceneError};
 use super::{Scene, registry};
+use crate::mesh::Mesh;
 
 /// Scene files are small; anything larger is refused before it is read.
 const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -121,6 +122,7 @@ fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
             std::fs::read_to_string(&path).map_err(|e| failed(format!("{e}; expected Gmsh format 4.1, ASCII")))?
         }
     };
+    mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&text));
     mesh.text = Some(text.into());
     Ok(())
 }
