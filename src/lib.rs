@@ -38,9 +38,9 @@
 //!
 //! Data flows one way, and the modules say so; each imports only from its left:
 //!
-//! [`words`], [`scene`] → [`rotation`], [`material`] → [`element`] → [`mesh`] → [`solver`], [`state`] → [`assembly`] →
-//! [`method`] → [`simulation`] → [`study`] → the commands and the window. [`truth`] needs the scene only; [`article`]
-//! stands beside.
+//! [`words`], [`timings`], [`scene`] → [`rotation`], [`material`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
+//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions → [`simulation`] → [`study`] → the commands and the
+//! window. [`truth`] needs the scene only; [`article`] stands beside.
 //!
 //! The feature `app` (on by default) is the window and the commands; `cli` is the commands alone, without a GPU or a
 //! window. With neither the library names no GPU, window or command line crate.

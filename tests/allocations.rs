@@ -63,8 +63,10 @@ fn iterations_allocate_nothing() {
         scene.solver.method = method.kind;
         let mut simulation = Simulation::new(&scene).unwrap();
         simulation.solve();
-        simulation.set_force(0, [0.0, -900.0]).unwrap();
-        simulation.solve();
+        for force in [900.0, 920.0, 600.0] {
+            simulation.set_force(0, [0.0, -force]).unwrap();
+            simulation.solve();
+        }
         simulation.set_force(0, [0.0, -950.0]).unwrap();
         let made = allocations(|| (0..4).for_each(|_| drop(simulation.step().clone())));
         assert_eq!(made, 0, "{} {}", method.kind.id(), element.id);

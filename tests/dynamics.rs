@@ -6,19 +6,21 @@ mod common;
 use std::f64::consts::TAU;
 
 use common::motion::{beam, drift, first_mode, momentum, run, with};
-use common::scene;
+use common::{ids_of, scene, solve_json, stdout, warpbeam};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::assembly::Mass;
-use warpbeam::dynamics::lowest_frequency;
+use warpbeam::dynamics::{MotionDecision, MotionReport, lowest_frequency};
 use warpbeam::element::{DiscreteGradient, warped_strain};
 use warpbeam::material::Lame;
 use warpbeam::rotation::{Rotation, polar_or};
+use warpbeam::scene::Analysis;
 use warpbeam::truth::ClampedBeam;
 use warpbeam::{IntegratorKind, Load, Material, MethodKind, Scene, Simulation, Status};
 
 const EULER: IntegratorKind = IntegratorKind::ImplicitEuler;
 const TR_BDF2: IntegratorKind = IntegratorKind::TrBdf2;
 const ENERGY_MOMENTUM: IntegratorKind = IntegratorKind::EnergyMomentum;
+const IMPLICIT: [IntegratorKind; 3] = [EULER, TR_BDF2, ENERGY_MOMENTUM];
 const SYMPLECTIC: IntegratorKind = IntegratorKind::SymplecticEuler;
 
 /// Tip displacement of the swing at multiples of 1/240 s, computed independently: `tests/data/swing.py`.
@@ -339,6 +341,216 @@ fn tr_bdf2_is_finite_everywhere() {
         for young in [1e3, 1e6, 1e9, 1e12] {
             for h in [1.0 / 240.0, 1.0 / 60.0, 0.1] {
                 let mut scene = with(id, TR_BDF2, h, 1, 1e4);
+                scene.material.young = young;
+                let mut simulation = Simulation::new(&scene).unwrap();
+                simulation.keep_ledger(false);
+                for _ in 0..100 {
+                    simulation.step();
+                }
+                assert_eq!(*simulation.status(), Status::Running, "{id} E = {young} h = {h}");
+                assert!(simulation.state().is_finite());
+            }
+        }
+    }
+}
+
+/// What `auto` did in a motion.
+fn report(simulation: &Simulation) -> MotionReport {
+    simulation.solution().motion.unwrap().auto.unwrap()
+}
+
+/// The largest distance of two methods' bodies over a motion, percent of the largest displacement of the first; and the
+/// second's simulation.
+fn distance(scene: &Scene, methods: [MethodKind; 2]) -> (f64, Simulation) {
+    let mut simulations = methods.map(|method| Simulation::new(&scene.clone().with_method(method)).unwrap());
+    let (mut farthest, mut largest) = (0.0_f64, 0.0_f64);
+    while *simulations[0].status() == Status::Running {
+        simulations.iter_mut().for_each(|s| {
+            s.step();
+        });
+        let [a, b] = [0, 1].map(|i| simulations[i].displacement());
+        farthest = a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(farthest, f64::max);
+        largest = a.iter().map(|u| u.norm()).fold(largest, f64::max);
+    }
+    let [a, b] = simulations;
+    assert_eq!((a.status(), b.status()), (&Status::Finished, &Status::Finished));
+    (100.0 * farthest / largest, b)
+}
+
+const NEWTON_AND_AUTO: [MethodKind; 2] = [MethodKind::Newton, MethodKind::Auto];
+
+#[test]
+fn auto_moves_as_newton_does_within_the_asked_error() {
+    const ASKED: [f64; 3] = [10.0, 1.0, 0.1];
+    for (id, kind) in ids_of(Analysis::Dynamic).into_iter().flat_map(|id| IMPLICIT.map(|kind| (id, kind))) {
+        let mut scene = scene(id);
+        scene.dynamics.integrator = kind;
+        let mut newton = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).unwrap();
+        scene.solver.method = MethodKind::Auto;
+        let mut autos = ASKED.map(|asked| {
+            scene.solver.max_error_percent = asked;
+            Simulation::new(&scene).unwrap()
+        });
+        let (mut farthest, mut largest) = ([0.0_f64; 3], 0.0_f64);
+        for _ in 0..120 {
+            newton.step();
+            largest = newton.displacement().iter().map(|u| u.norm()).fold(largest, f64::max);
+            for (auto, farthest) in autos.iter_mut().zip(&mut farthest) {
+                auto.step();
+                let off = auto.displacement().iter().zip(newton.displacement()).map(|(a, b)| (a - b).norm());
+                *farthest = off.fold(*farthest, f64::max);
+            }
+        }
+        for ((asked, farthest), auto) in ASKED.into_iter().zip(farthest).zip(&autos) {
+            let error = 100.0 * farthest / largest;
+            assert!(error <= asked, "{id} {} {asked} %: {error} %, {:?}", kind.id(), report(auto));
+        }
+    }
+}
+
+/// The error of a swing is its integrator's, not that of old factors; and these are kept for long.
+#[test]
+fn auto_swings_as_well_with_far_fewer_factorizations() {
+    for (rate, kind) in [(60, TR_BDF2), (120, TR_BDF2), (60, ENERGY_MOMENTUM)] {
+        let mut scene = with("swing", kind, 1.0 / rate as f64, 1, 2.0);
+        let errors = NEWTON_AND_AUTO.map(|method| {
+            scene.solver.method = method;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            let truth = swing_truth().into_iter().skip(240 / rate - 1).step_by(240 / rate);
+            let off = truth.map(|truth| {
+                simulation.step();
+                (simulation.probe("tip").unwrap() - truth).norm()
+            });
+            (off.fold(0.0, f64::max), simulation.motion().unwrap().counts())
+        });
+        let [(newton, of_newton), (auto, of_auto)] = errors;
+        assert!(auto <= 1.05 * newton, "{} 1/{rate}: {auto} {newton}", kind.id());
+        assert!(5 * of_auto.factorizations <= of_newton.factorizations, "{of_auto:?} {of_newton:?}");
+    }
+}
+
+/// Under small loads linear theory serves, for as long as its phase is right; under large ones it does not.
+#[test]
+fn auto_uses_linear_theory_where_it_serves() {
+    for kind in IMPLICIT {
+        let mut small = with("swing", kind, 1.0 / 60.0, 1, 4.0);
+        let large = small.clone();
+        small.scale_loads(1e-5);
+        let (error, auto) = distance(&small, NEWTON_AND_AUTO);
+        assert!(error <= 1.0, "{error}");
+        assert!(auto.is_linear());
+        let MotionReport { decision, linear_steps, factorizations, .. } = report(&auto);
+        assert_eq!((decision, linear_steps, factorizations), (MotionDecision::Linear, 240, 1), "{}", kind.id());
+        let auto = run(&large.with_method(MethodKind::Auto));
+        assert!(!auto.is_linear() && report(&auto).linear_steps < 5, "{:?}", report(&auto));
+    }
+    // Loads between: for a while.
+    let mut between = with("swing", TR_BDF2, 1.0 / 60.0, 1, 10.0);
+    between.scale_loads(2e-3);
+    let (error, auto) = distance(&between, NEWTON_AND_AUTO);
+    assert!(error <= 1.0, "{error}");
+    assert!((10..600).contains(&report(&auto).linear_steps), "{:?}", report(&auto));
+}
+
+/// Linear theory knows no buckling: `auto` must not leave a column to it.
+#[test]
+fn auto_sees_a_column_buckle() {
+    let euler = std::f64::consts::PI.powi(2) * 1e6 / 12.0 * f64::powi(0.05, 3) / 4.0;
+    let mut column =
+        beam(20, 20.0).force("right", [-1.5 * euler, 0.0]).force("right", [0.0, 1e-3 * euler]).pulse(0.0, 0.2);
+    (column.dynamics.time_step, column.dynamics.duration) = (1.0 / 60.0, 8.0);
+    let (error, auto) = distance(&column, NEWTON_AND_AUTO);
+    assert!(auto.probe("tip").unwrap().y.abs() > 0.1, "it buckles: {:?}", auto.probe("tip"));
+    assert!(error <= 1.0, "{error} {:?}", report(&auto));
+}
+
+/// The same scene gives bitwise the same motion, whatever was kept before: what `auto` decides depends on no clock.
+#[test]
+fn auto_is_reproduced_to_the_last_bit() {
+    // The smaller load is left to linear theory until that may have lost the phase.
+    for (id, kind, load) in [("flick", TR_BDF2, 1.0), ("swing", ENERGY_MOMENTUM, 1.0), ("swing", TR_BDF2, 2e-3)] {
+        let mut scene =
+            with(id, kind, 1.0 / 120.0, 1, if load < 1.0 { 8.0 } else { 0.5 }).with_method(MethodKind::Auto);
+        scene.scale_loads(load);
+        let (mut a, mut b) = (Simulation::new(&scene).unwrap(), Simulation::new(&scene).unwrap());
+        b.keep_ledger(false);
+        a.solve();
+        b.solve();
+        assert_eq!(a.state(), b.state(), "{id}");
+        let counts = a.motion().unwrap().counts();
+        a.reset();
+        a.solve();
+        assert_eq!((a.state(), a.motion().unwrap().counts()), (b.state(), counts), "{id} from the start again");
+    }
+}
+
+/// Old factors must not cost what energy–momentum is for; nor must coming and going of linear theory be hidden.
+#[test]
+fn auto_keeps_what_energy_momentum_keeps() {
+    let scene = with("swing", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 10.0).with_method(MethodKind::Auto);
+    assert!(drift(&run(&scene)).abs() <= 1e-6);
+    let scene = with("spin", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 10.0).with_method(MethodKind::Auto);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let before = momentum(&simulation).angular;
+    simulation.solve();
+    assert!((momentum(&simulation).angular / before - 1.0).abs() < 1e-6);
+}
+
+/// A hand takes hold of a body at rest, pulls and lets go, and the material is another one: as under Newton.
+#[test]
+fn auto_follows_a_hand_and_edits() {
+    for kind in IMPLICIT {
+        let mut scene = with("swing", kind, 1.0 / 120.0, 1, 1e3);
+        scene.scale_loads(1e-6);
+        let mut bodies = NEWTON_AND_AUTO.map(|method| Simulation::new(&scene.clone().with_method(method)).unwrap());
+        let mut worst = 0.0_f64;
+        for step in 0..160 {
+            for body in &mut bodies {
+                if step == 20 {
+                    let point = body.system().mesh().locate(Vector2::new(0.9, 0.01)).unwrap();
+                    assert!(body.grab(point));
+                }
+                if (20..80).contains(&step) {
+                    let t = f64::from(step - 20) / 120.0;
+                    body.pull_to(Vector2::new(0.9 - 0.4 * t, 0.01 + 0.9 * t)).unwrap();
+                }
+                if step == 80 {
+                    body.release();
+                    body.set_material(Material::new(2e6, 0.35)).unwrap();
+                }
+                body.step();
+            }
+            worst = worst.max((bodies[0].probe("tip").unwrap() - bodies[1].probe("tip").unwrap()).norm());
+        }
+        let [newton, auto] = &bodies;
+        assert!(newton.probe("tip").unwrap().norm() > 0.1, "it was pulled");
+        assert!(worst <= 0.01 * 0.5, "{} {worst}", kind.id());
+        let ledger = auto.motion().unwrap().ledger();
+        assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{ledger:?}");
+        assert!(report(auto).linear_steps >= 20, "{:?}", report(auto));
+    }
+}
+
+/// What is decided is shown, to programs and to people.
+#[test]
+fn auto_says_what_it_did() {
+    let args = ["swing", "--set", "solver.method=\"auto\"", "--set", "dynamics.duration=0.5"];
+    let json = solve_json(&args);
+    let number = |key: &str| json["auto"][key].as_u64().unwrap();
+    let steps = ["linear_steps", "old_factor_steps", "new_factor_steps"].map(number);
+    assert_eq!(steps.iter().sum::<u64>(), json["steps"].as_u64().unwrap(), "{json}");
+    assert!(number("factorizations") < 30 && number("solves") >= 60, "{json}");
+    let text = stdout(&warpbeam(&[&["solve"], &args[..]].concat()));
+    assert!(text.contains("with an old factor"), "{text}");
+}
+
+/// Whatever the stiffness and the step.
+#[test]
+fn auto_is_finite_everywhere() {
+    for id in ["swing", "flick", "spin", "sway", "chime", "jelly"] {
+        for young in [1e3, 1e6, 1e9, 1e12] {
+            for h in [1.0 / 240.0, 1.0 / 60.0, 0.1] {
+                let mut scene = with(id, TR_BDF2, h, 1, 1e4).with_method(MethodKind::Auto);
                 scene.material.young = young;
                 let mut simulation = Simulation::new(&scene).unwrap();
                 simulation.keep_ledger(false);

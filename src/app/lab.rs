@@ -258,7 +258,7 @@ impl Lab {
     /// Whether the next frame changes the body.
     #[must_use]
     pub fn iterates(&self) -> bool {
-        self.running && !(self.simulation.is_at_rest() && !self.playback.companions_move())
+        self.running && (!self.simulation.is_at_rest() || self.playback.companions_move())
     }
 
     /// Iterates to the end, or steps to the end of the scene's duration, and finds out what is known of the result.

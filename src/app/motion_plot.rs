@@ -132,6 +132,9 @@ fn curves(
     });
 }
 
+/// What it is called, its colour, and its value, J.
+type EnergyKind = (&'static str, Color32, fn(&Sample) -> f64);
+
 fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]) {
     let dark = ui.visuals().dark_mode;
     let color = |on_dark: [u8; 3], on_light: [u8; 3]| {
@@ -139,7 +142,7 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         Color32::from_rgb(r, g, b)
     };
     let sum = ui.visuals().strong_text_color();
-    let kinds: [(&str, Color32, fn(&Sample) -> f64); 6] = [
+    let kinds: [EnergyKind; 6] = [
         ("kinetic", color([110, 170, 255], [20, 90, 200]), |s| s.ledger.kinetic),
         ("elastic", color([255, 180, 80], [190, 100, 0]), |s| s.ledger.elastic),
         ("potential of loads", color([120, 210, 130], [20, 120, 50]), |s| s.ledger.potential),

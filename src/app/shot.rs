@@ -10,7 +10,7 @@ use super::stage::Stage;
 use super::{AppError, ThemeChoice};
 use crate::picture::Picture;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
-use crate::scene::{Scene, Source};
+use crate::scene::{IntegratorKind, Scene, Source};
 use crate::simulation::{Simulation, Status};
 use crate::study::{Extent, Study};
 
@@ -18,7 +18,7 @@ use crate::study::{Extent, Study};
 pub const MAX_SHOT_SIDE: u32 = 8192;
 
 /// What a shot looks like.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShotOptions {
     /// Pixels.
     pub size: [u32; 2],
@@ -28,13 +28,15 @@ pub struct ShotOptions {
     pub curve: bool,
     /// Whether error against time is, measured now; in the place of the load curve.
     pub study: bool,
+    /// Whether the plot of a motion's energy is, and the integrators that are shown beside the scene's.
+    pub motion: Option<Vec<IntegratorKind>>,
     /// Light or dark.
     pub theme: ThemeChoice,
 }
 
 impl Default for ShotOptions {
     fn default() -> Self {
-        Self { size: [1280, 800], panel: true, curve: false, study: false, theme: ThemeChoice::default() }
+        Self { size: [1280, 800], panel: true, curve: false, study: false, motion: None, theme: ThemeChoice::default() }
     }
 }
 
@@ -61,6 +63,10 @@ pub fn shot(
             Ok(study) => lab.show_study(study),
             Err(error) => log::error!("no study: {error}"),
         }
+    }
+    if let Some(integrators) = &options.motion {
+        lab.show_motion_plots();
+        integrators.iter().for_each(|&integrator| lab.compare_with(integrator));
     }
     lab.solve();
     let picture = picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?;

@@ -19,6 +19,8 @@ pub struct Pattern {
     free_of: Vec<u32>,
     /// 1 for free components of nodal vectors, 0 for fixed ones.
     mask: Vec<Vector2<f64>>,
+    /// The nodes that are free to move anywhere, with the free number of their first component.
+    free_nodes: Vec<(u32, u32)>,
 }
 
 impl Pattern {
@@ -53,7 +55,9 @@ impl Pattern {
             column_starts.push(row_indices.len());
         }
         let mask = fixed.chunks_exact(2).map(|f| Vector2::new(f[0], f[1]).map(|f| if f { 0.0 } else { 1.0 }));
-        Self { column_starts, row_indices, free, free_of, mask: mask.collect() }
+        let pairs = (0..).zip(free_of.chunks_exact(2));
+        let free_nodes = pairs.filter(|(_, pair)| !pair.contains(&FIXED)).map(|(node, pair)| (node, pair[0])).collect();
+        Self { column_starts, row_indices, free, free_of, mask: mask.collect(), free_nodes }
     }
 
     /// Number of free unknowns.
@@ -90,6 +94,13 @@ impl Pattern {
     #[must_use]
     pub fn mask(&self) -> &[Vector2<f64>] {
         &self.mask
+    }
+
+    /// The nodes that are free to move anywhere, with the free number of their first component; that of the second
+    /// follows.
+    #[must_use]
+    pub fn free_nodes(&self) -> &[(u32, u32)] {
+        &self.free_nodes
     }
 
     /// Whether both components of a node, x and y, are fixed.

@@ -7,6 +7,8 @@ use thiserror::Error;
 
 use super::args::parse_with_unit;
 use crate::app;
+use crate::dynamics::INTEGRATORS;
+use crate::scene::IntegratorKind;
 use crate::scene::limits::{DURATION, OutOfRange, PLAYBACK_SPEED};
 
 /// The picture written where there is no display.
@@ -31,6 +33,9 @@ pub(super) struct ShotArgs {
     /// With error against time, measured now.
     #[arg(long, conflicts_with = "curve")]
     pub study: bool,
+    /// Of a scene in time: with the plot of its energy, and the same motion under other integrators beside.
+    #[arg(long, value_name = "INTEGRATOR", num_args = 0.., value_parser = parse_integrator, conflicts_with_all = ["curve", "study"])]
+    pub motion: Option<Vec<IntegratorKind>>,
     /// Light or dark.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
@@ -70,6 +75,15 @@ pub(super) struct RecordArgs {
     /// Light or dark.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
+}
+
+/// A name that is no integrator's.
+#[derive(Debug, Error)]
+#[error("expected one of {}", INTEGRATORS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "))]
+struct NoIntegrator;
+
+fn parse_integrator(text: &str) -> Result<IntegratorKind, NoIntegrator> {
+    INTEGRATORS.iter().find(|entry| entry.id == text).map(|entry| entry.kind).ok_or(NoIntegrator)
 }
 
 fn parse_seconds(text: &str) -> Result<f64, OutOfRange> {

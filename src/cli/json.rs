@@ -63,13 +63,23 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
 
 /// What the object of a body in motion has beside.
 fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
-    let MotionResult { time, counts, ledger, momentum, critical_step, .. } = motion;
+    let MotionResult { time, counts, ledger, momentum, critical_step, auto, .. } = motion;
     object["integrator"] = json!(scene.dynamics.integrator.id());
     object["time"] = number(*time);
     object["steps"] = json!(counts.steps);
     object["halvings"] = json!(counts.halvings);
     object["critical_step"] = critical_step.map_or(Value::Null, number);
     object["energy_drift"] = number(ledger.drift());
+    if let Some(auto) = auto {
+        object["auto"] = json!({
+            "decision": auto.decision.id(),
+            "solves": auto.solves,
+            "factorizations": auto.factorizations,
+            "linear_steps": auto.linear_steps,
+            "old_factor_steps": auto.old_factor_steps,
+            "new_factor_steps": auto.new_factor_steps,
+        });
+    }
     object["momentum"] = json!({ "linear": pair(momentum.linear), "angular": number(momentum.angular) });
     let energy = &mut object["energy"];
     energy["integrator"] = number(ledger.integrator);

@@ -69,6 +69,16 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
             count(auto.factorizations, "factorization")
         );
     }
+    if let Some(auto) = solution.motion.and_then(|motion| motion.auto) {
+        let _ = writeln!(
+            text,
+            "auto: {}, {} with an old factor, {} with a new one; {}",
+            count(auto.linear_steps, "step") + " under linear theory",
+            auto.old_factor_steps,
+            auto.new_factor_steps,
+            count(auto.factorizations, "factorization")
+        );
+    }
     let Certificate { stable, fixed_point_rho } = solution.certificate.unwrap_or_default();
     if solution.status == Status::Converged && stable == Some(false) {
         let _ = writeln!(text, "  this equilibrium is unstable: the exact tangent is not positive definite");

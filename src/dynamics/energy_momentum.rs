@@ -37,6 +37,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     solver.follow(state);
     let stage = Stage {
         inertia: 2.0 / (h * h),
+        from_start: false,
         start_force: None,
         between: true,
         // Half of A + G at the mean rotation is about the derivative with respect to the end.

@@ -29,7 +29,8 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     solver.problem.set_time(start.time + h);
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
     // One solve loses least from where the body is, with A alone; an iteration begins nearer to where it leads.
-    let tangent = if solver.solves == Solves::Times(1) {
+    let from_start = solver.solves == Solves::Times(1);
+    let tangent = if from_start {
         Tangent::WARPED
     } else {
         state.displacement.copy_from_slice(&solver.memory.free_flight);
@@ -38,6 +39,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     };
     let stage = Stage {
         inertia: 1.0 / (h * h),
+        from_start,
         start_force: None,
         between: false,
         tangent,

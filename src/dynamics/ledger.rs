@@ -84,6 +84,14 @@ impl Ledger {
         self.throughput += (self.total() - before).abs();
     }
 
+    /// Books that the state is seen under another theory from now on: what it differs by is the integrator's.
+    pub(crate) fn change_theory(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
+        let before = self.total();
+        self.measure(problem, mass, inertia, state);
+        self.integrator -= self.total() - before;
+        self.throughput += (self.total() - before).abs();
+    }
+
     /// Kinetic, elastic and potential energy, J.
     #[must_use]
     pub fn total(&self) -> f64 {

@@ -12,14 +12,18 @@ mod correction;
 mod energy_momentum;
 mod implicit_euler;
 mod ledger;
+mod linear_theory;
 mod modes;
+mod report;
 mod stage;
 mod step;
 mod symplectic_euler;
 mod tr_bdf2;
 
 pub use ledger::{Ledger, Momentum};
+pub(crate) use linear_theory::LinearTheory;
 pub use modes::{critical_step, lowest_frequency};
+pub use report::{MotionDecision, MotionReport};
 pub(crate) use stage::StageSolver;
 pub(crate) use step::{Booking, Memory, Solves, Step};
 pub use step::{Counts, StepError, StopReason};

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::correction::Constant;
+use super::correction::{Accuracy, Weights};
 use super::step::{Booking, Counts, Memory, Solves, StepError, combine, work};
 use crate::assembly::{Hand, Kinematics, Mass, Problem};
 use crate::element::{StrainRate, Tangent};
@@ -20,6 +20,8 @@ use crate::timings::{Timings, timed};
 pub(super) struct Stage<'a> {
     /// α, 1/s².
     pub inertia: f64,
+    /// Whether the stage is solved from where the step began, and not from where the body would fly.
+    pub from_start: bool,
     /// s, N.
     pub start_force: Option<&'a [Vector2<f64>]>,
     /// Whether forces are those between the start of the step and the end of the stage; else those at its end.
@@ -40,6 +42,12 @@ pub(super) struct Stage<'a> {
 const TERMS: usize = 3;
 /// Solves after which the iteration of a stage counts as failed: two to eight do.
 const MOST_SOLVES: u32 = 30;
+/// Relative accuracy of a correction that is the only one of its stage, over the error asked of the motion …
+const ACCURACY: f64 = 0.03;
+/// … and of one that others follow, whose residual says what is left.
+const ACCURACY_OF_ITERATIONS: f64 = 0.05;
+/// A residual that has shrunk to less than this fraction needs no new matrix.
+const PROGRESS: f64 = 0.25;
 /// Rounding of K u over its size: residuals are not smaller.
 const ROUNDING: f64 = 4e-16;
 
@@ -59,6 +67,8 @@ pub(crate) struct StageSolver<'a> {
     pub method: MethodKind,
     pub kinematics: Kinematics,
     pub solves: Solves,
+    /// The error asked of a whole motion, as a fraction.
+    pub max_error: f64,
     /// The solver's, for integrators that must iterate.
     pub tolerance: f64,
     pub memory: &'a mut Memory,
@@ -76,12 +86,16 @@ impl StageSolver<'_> {
             Solves::Times(most) => (most, None),
             Solves::Tolerance(tolerance) => (MOST_SOLVES, Some(tolerance)),
         };
+        self.memory.corrector.begin_stage();
+        let mut before = f64::INFINITY;
         for solves in 0..=most {
             if solves == most && tolerance.is_none() {
                 break;
             }
             let tangent = self.tangent(stage);
-            let residual = self.assemble(stage, tangent, start, state);
+            // An iteration can do without the present matrix as long as the residual says that it gets on.
+            let old = solves > 0 && tolerance.is_some() && self.keeps_factors();
+            let residual = self.assemble(stage, tangent.filter(|_| !old), start, state);
             if !residual.norm.is_finite() {
                 return Err(StepError::NotFinite);
             }
@@ -92,10 +106,12 @@ impl StageSolver<'_> {
             if solves == most {
                 return Err(StepError::NotConverged(most));
             }
-            if let Some(tangent) = tangent {
-                self.factorize(stage, tangent, start, state)?;
+            let gets_on = old && residual.norm <= PROGRESS * before;
+            if old && !gets_on {
+                self.assemble(stage, tangent, start, state);
             }
-            self.correct(state)?;
+            before = residual.norm;
+            self.correct(stage, tangent, gets_on, start, state)?;
             self.follow(state);
         }
         Ok(())
@@ -110,7 +126,9 @@ impl StageSolver<'_> {
     /// Which matrix of the elements the next solve needs; `None` where it has one that is constant.
     fn tangent(&self, stage: &Stage<'_>) -> Option<Tangent> {
         let constant = self.constant(stage);
-        if constant.is_some() && constant == self.memory.corrector.constant {
+        if let (Some(constant), Some(of)) = (constant, self.memory.corrector.constant)
+            && constant.are_about(&of)
+        {
             return None;
         }
         let Tangent { warped, geometric, definite } = stage.tangent;
@@ -119,12 +137,17 @@ impl StageSolver<'_> {
     }
 
     /// What the matrix depends on where it is constant: under linear theory, unless a hand pulls.
-    fn constant(&self, stage: &Stage<'_>) -> Option<Constant> {
+    fn constant(&self, stage: &Stage<'_>) -> Option<Weights> {
         let is_constant = self.kinematics == Kinematics::Linear && self.problem.hand().is_none();
-        is_constant.then_some(Constant {
+        is_constant.then(|| self.weights(stage))
+    }
+
+    /// The parts of a stage's matrix.
+    fn weights(&self, stage: &Stage<'_>) -> Weights {
+        Weights {
             inertia: stage.inertia + stage.damping * self.damping.mass * stage.rate,
             stiffness: stage.tangent.warped + stage.damping * self.damping.stiffness * stage.rate,
-        })
+        }
     }
 
     /// The residual force of a state, and a matrix where one is wanted.
@@ -144,13 +167,16 @@ impl StageSolver<'_> {
     /// The residual force of a state into the memory's forces, and the elements' matrix where one is wanted. Damping
     /// and what the hand pulls are in the residual only.
     fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
-        let Memory { corrector, forces, free_flight, scratch: [way, momentum], .. } = &mut *self.memory;
+        let Memory { corrector, forces, free_flight, mean, scratch: [way, momentum], .. } = &mut *self.memory;
         let (problem, system) = (&*self.problem, self.problem.system());
         let matrix = tangent.map(|tangent| (tangent, &mut corrector.matrix));
-        if stage.between {
-            problem.linearize_between([start, state], forces, matrix);
-        } else {
-            problem.linearize(state, forces, matrix);
+        match self.kinematics {
+            Kinematics::Corotated if stage.between => problem.linearize_between([start, state], forces, matrix),
+            Kinematics::Linear if stage.between => {
+                combine(&mut mean.displacement, [(0.5, &start.displacement), (0.5, &state.displacement)]);
+                problem.linearize(mean, forces, matrix);
+            }
+            _ => problem.linearize(state, forces, matrix),
         }
         if stage.between && self.kinematics == Kinematics::Corotated {
             problem.loads().force_between(system, [start, state], &mut forces.external);
@@ -255,20 +281,71 @@ impl StageSolver<'_> {
         timed(&mut self.timings.factorize, || corrector.factor.factorize(corrector.matrix.values()))
     }
 
-    /// u ← u + K⁻¹ r.
-    fn correct(&mut self, state: &mut State) -> Result<(), StepError> {
-        let Memory { corrector, forces, .. } = &mut *self.memory;
+    /// Whether `auto` looks for corrections with factors of earlier matrices.
+    fn keeps_factors(&self) -> bool {
+        self.method == MethodKind::Auto && self.kinematics == Kinematics::Corotated
+    }
+
+    /// u ← u + K⁻¹ r, with a factor of K where a tangent says of which, else with the one there is. K is at hand, or that
+    /// of an earlier solve of the same stage.
+    fn correct(
+        &mut self,
+        stage: &Stage<'_>,
+        tangent: Option<Tangent>,
+        earlier: bool,
+        start: &State,
+        state: &mut State,
+    ) -> Result<(), StepError> {
         let pattern = self.problem.system().pattern();
-        self.counts.solves += 1;
-        timed(&mut self.timings.solve, || {
-            pattern.restrict(&forces.residual, &mut corrector.free);
-            corrector.factor.solve_in_place(&mut corrector.free);
-            if !corrector.free.iter().all(|v| v.is_finite()) {
-                return Err(StepError::NotFinite);
+        pattern.restrict(&self.memory.forces.residual, &mut self.memory.corrector.free);
+        if let Some(tangent) = tangent
+            && !self.correct_with_kept_factor(stage, earlier, state)
+        {
+            if earlier {
+                self.assemble(stage, Some(tangent), start, state);
             }
-            pattern.add_free(&corrector.free, 1.0, &mut state.displacement);
-            Ok(())
-        })
+            self.factorize(stage, tangent, start, state)?;
+            if self.method == MethodKind::Auto {
+                let weights = self.weights(stage);
+                self.memory.corrector.keep(weights, self.problem.system(), state);
+            }
+            self.back_substitute();
+        } else if tangent.is_none() {
+            self.back_substitute();
+        }
+        let corrector = &self.memory.corrector;
+        if !corrector.free.iter().all(|v| v.is_finite()) {
+            return Err(StepError::NotFinite);
+        }
+        let pattern = self.problem.system().pattern();
+        timed(&mut self.timings.solve, || pattern.add_free(&corrector.free, 1.0, &mut state.displacement));
+        Ok(())
+    }
+
+    fn back_substitute(&mut self) {
+        let corrector = &mut self.memory.corrector;
+        self.counts.solves += 1;
+        timed(&mut self.timings.solve, || corrector.factor.solve_in_place(&mut corrector.free));
+    }
+
+    /// Whether `auto` has found the correction with the factor of an earlier matrix.
+    fn correct_with_kept_factor(&mut self, stage: &Stage<'_>, earlier: bool, state: &State) -> bool {
+        if !self.keeps_factors() {
+            return false;
+        }
+        let accuracy = match self.solves {
+            Solves::Times(_) => ACCURACY * self.max_error,
+            Solves::Tolerance(_) => ACCURACY_OF_ITERATIONS,
+        };
+        let accuracy = Accuracy { relative: accuracy, is_checked: earlier };
+        let (weights, system) = (self.weights(stage), self.problem.system());
+        let Memory { corrector, free_flight, scratch: [flight, _], .. } = &mut *self.memory;
+        combine(flight, [(1.0, free_flight), (-1.0, &state.displacement)]);
+        let guess = stage.from_start.then_some(flight.as_slice());
+        let (solves, done) =
+            timed(&mut self.timings.solve, || corrector.correct_with_kept(weights, accuracy, guess, system, state));
+        self.counts.solves += u64::from(solves);
+        done
     }
 
     /// The force f_ext − f_int that accelerates a body at the time of its state, but for that of a hand, into

@@ -116,6 +116,8 @@ pub(crate) struct Memory {
     pub damping: Vec<Vector2<f64>>,
     /// What the stage that was assembled last leaves unsolved, over the largest of its forces.
     pub residual: f64,
+    /// Half way through a step, under linear theory.
+    pub mean: State,
     /// For passing results.
     pub scratch: [Vec<Vector2<f64>>; 2],
 }
@@ -129,6 +131,7 @@ impl Memory {
             free_flight: zero.clone(),
             damping: zero.clone(),
             residual: 0.0,
+            mean: system.at_rest(),
             scratch: [zero.clone(), zero],
         })
     }

@@ -45,6 +45,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     solver.add_hand_force(hand, &mut net_force);
     let trapezoid = Stage {
         inertia: 4.0 / (g * g),
+        from_start: false,
         start_force: Some(&net_force),
         between: false,
         tangent: solver.solves.tangent(),
@@ -88,6 +89,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     solver.follow(state);
     let backward = Stage {
         inertia: 1.0 / (w * w),
+        from_start: false,
         start_force: None,
         between: false,
         tangent: solver.solves.tangent(),

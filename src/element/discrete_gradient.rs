@@ -8,7 +8,7 @@ use crate::rotation::{Rotation, polar_or};
 /// What two deformation gradients F₀ = I + H₀ and F₁ = I + H₁ have between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteGradient {
-    /// F̄ − R̄, F̄ = (F₀ + F₁)/2; under linear theory its symmetric part.
+    /// F̄ − R̄, F̄ = (F₀ + F₁)/2.
     strain: Matrix2<f64>,
     /// R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁), r = tr S: no rotation in general.
     mean_rotation: Matrix2<f64>,
@@ -19,8 +19,8 @@ pub struct DiscreteGradient {
 }
 
 impl DiscreteGradient {
-    /// Between the displacement gradients H and rotations of two states. The rotations need not be the polar factors:
-    /// with both the identity this is linear theory's.
+    /// Between the displacement gradients H and rotations of two states. Linear theory's is the stress of the mean
+    /// strain, and not this one with no rotation: the skew part of F̄ − R̄ vanishes only with the polar factors.
     #[must_use]
     #[inline]
     pub fn new([h0, h1]: [Matrix2<f64>; 2], [r0, r1]: [Rotation; 2]) -> Self {
@@ -39,11 +39,8 @@ impl DiscreteGradient {
         let (w0, w1) = if sum.abs() > 0.0 { ((2.0 + t0) / sum, (2.0 + t1) / sum) } else { (0.5, 0.5) };
         let mean_turn = turn0 * w0 + turn1 * w1;
         let mean_rotation = Matrix2::identity() + mean_turn;
-        let mean = (h0 + h1) * 0.5;
-        // Linear theory strains by the symmetric part of H; a polar factor that is the identity has no other.
-        let unturned = (r0, r1) == (Rotation::IDENTITY, Rotation::IDENTITY);
         Self {
-            strain: if unturned { (mean + mean.transpose()) * 0.5 } else { mean - mean_turn },
+            strain: (h0 + h1) * 0.5 - mean_turn,
             mean_rotation,
             rotation: polar_or(&mean_rotation, r1),
             trace: 0.5 * (t0 + t1),

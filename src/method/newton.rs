@@ -48,6 +48,7 @@ pub struct Newton {
     /// The last load factor whose equilibrium was found, and that equilibrium.
     reached: f64,
     base: Option<State>,
+    is_based: bool,
     load_step: f64,
     load_steps: u32,
     steps: u32,
@@ -64,6 +65,7 @@ impl Default for Newton {
             target: 1.0,
             reached: 0.0,
             base: None,
+            is_based: false,
             load_step: 1.0,
             load_steps: 1,
             steps: 0,
@@ -96,7 +98,7 @@ impl Newton {
 
     /// The last equilibrium: of no load that is the body at rest, wherever the iteration started.
     fn restore(&mut self, state: &mut State) {
-        let Some(base) = &mut self.base else { return };
+        let Some(base) = self.base.as_mut().filter(|_| self.is_based) else { return };
         if self.reached == 0.0 {
             base.reset();
         }
@@ -137,7 +139,8 @@ impl Newton {
 
 impl Method for Newton {
     fn restart(&mut self, _: Restart) {
-        *self = Self::default();
+        // The room for it is kept: a frame allocates nothing.
+        *self = Self { base: self.base.take(), ..Self::default() };
     }
 
     fn tangent(&self) -> Option<Tangent> {
@@ -153,8 +156,12 @@ impl Method for Newton {
     }
 
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        if self.base.is_none() {
-            self.base = Some(it.state.clone());
+        if !self.is_based {
+            match &mut self.base {
+                Some(base) if base.accept(it.state).is_ok() => base.copy_from(it.state),
+                base => *base = Some(it.state.clone()),
+            }
+            self.is_based = true;
         }
         self.steps += 1;
         if self.descends {

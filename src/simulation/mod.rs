@@ -9,7 +9,7 @@ use thiserror::Error;
 use self::motion::start_of;
 use self::search::Search;
 use crate::assembly::{Change, Forces, Hand, Kinematics, Mass, Matrix, NodalProbe, Problem, System, SystemError};
-use crate::dynamics::{Counts, Ledger, Momentum};
+use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
 use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
@@ -93,6 +93,8 @@ pub struct MotionResult {
     pub momentum: Momentum,
     /// The longest stable step, s, of an integrator that has one.
     pub critical_step: Option<f64>,
+    /// What `auto` decided; `None` for other methods.
+    pub auto: Option<MotionReport>,
 }
 
 /// A scene at work: on its way to equilibrium, or in motion.
@@ -460,6 +462,7 @@ impl Simulation {
                 ledger: *motion.ledger(),
                 momentum: motion.momentum(&self.body),
                 critical_step: motion.critical_step(),
+                auto: motion.auto_report(&self.body.scene),
             }),
         }
     }

@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
 use crate::dynamics::{
-    Booking, Counts, Inertia, IntegratorEntry, Ledger, Memory, Momentum, Solves, StageSolver, Step, StepError,
-    StopReason, critical_step,
+    Booking, Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionDecision, MotionReport,
+    Solves, StageSolver, Step, StepError, StopReason, critical_step,
 };
 use crate::scene::{Load, MethodKind, Scene, Start};
 use crate::solver::SolverError;
@@ -35,6 +35,8 @@ pub struct Motion {
     start: State,
     middle: State,
     counts: Counts,
+    linear: LinearTheory,
+    report: MotionReport,
     ledger: Ledger,
     keeps_ledger: bool,
     /// Steps are checked for energy that comes from nowhere. A hand pulls harder on few nodes than loads do: a step that
@@ -58,6 +60,8 @@ impl Motion {
             start: state.clone(),
             middle: state.clone(),
             counts: Counts::default(),
+            linear: LinearTheory::default(),
+            report: MotionReport::default(),
             ledger: Ledger::default(),
             keeps_ledger: true,
             is_guarded: false,
@@ -75,9 +79,13 @@ impl Motion {
     /// Begins where the body is, with the velocity it has.
     pub(super) fn begin(&mut self, body: &mut Body) {
         let Body { scene, problem, state } = body;
+        self.linear.forget();
+        // What came before must not be seen in what comes.
+        self.memory.corrector.forget();
         problem.system().follow(state, self.kinematics(scene));
         problem.set_time(state.time);
         self.counts = Counts::default();
+        self.report = MotionReport::default();
         self.stopped = None;
         self.quiet_steps = 0;
         self.is_guarded = problem.hand().is_some();
@@ -93,11 +101,13 @@ impl Motion {
         let mass_changes = scene.material.area_density() != before.material.area_density();
         if change == Change::Unknowns {
             self.memory = Memory::new(problem.system())?;
+            self.linear.forget_system();
         }
         if change == Change::Unknowns || mass_changes {
             self.mass = Mass::new(problem.system(), scene.material.area_density());
         }
         self.memory.corrector.forget();
+        self.linear.forget();
         let fixed_stay = problem.system().pattern().are_fixed_at_rest(&state.displacement);
         if !(fixed_stay && state.is_finite()) {
             start(scene, problem, &self.mass, state);
@@ -140,14 +150,17 @@ impl Motion {
         let end = body.state.time + body.scene.dynamics.time_step;
         self.last_step = Timings::default();
         let (mut halvings, mut left) = (0, 1_u32);
+        let factorizations = self.counts.factorizations;
         while left > 0 {
             self.start.copy_from(&body.state);
             let part = body.scene.dynamics.time_step / f64::from(1_u32 << halvings);
-            match self.try_step(body, part) {
+            match self.take_step(body, part).and_then(|booking| self.book(&booking, body)) {
                 Ok(()) => left -= 1,
                 Err(error) => {
                     body.state.copy_from(&self.start);
-                    if halvings == MOST_HALVINGS || entry(&body.scene).is_explicit() {
+                    // Beyond its critical step an explicit scheme is to be seen to fail; a hand must not make it fail.
+                    let gives_up = entry(&body.scene).is_explicit() && !self.is_guarded;
+                    if halvings == MOST_HALVINGS || gives_up {
                         self.stopped = Some(self.reason(error, part));
                         break;
                     }
@@ -163,6 +176,11 @@ impl Motion {
             self.counts.steps += 1;
             let still = largest(&body.state.velocity) < UNSEEN * body.problem.system().size();
             self.quiet_steps = if still { self.quiet_steps.saturating_add(1) } else { 0 };
+            self.report.note(match self.counts.factorizations > factorizations {
+                _ if self.linear.is_in_use() => MotionDecision::Linear,
+                true => MotionDecision::NewFactor,
+                false => MotionDecision::OldFactor,
+            });
             if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
                 self.stopped = Some(StopReason::RanAway(FARTHEST));
             }
@@ -170,15 +188,11 @@ impl Motion {
         self.timings.add(&self.last_step);
     }
 
-    /// A step of length h, s, with its books.
-    fn try_step(&mut self, body: &mut Body, h: f64) -> Result<(), StepError> {
-        let booking = self.integrate(body, h)?;
-        if !body.state.is_finite() {
-            return Err(StepError::NotFinite);
-        }
+    /// Enters a step into the books; fails where they show that it has failed.
+    fn book(&mut self, booking: &Booking, body: &Body) -> Result<(), StepError> {
         if self.keeps_books() {
-            let (Body { scene, problem, state }, mut ledger) = (&*body, self.ledger);
-            ledger.book(&booking, problem, &self.mass, inertia(scene), state);
+            let (Body { scene, problem, state }, mut ledger) = (body, self.ledger);
+            ledger.book(booking, problem, &self.mass, inertia(scene), state);
             if self.is_guarded && ledger.has_gained_since(&self.ledger, MOST_ADDED) {
                 return Err(StepError::AddedEnergy);
             }
@@ -191,9 +205,48 @@ impl Motion {
         self.keeps_ledger || self.is_guarded
     }
 
-    fn integrate(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
+    /// A step of h; `auto` takes it under linear theory where that serves.
+    fn take_step(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
+        let asked = asked_error(&body.scene);
+        let decides = decides(&body.scene);
+        if decides && body.problem.hand().is_none() && self.linear.is_worth_a_try(&body.state, asked) {
+            let was_in_use = self.linear.is_in_use();
+            if !was_in_use {
+                self.see(body, Kinematics::Linear);
+            }
+            if let Ok(booking) = self.try_step(body, Kinematics::Linear, h)
+                && self.linear.accepts(&body.problem, &self.mass, [&self.start, &body.state], h, asked)?
+            {
+                if !was_in_use && self.keeps_books() {
+                    self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+                }
+                return Ok(booking);
+            }
+            body.state.copy_from(&self.start);
+            self.linear.leave();
+            self.see(body, Kinematics::Corotated);
+            if was_in_use && self.keeps_books() {
+                self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+            }
+        } else if self.linear.is_in_use() {
+            self.linear.leave();
+            self.see(body, Kinematics::Corotated);
+            if self.keeps_books() {
+                self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+            }
+        }
+        self.try_step(body, self.kinematics(&body.scene), h)
+    }
+
+    /// Sees the start of a step under another theory.
+    fn see(&mut self, body: &mut Body, kinematics: Kinematics) {
+        body.problem.system().follow(&mut body.state, kinematics);
+        body.state.knows_net_force = false;
+        self.start.copy_from(&body.state);
+    }
+
+    fn try_step(&mut self, body: &mut Body, kinematics: Kinematics, h: f64) -> Result<Booking, StepError> {
         let books = self.keeps_books();
-        let kinematics = self.kinematics(&body.scene);
         let Body { scene, problem, state } = body;
         let settings = &scene.dynamics;
         let solves = match settings.iterations {
@@ -208,6 +261,7 @@ impl Motion {
                 method: scene.solver.method,
                 kinematics,
                 solves,
+                max_error: asked_error(scene),
                 tolerance: scene.solver.tolerance,
                 memory: &mut self.memory,
                 counts: &mut self.counts,
@@ -230,7 +284,8 @@ impl Motion {
     }
 
     fn kinematics(&self, scene: &Scene) -> Kinematics {
-        if scene.solver.method == MethodKind::Linear { Kinematics::Linear } else { Kinematics::Corotated }
+        let linear = scene.solver.method == MethodKind::Linear || self.linear.is_in_use();
+        if linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
     /// Whether strains are those of linear theory.
@@ -261,7 +316,7 @@ impl Motion {
         }
         self.is_guarded = true;
         self.quiet_steps = 0;
-        self.memory.corrector.forget();
+        self.memory.corrector.matrix_changes();
     }
 
     /// What the last stage has left unsolved, over the largest of its forces.
@@ -304,6 +359,13 @@ impl Motion {
         self.counts
     }
 
+    /// What `auto` has decided since the start; `None` for other methods, and for integrators that solve nothing.
+    #[must_use]
+    pub fn auto_report(&self, scene: &Scene) -> Option<MotionReport> {
+        let Counts { solves, factorizations, .. } = self.counts;
+        decides(scene).then_some(MotionReport { solves, factorizations, ..self.report })
+    }
+
     /// The longest stable step about rest, s; `None` for an integrator that has no such limit.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
@@ -313,6 +375,16 @@ impl Motion {
 
 fn entry(scene: &Scene) -> &'static IntegratorEntry {
     scene.dynamics.integrator.entry()
+}
+
+/// Whether `auto` decides how steps are solved.
+fn decides(scene: &Scene) -> bool {
+    scene.solver.method == MethodKind::Auto && !entry(scene).is_explicit()
+}
+
+/// The error asked of a motion, as a fraction.
+fn asked_error(scene: &Scene) -> f64 {
+    0.01 * scene.solver.max_error_percent
 }
 
 fn inertia(scene: &Scene) -> Inertia {

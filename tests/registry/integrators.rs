@@ -6,7 +6,7 @@ use libtest_mimic::Trial;
 use nalgebra::Vector2;
 use warpbeam::assembly::Mass;
 use warpbeam::dynamics::{INTEGRATORS, IntegratorEntry, lowest_frequency};
-use warpbeam::{Material, Simulation, Status};
+use warpbeam::{Material, MethodKind, Simulation, Status};
 
 use crate::common::motion::{beam, first_mode, momentum, run, with};
 use crate::{Test, suite};
@@ -19,6 +19,7 @@ const TESTS: &[Test<Entry>] = &[
     ("a_pulse_leaves_its_impulse", a_pulse_leaves_its_impulse),
     ("the_ledger_closes", the_ledger_closes),
     ("damping_takes_what_rayleigh_says", damping_takes_what_rayleigh_says),
+    ("linear_theory_is_the_limit_of_small_loads", linear_theory_is_the_limit_of_small_loads),
     ("motion_is_reproduced_to_the_last_bit", motion_is_reproduced_to_the_last_bit),
 ];
 
@@ -148,6 +149,15 @@ fn damping_takes_what_rayleigh_says(entry: Entry) {
         let off = kept(damping.0, damping.1) / undamped;
         assert!((off - 1.0).abs() < 0.003, "{damping:?}: {off}");
     }
+}
+
+/// Under small loads linear theory moves as the corotated body does.
+fn linear_theory_is_the_limit_of_small_loads(entry: Entry) {
+    let mut scene = with("swing", entry.kind, step(entry, 1.0 / 60.0), 1, 1.0);
+    scene.scale_loads(1e-6);
+    let tip = |method| run(&scene.clone().with_method(method)).probe("tip").unwrap();
+    let [corotated, linear] = [MethodKind::Newton, MethodKind::Linear].map(tip);
+    assert!((corotated - linear).norm() < 1e-4 * linear.norm(), "{corotated} {linear}");
 }
 
 /// The same scene gives bitwise the same motion, with or without a ledger; a snapshot goes on as the original does; and a

@@ -148,6 +148,12 @@ fn motion_rows(row: &mut Row<'_>, input: &PanelInput<'_>, motion: &Motion) {
         format!("{}, {}{halvings}", counts.steps, count(counts.solves, "solve")),
         "Time steps since the start; a step that does not converge is halved",
     );
+    if let Some(auto) = motion.auto_report(input.scene) {
+        let factors = count(auto.factorizations, "factorization");
+        let linear = count(auto.linear_steps, "step");
+        let tip = format!("{factors} for {}; {linear} under linear theory", count(auto.solves, "back substitution"));
+        row("Auto", sentence(&auto.decision.to_string()), &tip);
+    }
     let ledger = motion.ledger();
     let joules = |value: f64| format!("{} J", format::short(value));
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");

@@ -138,7 +138,7 @@ impl Expansion {
             });
             workspace.tangent = None;
             if stable {
-                *checked = Some(probe.displacement.clone());
+                checked.get_or_insert_default().clone_from(&probe.displacement);
                 return true;
             }
         }

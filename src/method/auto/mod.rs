@@ -192,8 +192,11 @@ impl Auto {
     }
 
     fn accept(&mut self, it: &Iteration<'_>) -> Verdict {
+        // Room that is there is used again.
+        let mut residual_force = self.accepted.take().map_or_else(Vec::new, |accepted| accepted.residual_force);
+        residual_force.clone_from(&it.forces.residual);
         self.accepted = Some(Accepted {
-            residual_force: it.forces.residual.clone(),
+            residual_force,
             max_error: it.tolerances.error,
             estimated_error: self.report.estimated_error,
         });
@@ -221,6 +224,7 @@ impl Method for Auto {
                 refused: old.refused,
                 accepted: old.accepted,
                 linear: old.linear,
+                step: old.step,
                 ..Self::default()
             },
         };
