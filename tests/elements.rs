@@ -376,3 +376,32 @@ fn q4_locks_neither_in_shear_nor_in_volume() {
         assert!(error.abs() < 0.5, "L/H = {length}: {error} %");
     }
 }
+
+/// Stretched, so that tension alone makes G positive, and twisted, so that the turning part of G is not: its positive
+/// part is no less than G, and no less than nothing.
+#[test]
+fn q4_positive_part_of_g_is_positive() {
+    let mut scene = Scene::named("One").with_material(material(Plane::Stress));
+    scene.analysis = warpbeam::scene::Analysis::Dynamic;
+    let problem = one_quad(&scene);
+    let twist = [1.0, -1.0, 1.0, -1.0].map(|h| Vector2::new(0.2, 0.3) * h);
+    let u: Vec<_> = QUAD.iter().zip(twist).map(|(x, twist)| Vector2::from(*x) * 0.5 + twist).collect();
+    let state = problem.system().state_of(&u).unwrap();
+    let [exact, definite, warped] = [Tangent::EXACT, Tangent::DEFINITE, Tangent::WARPED].map(|tangent| {
+        let mut matrix = Matrix::new(problem.system().pattern());
+        problem.linearize(&state, &mut Forces::new(4), Some((tangent, &mut matrix)));
+        let mut dense = DMatrix::zeros(8, 8);
+        for column in 0..8 {
+            let (mut unit, mut image) = ([0.0; 8], [0.0; 8]);
+            unit[column] = 1.0;
+            matrix.multiply(problem.system().pattern(), &unit, &mut image);
+            dense.set_column(column, &DVector::from_column_slice(&image));
+        }
+        dense
+    });
+    let rounding = 1e-12 * exact.norm();
+    let over_exact = (&definite - &exact).symmetric_eigenvalues();
+    assert!(over_exact.min() > -rounding && over_exact.max() > 1e-3 * exact.norm(), "{over_exact}");
+    assert!((&definite - &warped).symmetric_eigenvalues().min() > -rounding);
+    assert!((&exact - &warped).symmetric_eigenvalues().min() < -1e-3 * exact.norm());
+}
