@@ -1,4 +1,4 @@
-//! **warpbeam** bends 2D triangle beams with the *warped stiffness* (corotational finite element) method, and says what
+//! **warpbeam** bends 2D beams of triangles and quadrilaterals with the *warped stiffness* (corotational finite element) method, and says what
 //! each method costs and how wrong it is.
 //!
 //! ```
@@ -24,7 +24,7 @@
 //! | `R`, `S` | polar factors F = R S; R a proper rotation, S symmetric | 2 × 2 |
 //! | `E`, `ν`, `ρ`, `t` | Young's modulus Pa, Poisson ratio, density kg/m³, thickness m | scalars |
 //! | `λ`, `μ` | Lamé constants of the plane problem | Pa |
-//! | `Ke` | linear element stiffness ∫ Bᵀ C B t dA | 6 × 6 (`t3`), 12 × 12 (`t6`), N/m |
+//! | `Ke` | linear element stiffness ∫ Bᵀ C B t dA | 6 × 6 (`t3`), 12 × 12 (`t6`), 8 × 8 (`q4`), N/m |
 //! | `A` | warped stiffness Σ R Ke Rᵀ | 2n × 2n, sparse, N/m |
 //! | `G` | geometric part of the exact tangent A + G | as `A` |
 //! | `ρ` | error factor of the warped iteration, largest eigenvalue of A⁻¹G in magnitude | scalar |

@@ -458,7 +458,7 @@ fn bad_scene_files_get_one_clear_message() {
         // Unknown keys and words.
         ("length = 2.0", "length = 2.0\nlenght = 3.0", Some(4), "unknown field `lenght`"),
         ("kind = \"force\"", "kind = \"wind\"", Some(16), "unknown variant `wind`"),
-        ("cells = [4, 2]", "cells = [4, 2]\nelement = \"q4\"", Some(6), "unknown variant `q4`"),
+        ("cells = [4, 2]", "cells = [4, 2]\nelement = \"q9\"", Some(6), "unknown variant `q9`"),
         ("edge = \"right\"", "edge = \"rihgt\"", Some(17), "expected one of bottom, left, right, top"),
         // Numbers out of range.
         ("length = 2.0", "length = -2.0", Some(3), "expected 1e-6 to 1000000 m, got -2"),
@@ -714,7 +714,7 @@ fn json_certifies_its_result() {
         ("elastica", "the exact beam"),
         ("article", "a fine t6 solution"),
         ("shear", "a fine t6 solution"),
-        ("bracket", "the t6 solution of its refined mesh"),
+        ("bracket", "the fine solution on its refined mesh"),
     ] {
         let probe = &solve_json(&[id])["probes"][0];
         assert_eq!(probe["truth_source"], source, "{id}");
@@ -747,7 +747,7 @@ fn extremes_writes_the_stability_atlas() {
     let count = |element: &str, method: &str, outcome: &str| {
         rows.iter().filter(|r| (r[0], r[1]) == (element, method) && (outcome.is_empty() || r[8] == outcome)).count()
     };
-    for element in ["t3", "t6"] {
+    for element in ["t3", "t6", "q4"] {
         let all = count(element, "newton", "");
         // What rounding takes: L/H = 1000 with ν = 0.4999, and a cube under a thousand times what bends it.
         assert!(count(element, "newton", "certified") * 100 >= 80 * all, "{element}");
@@ -788,7 +788,7 @@ fn study_measures_error_against_time() {
     let folder = tempfile::tempdir().unwrap();
     for (id, source) in [
         ("cantilever", "the exact beam"),
-        ("bracket", "the t6 solution of its refined mesh"),
+        ("bracket", "the fine solution on its refined mesh"),
         ("shear", "a fine t6 solution"),
         ("article", "a fine t6 solution"),
     ] {

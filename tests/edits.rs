@@ -127,7 +127,7 @@ fn a_mesh_file_is_read_once() {
     assert!(refused.contains("square.msh") && refused.contains("open the scene from its folder"), "{refused}");
     let mut simulation = Simulation::new(&scene).unwrap();
     folder.close().unwrap();
-    for element in warpbeam::ElementKind::all() {
+    for element in scene.elements() {
         simulation.change_scene(&scene.clone().with_element(element)).unwrap();
         simulation.set_force(0, [0.0, 50.0]).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged);

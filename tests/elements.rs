@@ -3,13 +3,15 @@
 
 mod common;
 
-use nalgebra::{DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, SMatrix, Vector2};
 use warpbeam::article::stiffness::ElementStiffness;
-use warpbeam::assembly::{Problem, System};
-use warpbeam::element::{QuadraturePoint, warped_strain};
+use warpbeam::assembly::{Forces, Matrix, Problem, System};
+use warpbeam::element::{QuadraturePoint, Tangent, warped_strain};
 use warpbeam::material::Lame;
+use warpbeam::mesh::Mesh;
 use warpbeam::rotation::polar;
-use warpbeam::{ElementKind, Load, Material, Plane, Scene};
+use warpbeam::truth::error_percent;
+use warpbeam::{ElementKind, Load, Material, MethodKind, Plane, Scene, Simulation, Status};
 
 const X: [[f64; 2]; 3] = [[0.0, 0.0], [2.0, 0.3], [0.4, 1.1]];
 const MOVED: [[f64; 2]; 3] = [[0.1, -0.2], [0.9, 1.7], [-0.8, 0.7]];
@@ -192,4 +194,214 @@ fn a_force_at_a_point_pulls_the_nearest_node() {
     let result = common::solved(&scene).solution();
     assert!((result.reaction.force + Vector2::new(3.0, -7.0)).norm() < 1e-4);
     assert!(result.probes[0].u.y < 0.0 && result.energy.external > 0.0);
+}
+
+/// A quadrilateral far from a parallelogram.
+const QUAD: [[f64; 2]; 4] = [[0.1, -0.2], [2.0, 0.3], [1.5, 1.4], [-0.3, 1.0]];
+
+/// Taylor, Beresford and Wilson's element as the books write it: 3 × 12 strain matrices at 2 × 2 points, the modes'
+/// gradients with the Jacobian of the centre over that of the point, the last four unknowns condensed.
+fn textbook_q4(material: &Material) -> SMatrix<f64, 8, 8> {
+    let gauss = 1.0 / 3f64.sqrt();
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let jacobian = |xi: f64, eta: f64| {
+        let mut j = Matrix2::zeros();
+        for ([a, b], x) in corners.iter().zip(QUAD) {
+            let (dxi, deta) = (0.25 * a * (1.0 + b * eta), 0.25 * b * (1.0 + a * xi));
+            j += Matrix2::new(dxi * x[0], dxi * x[1], deta * x[0], deta * x[1]);
+        }
+        j
+    };
+    let centre = jacobian(0.0, 0.0);
+    let mut all = SMatrix::<f64, 12, 12>::zeros();
+    for [p, q] in corners {
+        let (xi, eta) = (p * gauss, q * gauss);
+        let j = jacobian(xi, eta);
+        let mut strain = SMatrix::<f64, 3, 12>::zeros();
+        let mut put = |a: usize, g: Vector2<f64>| {
+            strain[(0, 2 * a)] = g.x;
+            strain[(1, 2 * a + 1)] = g.y;
+            strain[(2, 2 * a)] = g.y;
+            strain[(2, 2 * a + 1)] = g.x;
+        };
+        for (i, [a, b]) in corners.iter().enumerate() {
+            let local = Vector2::new(0.25 * a * (1.0 + b * eta), 0.25 * b * (1.0 + a * xi));
+            put(i, j.try_inverse().unwrap() * local);
+        }
+        let ratio = centre.determinant() / j.determinant();
+        put(4, centre.try_inverse().unwrap() * Vector2::new(-2.0 * xi, 0.0) * ratio);
+        put(5, centre.try_inverse().unwrap() * Vector2::new(0.0, -2.0 * eta) * ratio);
+        let weight = material.thickness * j.determinant();
+        all += strain.transpose() * material.elasticity_matrix() * strain * weight;
+    }
+    let (uu, uc) = (all.fixed_view::<8, 8>(0, 0), all.fixed_view::<8, 4>(0, 8));
+    uu - uc * all.fixed_view::<4, 4>(8, 8).try_inverse().unwrap() * uc.transpose()
+}
+
+/// One element, free at its first corner only through `free`.
+fn one_quad(scene: &Scene) -> Problem {
+    let nodes = QUAD.map(Vector2::from).to_vec();
+    let mesh = Mesh::new(nodes, ElementKind::Q4, vec![0, 1, 2, 3], Default::default()).unwrap();
+    Problem::new(scene, System::with_mesh(scene, mesh).unwrap().into()).unwrap()
+}
+
+/// The element is the textbook's, however it is computed: its force in linear theory is Ke u, its A is Ke at rest.
+#[test]
+fn q4_is_the_textbooks_element() {
+    use warpbeam::scene::Analysis;
+    for plane in [Plane::Stress, Plane::Strain] {
+        let mut scene = Scene::named("One").with_material(material(plane));
+        scene.analysis = Analysis::Dynamic;
+        let (problem, ke) = (one_quad(&scene), textbook_q4(&material(plane)));
+        let rest = problem.system().at_rest();
+        let mut matrix = Matrix::new(problem.system().pattern());
+        problem.linearize(&rest, &mut Forces::new(4), Some((Tangent::EXACT, &mut matrix)));
+        for column in 0..8 {
+            let mut unit = [0.0; 8];
+            unit[column] = 1.0;
+            let mut image = [0.0; 8];
+            matrix.multiply(problem.system().pattern(), &unit, &mut image);
+            let u: Vec<_> = unit.chunks(2).map(|u| Vector2::new(u[0], u[1])).collect();
+            let mut forces = Forces::new(4);
+            problem.linearize(&rest.with_displacement(u).unwrap(), &mut forces, None);
+            for (row, image) in image.into_iter().enumerate() {
+                let expected = ke[(row, column)];
+                assert!((image - expected).abs() < 1e-12 * ke.norm(), "{plane:?} {row} {column}: {image} {expected}");
+                let force = forces.internal()[row / 2][row % 2];
+                assert!((force - expected).abs() < 1e-12 * ke.norm(), "{plane:?} {row} {column}: {force} {expected}");
+            }
+        }
+    }
+}
+
+/// The energy, force and Hessian in one far state, against W(x) = ½ d Ke d, d = Rᵀ(x − x̄) − (X − X̄), written out with
+/// matrices and differentiated by finite differences.
+#[test]
+fn q4_energy_is_that_of_the_turned_element() {
+    const STEP: f64 = 1e-5;
+    let mut scene = Scene::named("One").with_material(material(Plane::Strain));
+    scene.analysis = warpbeam::scene::Analysis::Dynamic;
+    let (problem, ke) = (one_quad(&scene), textbook_q4(&material(Plane::Strain)));
+    let rest = QUAD.map(Vector2::from);
+    let element = ElementKind::Q4.entry();
+    let to_rest = element.jacobian(&rest, [0.0; 2]).try_inverse().unwrap();
+    let written_out = |x: &[f64]| {
+        let x: Vec<_> = x.chunks(2).map(|x| Vector2::new(x[0], x[1])).collect();
+        let r = polar(&(element.jacobian(&x, [0.0; 2]) * to_rest)).unwrap().matrix().transpose();
+        let mean = |x: &[Vector2<f64>]| x.iter().sum::<Vector2<f64>>() / 4.0;
+        let (now, then) = (mean(&x), mean(&rest));
+        let d = x.iter().zip(&rest).flat_map(|(x, rest)| <[f64; 2]>::from(r * (x - now) - (rest - then)));
+        let d = SMatrix::<f64, 8, 1>::from_iterator(d);
+        0.5 * (d.transpose() * ke * d)[0]
+    };
+    let x = [0.9, -0.4, 0.3, 1.8, -1.1, 1.3, -0.2, -0.6];
+    let u = x.chunks(2).zip(rest).map(|(x, rest)| Vector2::new(x[0], x[1]) - rest).collect::<Vec<_>>();
+    let state = problem.system().state_of(&u).unwrap();
+    assert!((problem.elastic_energy(&state) - written_out(&x)).abs() < 1e-12 * written_out(&x));
+    let mut forces = Forces::new(4);
+    let mut matrix = Matrix::new(problem.system().pattern());
+    problem.linearize(&state, &mut forces, Some((Tangent::EXACT, &mut matrix)));
+    let scale = ke.norm();
+    let moved = |steps: &[(usize, f64)]| {
+        let mut x = x;
+        steps.iter().for_each(|&(i, step)| x[i] += step);
+        written_out(&x)
+    };
+    let mut numeric = DMatrix::zeros(8, 8);
+    for i in 0..8 {
+        let slope = (moved(&[(i, STEP)]) - moved(&[(i, -STEP)])) / (2.0 * STEP);
+        assert!((slope - forces.internal()[i / 2][i % 2]).abs() < 1e-6 * scale, "{i}: {slope}");
+        for j in 0..8 {
+            let h = 20.0 * STEP;
+            let at = |a: f64, b: f64| moved(&[(i, a * h), (j, b * h)]);
+            numeric[(i, j)] = (at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0)) / (4.0 * h * h);
+        }
+    }
+    for column in 0..8 {
+        let (mut unit, mut image) = ([0.0; 8], [0.0; 8]);
+        unit[column] = 1.0;
+        matrix.multiply(problem.system().pattern(), &unit, &mut image);
+        for (row, image) in image.into_iter().enumerate() {
+            assert!((image - numeric[(row, column)]).abs() < 1e-6 * scale, "{row} {column}: {image} {numeric}");
+        }
+    }
+}
+
+/// Few cells are enough, and few solves; percent of the tip's displacement, against the scene's own truth.
+#[test]
+fn q4_bends_with_few_cells() {
+    let cases = [
+        ("article", [5, 1], 3.6),
+        ("article", [10, 1], 1.2),
+        ("cantilever", [10, 1], 0.5),
+        ("cantilever", [20, 2], 0.4),
+        ("elastica", [20, 1], 0.5),
+        ("elastica", [40, 1], 0.1),
+    ];
+    for (id, [along, across], bound) in cases {
+        let scene = common::scene(id).with_element(ElementKind::Q4).with_cells(along, across);
+        let scene = scene.with_method(MethodKind::Newton);
+        let truth = warpbeam::study::Reference::of(&scene).unwrap().first().displacement;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        assert_eq!(simulation.certify().stable, Some(true));
+        let solution = simulation.solution();
+        let error = error_percent(solution.probes[0].u, truth).unwrap();
+        println!("{id} {along} x {across}: {error:.3} %, {} solves", simulation.iterations());
+        assert!(error <= bound, "{id} {along} × {across}: {error} %");
+        assert!(along == 5 || simulation.iterations() <= 9, "{id} {along} × {across}: {}", simulation.iterations());
+    }
+}
+
+/// Nearly incompressible in plane strain, stubby and slender, under a small load: Timoshenko's beam with E/(1 − ν²).
+#[test]
+fn q4_locks_neither_in_shear_nor_in_volume() {
+    let (young, nu, load) = (1e6, 0.4999, 1e-3);
+    let material = Material { plane: Plane::Strain, ..Material::new(young, nu) };
+    for length in [10.0, 100.0] {
+        let scene = Scene::beam(length, 1.0)
+            .with_element(ElementKind::Q4)
+            .with_cells(20, 1)
+            .with_material(material)
+            .clamp("left")
+            .force("right", [0.0, -load])
+            .with_method(MethodKind::Newton)
+            .probe("tip", "right");
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        let bending = load * length.powi(3) / (3.0 * young / (1.0 - nu * nu) / 12.0);
+        let shear = load * length / (5.0 / 6.0 * young / (2.0 * (1.0 + nu)));
+        let error = 100.0 * (-simulation.solution().probes[0].u.y / (bending + shear) - 1.0);
+        println!("L/H = {length}: {error:.3} %");
+        assert!(error.abs() < 0.5, "L/H = {length}: {error} %");
+    }
+}
+
+/// Stretched, so that tension alone makes G positive, and twisted, so that the turning part of G is not: its positive
+/// part is no less than G, and no less than nothing.
+#[test]
+fn q4_positive_part_of_g_is_positive() {
+    let mut scene = Scene::named("One").with_material(material(Plane::Stress));
+    scene.analysis = warpbeam::scene::Analysis::Dynamic;
+    let problem = one_quad(&scene);
+    let twist = [1.0, -1.0, 1.0, -1.0].map(|h| Vector2::new(0.2, 0.3) * h);
+    let u: Vec<_> = QUAD.iter().zip(twist).map(|(x, twist)| Vector2::from(*x) * 0.5 + twist).collect();
+    let state = problem.system().state_of(&u).unwrap();
+    let [exact, definite, warped] = [Tangent::EXACT, Tangent::DEFINITE, Tangent::WARPED].map(|tangent| {
+        let mut matrix = Matrix::new(problem.system().pattern());
+        problem.linearize(&state, &mut Forces::new(4), Some((tangent, &mut matrix)));
+        let mut dense = DMatrix::zeros(8, 8);
+        for column in 0..8 {
+            let (mut unit, mut image) = ([0.0; 8], [0.0; 8]);
+            unit[column] = 1.0;
+            matrix.multiply(problem.system().pattern(), &unit, &mut image);
+            dense.set_column(column, &DVector::from_column_slice(&image));
+        }
+        dense
+    });
+    let rounding = 1e-12 * exact.norm();
+    let over_exact = (&definite - &exact).symmetric_eigenvalues();
+    assert!(over_exact.min() > -rounding && over_exact.max() > 1e-3 * exact.norm(), "{over_exact}");
+    assert!((&definite - &warped).symmetric_eigenvalues().min() > -rounding);
+    assert!((&exact - &warped).symmetric_eigenvalues().min() < -1e-3 * exact.norm());
 }

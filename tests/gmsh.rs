@@ -109,7 +109,7 @@ fn what_cannot_be_used_is_said_with_its_line() {
         ("1 1 0\n0 1 0\n", "1 one 0\n0 1 0\n", "line 27: expected the coordinates of a node"),
         ("3 1 4 3", "3 1 4 8", "expected nodes that exist, got 8"),
         ("3 1 4 3", "3 1 4", "expected an element: tag, nodes"),
-        ("2 1 2 2", "2 1 3 2", "first or second order, got quadrangles (element type 3): mesh without recombining"),
+        ("2 1 2 2", "2 1 10 2", "got quadrangles of second order (element type 10): mesh with `-order 1`"),
         ("2 1 2 2", "2 1 21 2", "got triangles of third order (element type 21): mesh with `-order 1` or `-order 2`"),
         ("2 1 2 2", "2 1 4 2", "got volumes (element type 4): mesh with `gmsh -2`"),
         (
@@ -258,4 +258,120 @@ fn a_mesh_has_the_unit_and_the_element_of_its_file() {
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains("scene.toml:4: mesh.scale: "), "{}", stderr(&output));
     }
+}
+
+/// Two quadrilaterals side by side, the second clockwise; the left side is a physical curve.
+const QUADS: &str = r#"$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+1 7 "wall"
+$EndPhysicalNames
+$Entities
+0 1 1 0
+5 0 0 0 0 1 0 1 7 0
+1 0 0 0 2 1 0 0 1 5
+$EndEntities
+$Nodes
+1 6 1 6
+2 1 0 6
+1
+2
+3
+4
+5
+6
+0 0 0
+1 0 0
+2 0 0
+2 1 0
+1 1 0
+0 1 0
+$EndNodes
+$Elements
+2 3 1 3
+1 5 1 1
+1 6 1
+2 1 3 2
+2 1 2 5 6
+3 2 5 4 3
+$EndElements
+"#;
+
+/// The file as a mesh of triangles and quadrilaterals.
+fn mixed() -> String {
+    QUADS.replacen("2 3 1 3\n1 5", "3 3 1 3\n1 5", 1).replacen(
+        "2 1 3 2\n2 1 2 5 6\n3 2 5 4 3",
+        "2 1 3 1\n2 1 2 5 6\n2 1 2 1\n3 2 3 4",
+        1,
+    )
+}
+
+#[test]
+fn quadrilaterals_are_read() {
+    let mesh = Mesh::from_gmsh(QUADS, ElementKind::Q4).unwrap();
+    assert_eq!((mesh.nodes().len(), mesh.element_count()), (6, 2));
+    assert_eq!(mesh.edge_nodes("wall").unwrap().len(), 2);
+    for quad in mesh.elements() {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| mesh.nodes()[quad[i] as usize]);
+        assert!((0.5 * (c - a).perp(&(d - b)) - 1.0).abs() < 1e-15, "a clockwise quadrilateral was not turned");
+    }
+    assert_eq!(mesh.outline().len(), 6);
+    // What a file is made of by itself.
+    assert_eq!(Mesh::gmsh_element(QUADS), Some(ElementKind::Q4));
+    assert_eq!(Mesh::gmsh_element(SQUARE), Some(ElementKind::T3));
+    assert_eq!(Mesh::gmsh_element(""), None);
+    // Not convex: the inner corner points inwards.
+    let dart = QUADS.replacen("1 1 0\n0 1", "0.2 0.2 0\n0 1", 1);
+    let error = Mesh::from_gmsh(&dart, ElementKind::Q4).unwrap_err();
+    assert!(matches!(error, GmshError::Mesh(MeshError::Folded { element: 0 })), "{error}");
+    assert!(error.to_string().contains("convex"), "{error}");
+}
+
+#[test]
+fn shapes_that_do_not_fit_are_refused_with_a_remedy() {
+    let mixed = mixed();
+    let cases = [
+        (QUADS, ElementKind::T3, "expected triangles for t3, got 2 quadrilaterals of 2: set element = \"q4\""),
+        (QUADS, ElementKind::T6, "expected triangles for t6, got 2 quadrilaterals of 2: set element = \"q4\""),
+        (
+            SQUARE,
+            ElementKind::Q4,
+            "expected quadrilaterals for q4, got 2 triangles of 2: set element = \"t3\" or \"t6\"",
+        ),
+        (&mixed, ElementKind::Q4, "expected quadrilaterals for q4, got 1 triangles of 2: mesh it anew in one shape"),
+        (&mixed, ElementKind::T3, "expected triangles for t3, got 1 quadrilaterals of 2: mesh it anew in one shape"),
+    ];
+    for (file, element, expected) in cases {
+        let error = Mesh::from_gmsh(file, element).unwrap_err().to_string();
+        assert!(error.starts_with(expected), "{error}");
+    }
+}
+
+/// A scene on a file of quadrilaterals that names no element is one of `q4`, and says so when it is written.
+#[test]
+fn a_scene_of_quadrilaterals_needs_no_element() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("quads.msh"), QUADS).unwrap();
+    let text = r#"
+        name = "Quads"
+        mesh.file = "quads.msh"
+        material = { young = 1e6, poisson = 0.3, density = 1000.0, thickness = 1.0, plane = "stress" }
+        support = [{ edge = "wall", fix = ["x", "y"] }]
+        load = [{ kind = "gravity", acceleration = [0.0, -9.81] }]
+        probe = [{ name = "tip", at = [2.0, 0.5] }]
+    "#;
+    let open = |text: &str| warpbeam::Scene::from_toml_in(text, folder.path()).unwrap();
+    let scene = open(text);
+    assert_eq!(scene.element(), ElementKind::Q4);
+    assert_eq!(scene.elements().collect::<Vec<_>>(), [ElementKind::Q4]);
+    let mut simulation = warpbeam::Simulation::new(&scene).unwrap();
+    assert_eq!(*simulation.solve(), warpbeam::Status::Converged);
+    // Its truth is found on the refined mesh of the same element.
+    let truth = warpbeam::study::Reference::of(&scene).unwrap().first().displacement;
+    assert!(truth.y < 0.0 && (simulation.solution().probes[0].u - truth).norm() < 0.2 * truth.norm());
+    let asked = open(&text.replace("mesh.file", "mesh.element = \"t3\"\n        mesh.file"));
+    let error = warpbeam::Simulation::new(&asked).unwrap_err().to_string();
+    assert!(error.contains("set element = \"q4\""), "{error}");
 }

@@ -51,7 +51,9 @@ impl From<Limits> for Demand {
 /// A scene without what a study varies: what its truth depends on.
 pub(super) fn question(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
-    scene.set_element(ElementKind::default());
+    // The first that the mesh can be.
+    let first = scene.elements().next().unwrap_or_default();
+    scene.set_element(first);
     if let Some(beam) = &mut scene.beam {
         beam.cells = [1, 1];
     }

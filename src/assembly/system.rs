@@ -111,7 +111,8 @@ impl System {
                 let failed = |message: String| Invalid::new("mesh.file", format!("{}: {message}", file.file));
                 let unread = "its contents are not there: open the scene from its folder".to_owned();
                 let text = file.text.as_deref().ok_or_else(|| failed(unread))?;
-                let mesh = Mesh::from_gmsh_scaled(text, scene.element(), file.scale.unwrap_or(1.0));
+                let element = file.element.or_else(|| Mesh::gmsh_element(text)).unwrap_or_default();
+                let mesh = Mesh::from_gmsh_scaled(text, element, file.scale.unwrap_or(1.0));
                 (Origin::File(file.clone()), mesh.map_err(|e| failed(e.to_string()))?)
             }
             (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither").into()),

@@ -28,7 +28,8 @@ const SOLVE_FILES: &str = "--out of a static scene:
 Ctrl-C ends a motion early: its files are valid, the result is printed with status `stopped`, exit code 1.
 ";
 
-/// A lab for the warped stiffness (corotational finite element) method on 2D triangle beams.
+/// A lab for the warped stiffness (corotational finite element) method on 2D beams of triangles
+/// and quadrilaterals.
 #[derive(Debug, Parser)]
 #[command(name = "warpbeam", version, after_help = EXIT_CODES)]
 #[cfg_attr(feature = "app", command(before_help = "Without a command: the window."))]

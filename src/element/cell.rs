@@ -3,6 +3,8 @@
 /// A reference shape: what elements of any degree on it have in common.
 #[derive(Debug)]
 pub struct Cell {
+    /// What one is called.
+    pub name: &'static str,
     /// Corners, counter-clockwise.
     pub corners: &'static [[f64; 2]],
     /// Area in reference coordinates.
@@ -30,6 +32,7 @@ pub struct Lattice {
 
 /// The triangle (0, 0), (1, 0), (0, 1): ξ and η are the second and the third area coordinate.
 pub const TRIANGLE: Cell = Cell {
+    name: "triangle",
     corners: &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
     area: 0.5,
     children: &[
@@ -42,6 +45,45 @@ pub const TRIANGLE: Cell = Cell {
     depth: |[x, y]| (1.0 - x - y).min(x).min(y),
     lattice: triangle_lattice,
 };
+
+/// The square [−1, 1]².
+pub const SQUARE: Cell = Cell {
+    name: "quadrilateral",
+    corners: &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
+    area: 4.0,
+    children: &[
+        &[[-1.0, -1.0], [0.0, -1.0], [0.0, 0.0], [-1.0, 0.0]],
+        &[[0.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0]],
+        &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+        &[[-1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]],
+    ],
+    corner_weights: bilinear,
+    depth: |[x, y]| (1.0 - x.abs()).min(1.0 - y.abs()),
+    lattice: square_lattice,
+};
+
+/// The bilinear function that is 1 at one corner of the square and 0 at the others, for every corner.
+pub(super) fn bilinear([x, y]: [f64; 2]) -> Vec<f64> {
+    SQUARE.corners.iter().map(|[a, b]| 0.25 * (1.0 + a * x) * (1.0 + b * y)).collect()
+}
+
+fn square_lattice(pieces: u32) -> Lattice {
+    let point = |i: u32, j: u32| j * (pieces + 1) + i;
+    let place = |i: u32| 2.0 * f64::from(i) / f64::from(pieces) - 1.0;
+    let points = (0..=pieces).flat_map(|j| (0..=pieces).map(move |i| [place(i), place(j)])).collect();
+    let mut triangles = Vec::new();
+    for (i, j) in (0..pieces).flat_map(|j| (0..pieces).map(move |i| (i, j))) {
+        let [a, b, c, d] = [point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)];
+        triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    let sides = vec![
+        (0..=pieces).map(|i| point(i, 0)).collect(),
+        (0..=pieces).map(|j| point(pieces, j)).collect(),
+        (0..=pieces).rev().map(|i| point(i, pieces)).collect(),
+        (0..=pieces).rev().map(|j| point(0, j)).collect(),
+    ];
+    Lattice { points, triangles, sides }
+}
 
 fn triangle_lattice(pieces: u32) -> Lattice {
     // Rows get shorter: row j holds pieces + 1 − j points.

@@ -18,7 +18,7 @@ pub struct QuadraturePoint<const N: usize> {
 
 /// Floor of tr S in G: one percent of its value at rest. Where the body is crushed to nothing tr S vanishes and G has no
 /// bound; the floor keeps the step finite.
-const SMALLEST_STRETCH_TRACE: f64 = 0.02;
+pub(super) const SMALLEST_STRETCH_TRACE: f64 = 0.02;
 
 impl<const N: usize> QuadraturePoint<N> {
     /// The point at `at` of an element with these rest nodes. That the Jacobian there is positive,
@@ -190,13 +190,13 @@ impl<'a, const N: usize> Scatter<'a, N> {
 }
 
 #[inline]
-fn gather<const N: usize>(nodes: &[u32; N], u: &[Vector2<f64>]) -> [Vector2<f64>; N] {
+pub(super) fn gather<const N: usize>(nodes: &[u32; N], u: &[Vector2<f64>]) -> [Vector2<f64>; N] {
     nodes.map(|node| u[node as usize])
 }
 
 /// Adds an element's lower node blocks to the entries they belong to.
 #[inline]
-fn scatter<const N: usize>(sum: &[[[f64; 4]; N]; N], slots: &[u32], values: &mut [f64]) {
+pub(super) fn scatter<const N: usize>(sum: &[[[f64; 4]; N]; N], slots: &[u32], values: &mut [f64]) {
     let mut slots = slots.iter();
     let mut add = |value: f64| {
         if let Some(&slot) = slots.next() {
@@ -371,7 +371,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         smallest
     }
 
-    fn visit_strains(&self, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>) {
+    fn visit_strains(&self, _: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>) {
         let mut q = 0;
         for (u, points, r) in self.turned(u, r) {
             for (point, &r) in points.iter().zip(r) {

@@ -10,13 +10,16 @@ use crate::scene::ElementKind;
 
 pub mod cell;
 mod discrete_gradient;
+mod incompatible;
 mod isoparametric;
+mod q4;
 mod side;
 mod t3;
 mod t6;
 
 pub use cell::{Cell, Lattice};
 pub use discrete_gradient::DiscreteGradient;
+pub use incompatible::IncompatibleQuads;
 pub use isoparametric::{Isoparametric, QuadraturePoint};
 pub use side::side_weights;
 
@@ -88,6 +91,7 @@ macro_rules! registry {
 registry! {
     T3 => t3::T3,
     T6 => t6::T6,
+    Q4 => q4::Q4,
 }
 
 impl ElementKind {
@@ -112,6 +116,12 @@ impl ElementType {
             jacobian += x * g.transpose();
         }
         jacobian
+    }
+
+    /// Whether both are of the same shape: a mesh of one can be made a mesh of the other.
+    #[must_use]
+    pub fn shares_cell(&self, other: &Self) -> bool {
+        self.cell.corners == other.cell.corners
     }
 
     /// The element's nodes in the order that turns it over: counter-clockwise becomes clockwise.
@@ -216,6 +226,10 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
 
     /// One sweep: adds the warped force Σ R Ke (Rᵀ x − X) to `force`, its elements' absolute values by component to
     /// `magnitude`, N, and a tangent to `matrix` where one is wanted, N/m.
+    ///
+    /// With the rotations that [`Self::rotations`] gives for `u` the force is the gradient of the energy, and A + G its
+    /// Hessian: an element whose energy R does not make stationary adds what R does as it follows x. With any others,
+    /// as in linear theory, the force is linear in `u`.
     fn linearize(
         &self,
         moduli: Lame,
@@ -252,8 +266,9 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
     /// The smallest det F: area over that at rest, negative where an element is turned inside out.
     fn smallest_area_ratio(&self, u: &[Vector2<f64>]) -> f64;
 
-    /// Calls `visit` for every quadrature point.
-    fn visit_strains(&self, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>);
+    /// Calls `visit` for every quadrature point. Of the moduli only the ratio matters, and only where an element has
+    /// modes of its own inside, whose size depends on it.
+    fn visit_strains(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>);
 }
 
 /// The strain the element sees once turned back, sym(Rᵀ F) − I with F = I + H.

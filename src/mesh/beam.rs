@@ -8,7 +8,7 @@ use super::{Mesh, MeshError, Segment};
 use crate::scene::{Beam, Diagonals};
 
 impl Mesh {
-    /// The rectangle [0, length] × [−height/2, height/2], two triangles a cell, with the edges `left`, `right`,
+    /// The rectangle [0, length] × [−height/2, height/2], two triangles or one quadrilateral a cell, with the edges `left`, `right`,
     /// `bottom` and `top`. Nodes are numbered column by column, from the left and from below.
     ///
     /// # Errors
@@ -34,7 +34,12 @@ impl Mesh {
         for (i, j) in (0..nx).flat_map(|i| (0..ny).map(move |j| (i, j))) {
             let [a, b, c, d] = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[p, q]| [(i + p) * pieces, (j + q) * pieces]);
             let rising = beam.diagonals == Diagonals::Same || (i + j) % 2 == 0;
-            for corners in if rising { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] } {
+            let parts: &[&[[usize; 2]]] = match (entry.cell.corners.len(), rising) {
+                (4, _) => &[&[a, b, c, d]],
+                (_, true) => &[&[a, b, c], &[a, c, d]],
+                (_, false) => &[&[a, b, d], &[b, c, d]],
+            };
+            for corners in parts {
                 connectivity.extend(weights.iter().map(|weights| {
                     let place = |axis: usize| -> f64 {
                         corners.iter().zip(weights).map(|(corner, weight)| corner[axis] as f64 * weight).sum()

@@ -1,5 +1,5 @@
-//! Reads Gmsh's MSH format, version 4.1, ASCII: triangles of 3 or 6 nodes in the plane z = 0, and physical curves as
-//! named edges. Own code because what we found on the registry leaves physical names out and panics on damaged files.
+//! Reads Gmsh's MSH format, version 4.1, ASCII: triangles of 3 or 6 nodes or quadrilaterals of 4 in the plane z = 0, and
+//! physical curves as named edges. Own code because what we found on the registry leaves physical names out and panics on damaged files.
 //!
 //! Counts in the file are never trusted with memory: everything read is a line that is there.
 
@@ -9,6 +9,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::{Mesh, MeshError, Segment, side_key};
+use crate::element::cell::{SQUARE, TRIANGLE};
 use crate::element::{ELEMENTS, ElementType};
 use crate::scene::ElementKind;
 use crate::scene::limits::{COORDINATE, TOTAL_CELLS};
@@ -32,7 +33,7 @@ pub enum GmshError {
     /// The file as a whole lacks something.
     #[error("{0}")]
     Content(String),
-    /// The triangles make no mesh.
+    /// The elements make no mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
@@ -103,8 +104,8 @@ struct File {
 }
 
 impl Mesh {
-    /// Reads a mesh. Its triangles become `element`: nodes that the file lacks are put in the middle of straight sides,
-    /// those that `element` does not have are left out.
+    /// Reads a mesh. Its triangles or quadrilaterals become `element`: nodes that the file lacks are put in the middle of
+    /// straight sides, those that `element` does not have are left out.
     ///
     /// # Errors
     /// [`GmshError`], with the line where there is one.
@@ -119,30 +120,31 @@ impl Mesh {
     pub fn from_gmsh_scaled(text: &str, element: ElementKind, scale: f64) -> Result<Self, GmshError> {
         File::read(text, scale)?.into_mesh(element)
     }
-}
 
-/// The element that a file has, by the headers of its blocks alone; of several, that with the most nodes, so that none is
-/// lost. What is wrong with the file is said when it is read.
-pub(crate) fn gmsh_element(text: &str) -> Option<ElementKind> {
-    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-    lines.find(|line| *line == "$Elements")?;
-    lines.next()?;
-    let mut own: Option<&'static ElementType> = None;
-    while let Some(line) = lines.next() {
-        let block: Option<Vec<usize>> = line.split_ascii_whitespace().map(|n| n.parse().ok()).collect();
-        let Some([_, _, kind, count]) = block.as_deref() else { break };
-        let found = ELEMENTS.iter().copied().find(|e| e.gmsh_type as usize == *kind);
-        own = own.into_iter().chain(found).max_by_key(|e| e.nodes.len());
-        lines.by_ref().take(*count).for_each(drop);
+    /// The element that a file has, by the headers of its blocks alone; of several, that with the most nodes, so that none
+    /// is lost. What is wrong with the file is said when it is read.
+    #[must_use]
+    pub fn gmsh_element(text: &str) -> Option<ElementKind> {
+        let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+        lines.find(|line| *line == "$Elements")?;
+        lines.next()?;
+        let mut own: Option<&'static ElementType> = None;
+        while let Some(line) = lines.next() {
+            let block: Option<Vec<usize>> = line.split_ascii_whitespace().map(|n| n.parse().ok()).collect();
+            let Some([_, _, kind, count]) = block.as_deref() else { break };
+            let found = ELEMENTS.iter().copied().find(|e| e.gmsh_type as usize == *kind);
+            own = own.into_iter().chain(found).max_by_key(|e| e.nodes.len());
+            lines.by_ref().take(*count).for_each(drop);
+        }
+        own.map(|e| e.kind)
     }
-    own.map(|e| e.kind)
 }
 
 /// What an element type of Gmsh's is that cannot be read, and what to do about it.
 fn foreign(kind: i64) -> String {
     let order = "mesh with `-order 1` or `-order 2`";
     match kind {
-        3 | 10 | 16 => format!("quadrangles (element type {kind}): mesh without recombining"),
+        10 | 16 => format!("quadrangles of second order (element type {kind}): mesh with `-order 1`"),
         20 | 21 => format!("triangles of third order (element type {kind}): {order}"),
         22..=25 => format!("triangles of fourth order or more (element type {kind}): {order}"),
         26..=28 => format!("lines of third order or more (element type {kind}): {order}"),
@@ -241,9 +243,8 @@ impl File {
             let element = ELEMENTS.iter().copied().find(|e| i64::from(e.gmsh_type) == kind);
             let line = LINES.iter().find(|l| l.0 == kind).map(|l| l.1);
             if element.is_none() && line.is_none() && kind != POINT {
-                return Err(
-                    lines.error(&format!("lines and triangles of first or second order, got {}", foreign(kind)))
-                );
+                let expected = "lines and triangles of first or second order and quadrilaterals of first";
+                return Err(lines.error(&format!("{expected}, got {}", foreign(kind))));
             }
             for _ in 0..count {
                 let least = 1 + element.map_or(line.unwrap_or(1), |e| e.nodes.len());
@@ -268,19 +269,47 @@ impl File {
         Err(GmshError::Syntax { line, expected })
     }
 
+    /// Refuses elements of another shape than `entry`'s, and says what to do.
+    fn check_shapes(&self, entry: &ElementType) -> Result<(), GmshError> {
+        let mut others = self.elements.iter().filter(|(_, own, _)| !own.shares_cell(entry));
+        let Some((_, other, _)) = others.next() else { return Ok(()) };
+        let (wrong, all) = (1 + others.count(), self.elements.len());
+        let (found, expected) = (other.cell.name, entry.cell.name);
+        let fitting: Vec<String> =
+            ELEMENTS.iter().filter(|e| e.shares_cell(other)).map(|e| format!("\"{}\"", e.id)).collect();
+        let remedy = if wrong == all {
+            format!("set element = {}, or mesh it anew in {expected}s", fitting.join(" or "))
+        } else {
+            format!(
+                "mesh it anew in one shape; in Gmsh, `Recombine Surface` with Mesh.RecombinationAlgorithm = 2 or 3 leaves \
+                 {}s only, and no recombination {}s only",
+                SQUARE.name, TRIANGLE.name
+            )
+        };
+        Err(GmshError::Content(format!(
+            "expected {expected}s for {}, got {wrong} {found}s of {all}: {remedy}",
+            entry.id
+        )))
+    }
+
     fn into_mesh(self, kind: ElementKind) -> Result<Mesh, GmshError> {
         let entry = kind.entry();
         if self.elements.is_empty() {
             let message = match self.lines.len() {
-                0 => "expected triangles, got none; mesh with `gmsh -2`".to_owned(),
-                n => format!("expected triangles, got {n} lines and none; {ONLY_PHYSICAL}: make the surface one, too"),
+                0 => "expected triangles or quadrilaterals, got none; mesh with `gmsh -2`".to_owned(),
+                n => format!(
+                    "expected triangles or quadrilaterals, got {n} lines and none; {ONLY_PHYSICAL}: make the surface one, too"
+                ),
             };
             return Err(GmshError::Content(message));
         }
         self.check_flat()?;
-        TOTAL_CELLS
-            .check(0.5 * self.elements.len() as f64)
-            .map_err(|_| GmshError::Content(format!("expected at most {} triangles", 2.0 * TOTAL_CELLS.max)))?;
+        self.check_shapes(entry)?;
+        // A cell of a beam is two triangles.
+        let a_cell = if entry.cell.corners.len() == 3 { 2.0 } else { 1.0 };
+        TOTAL_CELLS.check(self.elements.len() as f64 / a_cell).map_err(|_| {
+            GmshError::Content(format!("expected at most {} {}s", a_cell * TOTAL_CELLS.max, entry.cell.name))
+        })?;
         // Only the nodes of elements: what else the file holds would be free to float away.
         let mut builder =
             Builder { tags: &self.nodes, numbers: HashMap::new(), between: HashMap::new(), nodes: Vec::new() };

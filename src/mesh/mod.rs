@@ -14,7 +14,6 @@ mod locate;
 mod refine;
 
 pub use gmsh::GmshError;
-pub(crate) use gmsh::gmsh_element;
 pub use locate::MaterialPoint;
 
 /// A mesh that cannot be used. Elements are numbered from 0.
@@ -55,8 +54,8 @@ pub enum MeshError {
         /// Its rest corners, m.
         corners: Vec<[f64; 2]>,
     },
-    /// An element whose curved sides make it fold over.
-    #[error("element {element} folds over: expected its sides less curved")]
+    /// An element that folds over: its sides are too curved, or it is a quadrilateral that is not convex.
+    #[error("element {element} folds over: expected sides that are less curved, and convex quadrilaterals")]
     Folded {
         /// The element.
         element: usize,
@@ -196,7 +195,10 @@ impl Mesh {
             let rest: Vec<Vector2<f64>> = own.iter().map(|&n| self.nodes[n as usize]).collect();
             // Written so that NaN is refused too.
             let unfolded = |at: [f64; 2]| entry.jacobian(&rest, at).determinant() > 0.0;
-            if !entry.points.iter().chain(entry.mass_points).all(|p| unfolded(p.at)) {
+            // The Jacobian of straight sides is smallest at a corner.
+            let corners = if entry.sides[0].len() == 2 { entry.nodes } else { &[] };
+            let mut points = entry.points.iter().chain(entry.mass_points).map(|p| p.at).chain(corners.iter().copied());
+            if !points.all(unfolded) {
                 return Err(MeshError::Folded { element });
             }
         }

@@ -210,6 +210,12 @@ impl Scene {
         beam.or(self.mesh.as_ref().and_then(|m| m.element)).unwrap_or_default()
     }
 
+    /// The elements that its mesh can be made of: all of a beam's, those of the same shape of a file's.
+    pub fn elements(&self) -> impl Iterator<Item = ElementKind> + Clone + use<> {
+        let (any, own) = (self.mesh.is_none(), self.element().entry());
+        ElementKind::all().filter(move |e| any || e.entry().shares_cell(own))
+    }
+
     /// Makes every cell of its mesh this element.
     pub fn set_element(&mut self, element: ElementKind) {
         if let Some(beam) = &mut self.beam {

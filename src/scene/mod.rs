@@ -86,12 +86,12 @@ pub struct Beam {
     pub length: f64,
     /// Height, m.
     pub height: f64,
-    /// Cells along and across; each is cut into two triangles.
+    /// Cells along and across; each is a quadrilateral, or is cut into two triangles.
     pub cells: [u32; 2],
-    /// The element every triangle becomes.
+    /// What every cell, or each of its triangles, becomes.
     #[serde(default)]
     pub element: ElementKind,
-    /// Which way cells are cut.
+    /// Which way cells are cut into triangles; quadrilaterals are not cut.
     #[serde(default)]
     pub diagonals: Diagonals,
 }
@@ -124,6 +124,8 @@ pub enum ElementKind {
     T3,
     /// Six nodes, linear strain, curved edges.
     T6,
+    /// Four nodes, incompatible modes, one rotation.
+    Q4,
 }
 
 /// Which way the cells of a beam are cut.

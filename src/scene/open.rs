@@ -10,7 +10,7 @@ use toml::{Table, Value};
 
 use super::error::{Invalid, SceneError};
 use super::{Scene, registry, units};
-use crate::mesh::{GmshError, gmsh_element};
+use crate::mesh::{GmshError, Mesh};
 
 /// Scene files are small; anything larger is refused before it is read.
 const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -160,7 +160,7 @@ fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
             String::from_utf8(bytes).map_err(|_| failed(GmshError::NotText.to_string()))?
         }
     };
-    mesh.element = mesh.element.or_else(|| gmsh_element(&text));
+    mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&text));
     mesh.text = Some(text.into());
     Ok(())
 }

@@ -54,7 +54,7 @@ impl Field {
         values.clear();
         let elements = problem.system().elements();
         let (lame, material) = (problem.material().lame(), problem.material());
-        elements.visit_strains(&state.displacement, &state.rotations, &mut |q, h, strain| {
+        elements.visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, strain| {
             let value = match self {
                 Self::VonMises => {
                     let stress = lame.stress(strain);

@@ -57,7 +57,8 @@ impl Deformation {
         let elements = problem.system().elements();
         let mut result = Self::default();
         let mut last_inverted = None;
-        elements.visit_strains(&state.displacement, &state.rotations, &mut |q, h, strain| {
+        let lame = problem.material().lame();
+        elements.visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, strain| {
             let f = Matrix2::identity() + h;
             let element = q / elements.points_per_element();
             if f.determinant() <= 0.0 && last_inverted != Some(element) {

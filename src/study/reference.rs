@@ -28,7 +28,7 @@ impl std::fmt::Display for TruthSource {
         f.write_str(match self {
             Self::ExactBeam => "the exact beam",
             Self::FineSolution => "a fine t6 solution",
-            Self::RefinedMesh => "the t6 solution of its refined mesh",
+            Self::RefinedMesh => "the fine solution on its refined mesh",
         })
     }
 }
@@ -159,10 +159,15 @@ impl Reference {
     }
 }
 
-/// The fine six-node solution.
+/// The element of fine solutions: six-node triangles, which converge fastest, or what the quadrilaterals of a file can be.
+pub(super) fn finest_element(scene: &Scene) -> ElementKind {
+    scene.elements().find(|&e| e == ElementKind::T6).unwrap_or_else(|| scene.element())
+}
+
+/// The fine solution.
 fn fine(scene: &Scene) -> Result<Fine, StudyError> {
     let mut scene = scene.clone();
-    scene.set_element(ElementKind::T6);
+    scene.set_element(finest_element(&scene));
     let (coarse, fine, source) = match scene.beam.clone() {
         Some(beam) => {
             let mut solve = |along: u32| {

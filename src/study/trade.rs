@@ -316,7 +316,7 @@ pub(super) struct MeshChoice {
 /// The meshes of a scene, coarse to fine for each element.
 pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
     let mut meshes = Vec::new();
-    for element in ElementKind::all() {
+    for element in scene.elements() {
         let Some(beam) = &scene.beam else {
             meshes.push(MeshChoice { element, cells: None, weight: 1.0 });
             continue;

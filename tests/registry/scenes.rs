@@ -3,12 +3,11 @@
 use libtest_mimic::Trial;
 use nalgebra::Vector2;
 use warpbeam::dynamics::INTEGRATORS;
-use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
 use warpbeam::method::Reason;
 use warpbeam::scene::{Analysis, registry};
 use warpbeam::simulation::Simulation;
-use warpbeam::{IntegratorKind, MethodKind, Scene, Status};
+use warpbeam::{ElementKind, IntegratorKind, MethodKind, Scene, Status};
 
 use crate::common::{ids_of, scene, scene_ids};
 use crate::{Test, suite};
@@ -57,7 +56,8 @@ fn it_runs_to_its_end(id: &'static str) {
 
 /// A few steps of every integrator, the explicit one within its critical step, on every element.
 fn every_integrator_and_element_moves_it(id: &'static str) {
-    for (integrator, element) in INTEGRATORS.iter().flat_map(|i| ELEMENTS.iter().map(move |e| (i, e))) {
+    let elements = scene(id).elements();
+    for (integrator, element) in INTEGRATORS.iter().flat_map(|i| elements.clone().map(move |e| (i, e.entry()))) {
         let mut scene = scene(id);
         scene.dynamics.integrator = integrator.kind;
         scene.set_element(element.kind);
@@ -133,7 +133,7 @@ fn linear_theory_obeys_clapeyron(id: &'static str) {
 }
 
 fn every_element_converges(id: &'static str) {
-    for element in ELEMENTS {
+    for element in scene(id).elements().map(ElementKind::entry) {
         let mut scene = with_method(scene(id), MethodKind::Newton);
         scene.set_element(element.kind);
         let mut simulation = Simulation::new(&scene).unwrap();

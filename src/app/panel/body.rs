@@ -6,7 +6,7 @@ use super::{Action, PanelInput, PanelState};
 use crate::app::action::MOST_ITERATIONS;
 use crate::app::field::{NumberField, show_message};
 use crate::method::METHODS;
-use crate::scene::{Analysis, ElementKind, Plane, Scene, limits};
+use crate::scene::{Analysis, Plane, Scene, limits};
 
 pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Action>) {
     let mut row = |field: NumberField, value: f64, set: fn(&mut Scene, f64)| {
@@ -84,8 +84,8 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
 pub(super) fn mesh_and_method(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     for (axis, label, tooltip, most) in [
-        (0, "Cells along", "Cells along the beam; each is two triangles.", 400.0),
-        (1, "Cells across", "Cells across the beam; each is two triangles.", 40.0),
+        (0, "Cells along", "Cells along the beam; each is two triangles or a quadrilateral.", 400.0),
+        (1, "Cells across", "Cells across the beam; each is two triangles or a quadrilateral.", 40.0),
     ] {
         let field = NumberField {
             label,
@@ -126,7 +126,7 @@ pub(super) fn mesh_and_method(ui: &mut Ui, input: &PanelInput<'_>, state: &mut P
     show_message(ui, &state.messages, "Method");
     ui.horizontal(|ui| {
         ui.label("Element");
-        for element in ElementKind::all() {
+        for element in scene.elements() {
             let selected = scene.element() == element;
             if ui.radio(selected, element.id()).on_hover_text(element.entry().about).clicked() && !selected {
                 let mut scene = Box::new(scene.clone());

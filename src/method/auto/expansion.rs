@@ -1,6 +1,6 @@
 //! Linear theory, and how wrong it is: the next terms of the displacement's expansion in the load.
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
 use super::AutoReport;
 use crate::assembly::{Forces, Kinematics, Matrix, Problem};
@@ -92,7 +92,9 @@ impl Expansion {
         solve_nodal(it, factor, sum, first)?;
         let mut gradient: f64 = 0.0;
         timed(&mut it.timings.assemble, || {
-            system.elements().visit_strains(first, &rest.rotations, &mut |_, h, _| gradient = gradient.max(h.amax()));
+            let lame = problem.material().lame();
+            let visit = &mut |_, h: &Matrix2<f64>, _: &Matrix2<f64>| gradient = gradient.max(h.amax());
+            system.elements().visit_strains(lame, first, &rest.rotations, visit);
         });
         let scale = PROBING / gradient.max(f64::MIN_POSITIVE);
         second.fill(Vector2::zeros());

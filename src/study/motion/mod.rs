@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 pub use self::reference::MotionReference;
 use self::reference::fine_path;
 use super::pareto;
-use super::reference::{first_probe, system_of};
+use super::reference::{finest_element, first_probe, system_of};
 use super::timing::median_time;
 use super::trade::{Extent, Observer, Progress, StudyError, check, mesh_words};
 use crate::assembly::{Mass, System};
@@ -340,7 +340,7 @@ struct Job {
 fn jobs(scene: &Scene, extent: Extent) -> Vec<Job> {
     let plan = extent.plan();
     let mut jobs = Vec::new();
-    for element in ElementKind::all() {
+    for element in scene.elements() {
         let mut meshes: Vec<_> = plan.meshes.iter().map(|&factor| cells(scene, element, factor)).collect();
         meshes.dedup();
         for cells in meshes {
@@ -406,7 +406,7 @@ impl MotionStudy {
             scene: scene.name.clone(),
             duration: samples.duration(),
             scene_duration: scene.dynamics.duration,
-            own_mesh: cells(scene, ElementKind::T6, 1.0),
+            own_mesh: cells(scene, finest_element(scene), 1.0),
             reference,
             measurements: Vec::new(),
             is_partial: false,

@@ -11,7 +11,7 @@ use crate::assembly::System;
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::study::reference::{MOST_ELEMENTS, system_of};
+use crate::study::reference::{MOST_ELEMENTS, finest_element, system_of};
 use crate::study::trade::{Extent, Observer, Progress, StudyError, mesh_words};
 
 /// The path of the first probe as the finest motion has it.
@@ -29,15 +29,17 @@ pub struct MotionReference {
     pub error_percent: f64,
     /// Its time step, s.
     pub time_step: f64,
-    /// The cells of its mesh of six-node triangles; `None` for the refined mesh of a file.
+    /// Its element.
+    pub element: ElementKind,
+    /// The cells of its mesh; `None` for the refined mesh of a file.
     pub cells: Option<[u32; 2]>,
 }
 
 impl std::fmt::Display for MotionReference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mesh = match self.cells {
-            Some(_) => mesh_words(ElementKind::T6, self.cells),
-            None => format!("{} on the refined mesh", ElementKind::T6.id()),
+            Some(_) => mesh_words(self.element, self.cells),
+            None => format!("{} on the refined mesh", self.element.id()),
         };
         write!(
             f,
@@ -86,6 +88,7 @@ impl MotionReference {
             size,
             error_percent: 0.0,
             time_step: samples.interval / f64::from(steps),
+            element: fine.scene.element(),
             cells: fine.cells,
         };
         let [of_mesh, _] = reference.distance(&coarser, &longer);
@@ -138,10 +141,11 @@ struct Reference {
 
 /// One with half as many cells each way, and the fine one.
 fn meshes(scene: &Scene, plan: &Plan) -> Result<[Reference; 2], StudyError> {
+    let element = finest_element(scene);
     let with = |factor: f64| {
         let setting = MotionSetting {
-            element: ElementKind::T6,
-            cells: cells(scene, ElementKind::T6, factor),
+            element,
+            cells: cells(scene, element, factor),
             integrator: IntegratorKind::EnergyMomentum,
             method: MethodKind::Newton,
             time_step: scene.dynamics.time_step,

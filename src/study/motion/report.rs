@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStudy, REAL_TIME, step_words};
 use crate::dynamics::INTEGRATORS;
-use crate::scene::{ElementKind, MethodKind};
+use crate::scene::MethodKind;
 use crate::study::trade::mesh_words;
 use crate::words::{count, number};
 
@@ -121,11 +121,11 @@ impl MotionStudy {
         let _ = writeln!(
             text,
             "by time step, newton on {}: error of the time steps, %; energy, % of the largest kinetic; time of a simulated second, ms",
-            mesh_words(ElementKind::T6, self.own_mesh)
+            mesh_words(self.reference.element, self.own_mesh)
         );
         let own = |m: &&MotionMeasurement| {
             let MotionSetting { element, cells, method, .. } = m.setting;
-            (element, cells, method) == (ElementKind::T6, self.own_mesh, MethodKind::Newton)
+            (element, cells, method) == (self.reference.element, self.own_mesh, MethodKind::Newton)
         };
         for m in self.measurements.iter().filter(own) {
             let setting = &m.setting;

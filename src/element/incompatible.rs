@@ -1,0 +1,547 @@
+//! Four-node quadrilaterals with incompatible modes and one rotation each.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use nalgebra::{Matrix2, Matrix4, Matrix4x2, Vector2};
+
+use super::isoparametric::{SMALLEST_STRETCH_TRACE, gather, scatter};
+use super::{
+    DiscreteGradient, ElementType, Elements, MatrixSum, QuadraturePoint, StrainRate, StrainVisitor, Tangent,
+    warped_strain,
+};
+use crate::material::Lame;
+use crate::rotation::{Rotation, polar, polar_or};
+
+/// The values at the corners of ξη, the one bilinear function that is not linear.
+const TWIST: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
+
+/// Bilinear quadrilaterals with the incompatible modes 1 − ξ² and 1 − η² (Wilson, Taylor, Doherty and Ghaboussi 1973,
+/// *Incompatible displacement models*) in the form that passes the patch test on any convex quadrilateral (Taylor,
+/// Beresford and Wilson 1976, *A non-conforming element for stress analysis*: the modes' gradients are those at the
+/// centre, times the ratio of the Jacobians), condensed at rest, and turned by the polar factor R of F at the centre.
+///
+/// Displacements are u = linear + q ξη, with q = Σ γₐ uₐ (γ: Flanagan and Belytschko 1981). The modes do no work on
+/// uniform stress, and the mean of ∇Nₐ is its value at the centre. So the condensed 8 × 8 stiffness falls into
+///
+/// Ke = A B₀ᵀ C B₀ + γ γᵀ ⊗ K,
+///
+/// that of a single point at the centre and a 2 × 2 matrix K that holds everything the modes do. The energy of
+/// d = Rᵀ(x − x̄) − (X − X̄), ½ d Ke d, is then A ψ(S) + ½ q̃ K q̃ with q̃ = Rᵀ q. R makes the first term stationary, the
+/// second not: with θ the angle of R, f = K q̃ and J a quarter turn, ∂w/∂θ = −f·J q̃, and the force and the Hessian need
+/// θ_x = R J ∇Nₐ / tr S and θ_xx = −(θ_x R∇Nᵀ + R∇N θ_xᵀ) / tr S.
+#[derive(Debug)]
+pub struct IncompatibleQuads {
+    nodes: Vec<[u32; 4]>,
+    quads: Vec<Quad>,
+    /// At the points of the rule: the gradients of ξη and of the two modes.
+    points: Vec<[QuadraturePoint<3>; 4]>,
+    /// Condensed modes, for the ratios of moduli that were asked for last.
+    condensed: Mutex<Vec<Arc<Condensed>>>,
+}
+
+/// An element at rest.
+#[derive(Clone, Copy, Debug)]
+struct Quad {
+    /// ∇Nₐ at the centre, 1/m, and the whole area, m².
+    centre: QuadraturePoint<4>,
+    /// q = Σ γₐ uₐ.
+    gamma: [f64; 4],
+}
+
+/// What depends on λ/μ.
+#[derive(Debug)]
+struct Condensed {
+    ratio: f64,
+    /// K_xx, K_xy, K_yy over μ.
+    stiffness: Vec<[f64; 3]>,
+    /// The modes' sizes over q̃: those of 1 − ξ² along x and y, of 1 − η² along x and y.
+    modes: Vec<Matrix4x2<f64>>,
+}
+
+/// How many ratios are remembered: those of a few materials on one mesh, and of their viscosities, which rounding may
+/// have put beside.
+const REMEMBERED: usize = 4;
+
+/// J v: a quarter turn, counter-clockwise.
+#[inline]
+fn quarter(v: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-v.y, v.x)
+}
+
+/// Rᵀ v.
+#[inline]
+fn back(r: Rotation, v: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(r.c * v.x + r.s * v.y, r.c * v.y - r.s * v.x)
+}
+
+/// A symmetric matrix of its xx, xy and yy.
+#[inline]
+fn symmetric([xx, xy, yy]: [f64; 3]) -> Matrix2<f64> {
+    Matrix2::new(xx, xy, xy, yy)
+}
+
+/// Rows of a matrix, one after the other.
+#[inline]
+fn rows(m: &Matrix2<f64>) -> [f64; 4] {
+    [m.m11, m.m12, m.m21, m.m22]
+}
+
+impl Quad {
+    fn new(element: &ElementType, rest: &[Vector2<f64>; 4]) -> Self {
+        let centre = QuadraturePoint::<4>::new(element, rest, [0.0; 2], element.cell.area);
+        let twisted = (rest[0] - rest[1]) + (rest[2] - rest[3]);
+        let mut gamma = TWIST;
+        gamma.iter_mut().zip(&centre.gradients).for_each(|(gamma, g)| *gamma = 0.25 * (*gamma - twisted.dot(g)));
+        Self { centre, gamma }
+    }
+
+    /// q.
+    #[inline]
+    fn twist(&self, u: &[Vector2<f64>; 4]) -> Vector2<f64> {
+        let mut q = Vector2::zeros();
+        for (u, gamma) in u.iter().zip(&self.gamma) {
+            q += u * *gamma;
+        }
+        q
+    }
+}
+
+/// 1 / tr S where R is the polar factor that belongs to H, bit for bit: R follows x then. Zero where it is another, and
+/// stays what it is.
+#[inline]
+fn following(r: Rotation, h: &Matrix2<f64>) -> f64 {
+    let f = Matrix2::identity() + h;
+    if polar(&f) != Some(r) {
+        return 0.0;
+    }
+    let trace = r.c * (f.m11 + f.m22) + r.s * (f.m21 - f.m12);
+    1.0 / trace.max(SMALLEST_STRETCH_TRACE)
+}
+
+/// The gradients of ξη and of the modes at a point, 1/m.
+fn bending_point(
+    element: &ElementType,
+    rest: &[Vector2<f64>; 4],
+    [xi, eta]: [f64; 2],
+    weight: f64,
+) -> QuadraturePoint<3> {
+    let (jacobian, centre) = (element.jacobian(rest, [xi, eta]), element.jacobian(rest, [0.0; 2]));
+    // That both can be inverted the mesh has checked.
+    let [inverse, inverse_at_centre] = [jacobian, centre].map(|j| j.try_inverse().unwrap_or_default().transpose());
+    let shrink = centre.determinant() / jacobian.determinant();
+    QuadraturePoint {
+        gradients: [
+            inverse * Vector2::new(eta, xi),
+            inverse_at_centre * Vector2::new(-2.0 * xi * shrink, 0.0),
+            inverse_at_centre * Vector2::new(0.0, -2.0 * eta * shrink),
+        ],
+        area: weight * jacobian.determinant(),
+    }
+}
+
+impl Condensed {
+    fn new(ratio: f64, points: &[[QuadraturePoint<3>; 4]]) -> Self {
+        let moduli = Lame { lambda: ratio, mu: 1.0 };
+        let mut stiffness = Vec::with_capacity(points.len());
+        let mut modes = Vec::with_capacity(points.len());
+        for points in points {
+            // Stiffness of ξη and the two modes, by 2 × 2 blocks.
+            let mut blocks = [[Matrix2::zeros(); 3]; 3];
+            for point in points {
+                let add = |a: usize, b: usize, k: [f64; 4]| blocks[a][b] += Matrix2::from_row_slice(&k);
+                point.tangent_blocks(moduli, Rotation::IDENTITY, &Matrix2::zeros(), Tangent::WARPED, add);
+            }
+            let [[twist, ..], [first, inner, _], [second, cross, last]] = blocks;
+            let mut own = Matrix4::zeros();
+            own.fixed_view_mut::<2, 2>(0, 0).copy_from(&inner);
+            own.fixed_view_mut::<2, 2>(2, 0).copy_from(&cross);
+            own.fixed_view_mut::<2, 2>(0, 2).copy_from(&cross.transpose());
+            own.fixed_view_mut::<2, 2>(2, 2).copy_from(&last);
+            let mut coupling = Matrix4x2::zeros();
+            coupling.fixed_view_mut::<2, 2>(0, 0).copy_from(&first);
+            coupling.fixed_view_mut::<2, 2>(2, 0).copy_from(&second);
+            // Positive definite: no combination of the modes is free of strain. Where rounding says otherwise the
+            // element goes without them.
+            let size = own.cholesky().map_or_else(Matrix4x2::zeros, |factor| -factor.solve(&coupling));
+            let k = twist + coupling.transpose() * size;
+            stiffness.push([k.m11, 0.5 * (k.m12 + k.m21), k.m22]);
+            modes.push(size);
+        }
+        Self { ratio, stiffness, modes }
+    }
+}
+
+/// The part of an element in q, turned back, in one state.
+#[derive(Clone, Copy, Debug)]
+struct Twisted {
+    /// K q̃, N.
+    force: Vector2<f64>,
+    /// ∂w/∂θ, J.
+    moment: f64,
+    /// ∂²w/∂q̃∂θ, N.
+    cross: Vector2<f64>,
+    /// ∂²w/∂θ², J.
+    second: f64,
+}
+
+impl Twisted {
+    #[inline]
+    fn new(k: &Matrix2<f64>, q: Vector2<f64>) -> Self {
+        let (force, turned) = (k * q, quarter(q));
+        let of_turn = k * turned;
+        Self {
+            force,
+            moment: -force.dot(&turned),
+            cross: quarter(force) - of_turn,
+            second: turned.dot(&of_turn) - force.dot(&q),
+        }
+    }
+}
+
+/// Adds the parts of A and G in q: `k` is K, N/m.
+///
+/// G is θ_x zᵀ + z θ_xᵀ, of eigenvalues θ_x·z ± |θ_x||z|. Its positive part is ½ v vᵀ with v = s θ_x + z/s and
+/// s² = |z|/|θ_x|.
+#[inline]
+fn add_twist(
+    sum: &mut [[[f64; 4]; 4]; 4],
+    quad: &Quad,
+    k: &Matrix2<f64>,
+    r: Rotation,
+    twisted: &Twisted,
+    inverse_trace: f64,
+    tangent: Tangent,
+) {
+    let turn = r.matrix();
+    let turned = rows(&(turn * k * turn.transpose() * tangent.warped));
+    for (a, row) in sum.iter_mut().enumerate() {
+        for (b, block) in row[..=a].iter_mut().enumerate() {
+            let product = quad.gamma[a] * quad.gamma[b];
+            block.iter_mut().zip(turned).for_each(|(sum, k)| *sum += product * k);
+        }
+    }
+    if tangent.geometric == 0.0 || inverse_trace == 0.0 {
+        return;
+    }
+    let mut follow = [Vector2::zeros(); 4];
+    let mut other = [Vector2::zeros(); 4];
+    for (a, g) in quad.centre.gradients.iter().enumerate() {
+        let g = g * inverse_trace;
+        follow[a] = r.apply(quarter(g));
+        other[a] = r.apply(twisted.cross * quad.gamma[a] + quarter(g) * (0.5 * twisted.second) - g * twisted.moment);
+    }
+    if tangent.definite {
+        let norm = |v: &[Vector2<f64>; 4]| v.iter().map(Vector2::norm_squared).sum::<f64>().sqrt();
+        let ratio = (norm(&other) / norm(&follow)).sqrt();
+        if !(ratio > 0.0 && ratio.is_finite()) {
+            return;
+        }
+        for (follow, other) in follow.iter_mut().zip(&mut other) {
+            *follow = *follow * ratio + *other / ratio;
+            *other = *follow * 0.25;
+        }
+    }
+    for (a, row) in sum.iter_mut().enumerate() {
+        for (b, block) in row[..=a].iter_mut().enumerate() {
+            let (fa, fb, oa, ob) = (follow[a], follow[b], other[a], other[b]);
+            let k = [
+                fa.x * ob.x + oa.x * fb.x,
+                fa.x * ob.y + oa.x * fb.y,
+                fa.y * ob.x + oa.y * fb.x,
+                fa.y * ob.y + oa.y * fb.y,
+            ];
+            block.iter_mut().zip(k).for_each(|(sum, k)| *sum += tangent.geometric * k);
+        }
+    }
+}
+
+impl IncompatibleQuads {
+    /// The elements with these rest nodes (m) and node numbers; `element` is the quadrilateral's own entry.
+    #[must_use]
+    pub fn new(element: &ElementType, nodes: &[Vector2<f64>], connectivity: &[u32]) -> Self {
+        let count = connectivity.len() / 4;
+        let mut result = Self {
+            nodes: Vec::with_capacity(count),
+            quads: Vec::with_capacity(count),
+            points: Vec::with_capacity(count),
+            condensed: Mutex::new(Vec::with_capacity(REMEMBERED)),
+        };
+        for own in connectivity.chunks_exact(4) {
+            let mut number = [0; 4];
+            number.copy_from_slice(own);
+            let rest = number.map(|n| nodes[n as usize]);
+            result.nodes.push(number);
+            result.quads.push(Quad::new(element, &rest));
+            result.points.push(std::array::from_fn(|i| {
+                let rule = element.points[i];
+                bending_point(element, &rest, rule.at, rule.weight)
+            }));
+        }
+        result
+    }
+
+    /// The modes for these moduli. Made anew only where their ratio is a new one.
+    fn condensed(&self, moduli: Lame) -> Arc<Condensed> {
+        // Without stiffness no matter.
+        let ratio = if moduli.mu == 0.0 { 0.0 } else { moduli.lambda / moduli.mu };
+        let mut known = self.condensed.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = known.iter().find(|c| c.ratio.to_bits() == ratio.to_bits()) {
+            return found.clone();
+        }
+        let new = Arc::new(Condensed::new(ratio, &self.points));
+        if known.len() == REMEMBERED {
+            known.remove(0);
+        }
+        known.push(new.clone());
+        new
+    }
+
+    fn elements(&self) -> impl Iterator<Item = (&[u32; 4], &Quad)> {
+        self.nodes.iter().zip(&self.quads)
+    }
+
+    /// Every element's nodes and rest state with K over μ.
+    fn with_twist<'a>(&'a self, condensed: &'a Condensed) -> impl Iterator<Item = (&'a [u32; 4], &'a Quad, [f64; 3])> {
+        self.elements().zip(&condensed.stiffness).map(|((nodes, quad), &k)| (nodes, quad, k))
+    }
+}
+
+/// Adds nodal forces and their absolute values.
+#[inline]
+fn add_forces(nodes: &[u32; 4], own: [Vector2<f64>; 4], force: &mut [Vector2<f64>], magnitude: &mut [Vector2<f64>]) {
+    for (&node, f) in nodes.iter().zip(own) {
+        force[node as usize] += f;
+        magnitude[node as usize] += f.abs();
+    }
+}
+
+/// Half the turn from one rotation to another, which is at most a half turn: its cosine and sine.
+fn half_turn([r0, r1]: [Rotation; 2]) -> Rotation {
+    let (c, s) = (r0.c * r1.c + r0.s * r1.s, r0.c * r1.s - r0.s * r1.c);
+    // The larger of the two first: the other keeps its digits.
+    if c >= 0.0 {
+        let half = (0.5 * (1.0 + c)).sqrt();
+        Rotation { c: half, s: 0.5 * s / half }
+    } else {
+        let half = (0.5 * (1.0 - c)).sqrt().copysign(s);
+        Rotation { c: 0.5 * s / half, s: half }
+    }
+}
+
+impl Elements for IncompatibleQuads {
+    fn rotation_count(&self) -> usize {
+        self.quads.len()
+    }
+
+    fn point_count(&self) -> usize {
+        4 * self.quads.len()
+    }
+
+    fn points_per_element(&self) -> usize {
+        4
+    }
+
+    fn rotation_of(&self, point: usize) -> usize {
+        point / 4
+    }
+
+    fn point_area(&self, point: usize) -> f64 {
+        self.points[point / 4][point % 4].area
+    }
+
+    fn rotations(&self, u: &[Vector2<f64>], r: &mut [Rotation]) {
+        for ((nodes, quad), r) in self.elements().zip(r) {
+            *r = polar_or(&(Matrix2::identity() + quad.centre.displacement_gradient(&gather(nodes, u))), *r);
+        }
+    }
+
+    fn linearize(
+        &self,
+        moduli: Lame,
+        u: &[Vector2<f64>],
+        r: &[Rotation],
+        force: &mut [Vector2<f64>],
+        magnitude: &mut [Vector2<f64>],
+        mut matrix: Option<MatrixSum<'_>>,
+    ) {
+        let condensed = self.condensed(moduli);
+        for (e, ((nodes, quad, k), &r)) in self.with_twist(&condensed).zip(r).enumerate() {
+            let u = gather(nodes, u);
+            let h = quad.centre.displacement_gradient(&u);
+            let (strain, inverse_trace) = (warped_strain(r, &h), following(r, &h));
+            let k = symmetric(k) * moduli.mu;
+            let twisted = Twisted::new(&k, back(r, quad.twist(&u)));
+            let stress = r.matrix() * moduli.stress(&strain) * quad.centre.area;
+            let (twist, turn) = (r.apply(twisted.force), twisted.moment * inverse_trace);
+            let mut own = [Vector2::zeros(); 4];
+            for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
+                *own = stress * g + twist * *gamma + r.apply(quarter(*g)) * turn;
+            }
+            add_forces(nodes, own, force, magnitude);
+            if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
+                let mut sum = [[[0.0; 4]; 4]; 4];
+                quad.centre.tangent_blocks(moduli, r, &strain, *tangent, |a, b, k| sum[a][b] = k);
+                add_twist(&mut sum, quad, &k, r, &twisted, inverse_trace, *tangent);
+                scatter(&sum, slots.chunks_exact(36).nth(e).unwrap_or_default(), values);
+            }
+        }
+    }
+
+    /// The part at the centre has [`DiscreteGradient`]. Of ½ q̃ K q̃ the difference is K q̃ₘ·(q̃₁ − q̃₀), q̃ₘ their mean.
+    /// With R̄ half way between R₀ and R₁, δ the angle between these, q̂ = R̄ᵀq and b̂ = tr((R̄ J)ᵀF),
+    ///
+    /// q̃₁ − q̃₀ = cos(δ/2) (q̂₁ − q̂₀) − sin(δ/2) J (q̂₀ + q̂₁), and sin(δ/2) = (b̂₁ − b̂₀)/(tr S₀ + tr S₁):
+    ///
+    /// linear in x₁ − x₀ with factors that turn with the body. So the force cos(δ/2) γₐ R̄ K q̃ₘ −
+    /// (K q̃ₘ·J(q̂₀ + q̂₁)) R̄ J ∇Nₐ/(tr S₀ + tr S₁) works by exactly the difference of the energies, and has no moment
+    /// about the mean of both states (a discrete gradient as Gonzalez 2000 asks for, without his division by |x₁ − x₀|²).
+    fn linearize_between(
+        &self,
+        moduli: Lame,
+        [(u0, r0), (u1, r1)]: [(&[Vector2<f64>], &[Rotation]); 2],
+        force: &mut [Vector2<f64>],
+        magnitude: &mut [Vector2<f64>],
+        mut matrix: Option<MatrixSum<'_>>,
+    ) {
+        let condensed = self.condensed(moduli);
+        for (e, ((nodes, quad, k), r)) in self.with_twist(&condensed).zip(r0.iter().zip(r1)).enumerate() {
+            let (u, r) = ([gather(nodes, u0), gather(nodes, u1)], [*r.0, *r.1]);
+            let h = u.map(|u| quad.centre.displacement_gradient(&u));
+            let q = u.map(|u| quad.twist(&u));
+            let between = DiscreteGradient::new(h, r);
+            let stress = between.stress(moduli) * quad.centre.area;
+            let k = symmetric(k) * moduli.mu;
+            let half = half_turn(r);
+            // R̄ = R₁ turned back by half the turn.
+            let middle = Rotation { c: r[1].c * half.c + r[1].s * half.s, s: r[1].s * half.c - r[1].c * half.s };
+            let mean = k * ((back(r[0], q[0]) + back(r[1], q[1])) * 0.5);
+            let sum_of_q = back(middle, q[0] + q[1]);
+            let inverse = [following(r[0], &h[0]), following(r[1], &h[1])];
+            // Where a rotation is undefined, in a body crushed to nothing, nothing follows.
+            let inverse_sum =
+                if inverse[0] > 0.0 && inverse[1] > 0.0 { 1.0 / (1.0 / inverse[0] + 1.0 / inverse[1]) } else { 0.0 };
+            let (twist, turn) = (middle.apply(mean) * half.c, -mean.dot(&quarter(sum_of_q)) * inverse_sum);
+            let mut own = [Vector2::zeros(); 4];
+            for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
+                *own = stress * g + twist * *gamma + middle.apply(quarter(*g)) * turn;
+            }
+            add_forces(nodes, own, force, magnitude);
+            if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
+                let strain = Matrix2::identity() * (0.5 * between.trace);
+                let mut sum = [[[0.0; 4]; 4]; 4];
+                quad.centre.tangent_blocks(moduli, between.rotation, &strain, *tangent, |a, b, k| sum[a][b] = k);
+                let twisted = Twisted::new(&k, sum_of_q * 0.5);
+                add_twist(&mut sum, quad, &k, middle, &twisted, 2.0 * inverse_sum, *tangent);
+                scatter(&sum, slots.chunks_exact(36).nth(e).unwrap_or_default(), values);
+            }
+        }
+    }
+
+    /// As with one point at the centre; and q in the body's own frame, F₀ᵀ q, at its own rate with K. Like Green's strain
+    /// that is quadratic in x and blind to rigid motions: it is what Green's strain has in ξη.
+    fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {
+        let condensed = self.condensed(moduli);
+        for (nodes, quad, k) in self.with_twist(&condensed) {
+            let own = gather(nodes, u);
+            let (f, q) = (Matrix2::identity() + quad.centre.displacement_gradient(&own), quad.twist(&own));
+            let (mut strain_rate, mut twist_rate) = (Matrix2::zeros(), Vector2::zeros());
+            match rate {
+                StrainRate::Difference(terms) => {
+                    for (factor, u) in terms {
+                        let u = gather(nodes, u);
+                        let (h, q) = (quad.centre.displacement_gradient(&u), quad.twist(&u));
+                        strain_rate += (h + h.transpose() + h.transpose() * h) * (0.5 * factor);
+                        twist_rate += (q + h.transpose() * q) * *factor;
+                    }
+                }
+                StrainRate::Velocity(v) => {
+                    let v = gather(nodes, v);
+                    let gradient = quad.centre.displacement_gradient(&v);
+                    let rate = f.transpose() * gradient;
+                    strain_rate = (rate + rate.transpose()) * 0.5;
+                    twist_rate = gradient.transpose() * q + f.transpose() * quad.twist(&v);
+                }
+            }
+            let stress = f * moduli.stress(&strain_rate) * quad.centre.area;
+            let twist = symmetric(k) * twist_rate * moduli.mu;
+            let turned = f * twist;
+            for ((&node, g), gamma) in nodes.iter().zip(&quad.centre.gradients).zip(&quad.gamma) {
+                force[node as usize] += stress * g + q * g.dot(&twist) + turned * *gamma;
+            }
+        }
+    }
+
+    fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]) {
+        let Lame { lambda, mu } = moduli;
+        let condensed = self.condensed(moduli);
+        for ((nodes, quad, k), slots) in self.with_twist(&condensed).zip(slots.chunks_exact(36)) {
+            let own = gather(nodes, u);
+            let (f, q) = (Matrix2::identity() + quad.centre.displacement_gradient(&own), quad.twist(&own));
+            let k = symmetric(k) * mu;
+            let left = f * f.transpose() * mu;
+            let gradients = &quad.centre.gradients;
+            let turned = gradients.map(|g| f * g);
+            // The derivative of F₀ᵀ q with respect to every node.
+            let mut twist = [Matrix2::zeros(); 4];
+            for ((twist, g), gamma) in twist.iter_mut().zip(gradients).zip(&quad.gamma) {
+                *twist = g * q.transpose() + f.transpose() * *gamma;
+            }
+            let mut sum = [[[0.0; 4]; 4]; 4];
+            for a in 0..4 {
+                let stiff = twist[a].transpose() * k;
+                for b in 0..=a {
+                    let (g, h) = (turned[a], turned[b]);
+                    let plane =
+                        g * h.transpose() * lambda + h * g.transpose() * mu + left * gradients[a].dot(&gradients[b]);
+                    sum[a][b] = rows(&(plane * quad.centre.area + stiff * twist[b]));
+                }
+            }
+            scatter(&sum, slots, values);
+        }
+    }
+
+    fn energy(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation]) -> f64 {
+        let condensed = self.condensed(moduli);
+        let mut energy = 0.0;
+        for ((nodes, quad, k), &r) in self.with_twist(&condensed).zip(r) {
+            let u = gather(nodes, u);
+            let strain = warped_strain(r, &quad.centre.displacement_gradient(&u));
+            let q = back(r, quad.twist(&u));
+            energy += quad.centre.area * moduli.energy_density(&strain) + 0.5 * moduli.mu * q.dot(&(symmetric(k) * q));
+        }
+        energy
+    }
+
+    fn smallest_area_ratio(&self, u: &[Vector2<f64>]) -> f64 {
+        let mut smallest = f64::INFINITY;
+        for ((nodes, quad), points) in self.elements().zip(&self.points) {
+            let u = gather(nodes, u);
+            let (h, q) = (quad.centre.displacement_gradient(&u), quad.twist(&u));
+            for point in points {
+                let h = h + q * point.gradients[0].transpose();
+                smallest = smallest.min((1.0 + h.m11) * (1.0 + h.m22) - h.m12 * h.m21);
+            }
+        }
+        smallest
+    }
+
+    /// H is that of the shape functions; the strain has the modes' on top.
+    fn visit_strains(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>) {
+        let condensed = self.condensed(moduli);
+        let modes = self.points.iter().zip(&condensed.modes);
+        let mut number = 0;
+        for (((nodes, quad), (points, modes)), &r) in self.elements().zip(modes).zip(r) {
+            let u = gather(nodes, u);
+            let (h, q) = (quad.centre.displacement_gradient(&u), quad.twist(&u));
+            let size = modes * back(r, q);
+            let (first, second) = (Vector2::new(size[0], size[1]), Vector2::new(size[2], size[3]));
+            for point in points {
+                let [twist, a, b] = point.gradients;
+                let h = h + q * twist.transpose();
+                let inner = first * a.transpose() + second * b.transpose();
+                visit(number, &h, &(warped_strain(r, &h) + (inner + inner.transpose()) * 0.5));
+                number += 1;
+            }
+        }
+    }
+}
