@@ -155,8 +155,14 @@ mod tests {
             assert!((around - 10.0).abs() < 1e-12, "{element:?}: {around}");
             assert_eq!(drawing.triangles.len(), drawing.value_of.len());
             // A field that is linear within elements is drawn as it is: its mean over the body is that of its points.
-            let count = mesh.element_count() * element.entry().points.len();
-            let at_points: Vec<Option<f64>> = (0..count).map(|q| Some((q % 7) as f64)).collect();
+            let entry = element.entry();
+            let field = |nodes: &[u32], at: [f64; 2]| -> f64 {
+                let places = nodes.iter().map(|&n| mesh.nodes()[n as usize]);
+                places.zip((entry.shape)(at)).map(|(x, n)| (x.x + 2.0 * x.y) * n).sum()
+            };
+            let all = mesh.elements().flat_map(|nodes| entry.points.iter().map(move |point| (nodes, point.at)));
+            let at_points: Vec<Option<f64>> = all.map(|(nodes, at)| Some(field(nodes, at))).collect();
+            let count = at_points.len();
             let mut values = Vec::new();
             drawing.values(&at_points, &mut values);
             let mean = |v: &[Option<f64>]| v.iter().flatten().sum::<f64>() / v.len() as f64;

@@ -1,0 +1,113 @@
+//! Long runs: nothing grows, nothing drifts away, nothing ends. `WARPBEAM_SOAK=50 cargo test --release --test soak` runs
+//! fifty times as long.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+#![cfg(feature = "app")]
+
+mod common;
+
+use common::pictures::lab;
+use common::scene;
+use egui_kittest::Harness;
+use nalgebra::Vector2;
+use warpbeam::app::Lab;
+use warpbeam::{ElementKind, IntegratorKind, Simulation, Status};
+
+/// How many times as long as usual.
+fn longer() -> u32 {
+    std::env::var("WARPBEAM_SOAK").ok().and_then(|text| text.parse().ok()).unwrap_or(1)
+}
+
+/// Numbers from −1 to 1, the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+    }
+}
+
+/// Resident memory, bytes; `None` where the system does not say.
+fn memory() -> Option<u64> {
+    const PAGE: u64 = 4096;
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    Some(text.split_whitespace().nth(1)?.parse::<u64>().ok()? * PAGE)
+}
+
+/// The swing, and a hand that takes hold of it now and then.
+#[test]
+fn a_swing_goes_on() {
+    let mut scene = scene("swing");
+    scene.beam.as_mut().unwrap().cells = [10, 1];
+    scene.set_element(ElementKind::T3);
+    for integrator in [IntegratorKind::TrBdf2, IntegratorKind::EnergyMomentum] {
+        scene.dynamics.integrator = integrator;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let mut random = Random(7);
+        let tip = simulation.system().mesh().locate(Vector2::new(0.98, 0.0)).unwrap();
+        let mut place = Vector2::zeros();
+        let steps = 10_000 * longer();
+        let mut after_a_while = None;
+        for step in 0..steps {
+            match step % 600 {
+                400 => assert!(simulation.grab(tip)),
+                401..460 => {
+                    if step % 20 == 1 {
+                        place = Vector2::new(0.6, -0.4) + Vector2::new(random.next(), random.next()) * 0.3;
+                    }
+                    simulation.pull_to(place).unwrap();
+                }
+                460 => simulation.release(),
+                _ => {}
+            }
+            simulation.step();
+            if step == steps / 10 {
+                after_a_while = memory();
+            }
+        }
+        assert!(!matches!(simulation.status(), Status::Stopped(_)), "{integrator:?}: {:?}", simulation.status());
+        assert!(simulation.state().is_finite());
+        let ledger = simulation.motion().unwrap().ledger();
+        assert!(ledger.imbalance().abs() < 1e-10 * ledger.throughput, "{integrator:?}: {ledger:?}");
+        if let (Some(before), Some(after)) = (after_a_while, memory()) {
+            assert!(after < before + (16 << 20), "{integrator:?}: from {before} to {after} bytes");
+        }
+    }
+}
+
+/// A window whose body is pulled about at random: it lives on, and shows what is finite.
+#[test]
+fn a_window_is_played_with() {
+    for id in ["jelly", "flick", "article"] {
+        let mut harness = Harness::builder().with_size([1000.0, 700.0]).build_ui_state(
+            |ui, lab: &mut Lab| {
+                lab.advance(ui.input(|i| i.time));
+                lab.ui(ui);
+            },
+            lab(id),
+        );
+        let mut random = Random(11);
+        let (mut held, mut memory_then) = (0, None);
+        let frames = 240 * longer();
+        for frame in 0..frames {
+            let rect = harness.state().view_rect();
+            let reach = 0.45 * rect.size();
+            let place = rect.center() + egui::vec2(random.next() as f32 * reach.x, random.next() as f32 * reach.y);
+            match frame % 12 {
+                0 => harness.drag_at(rect.center() + egui::vec2(random.next() as f32 * 30.0, -40.0)),
+                8 => harness.drop_at(place),
+                _ => harness.hover_at(place),
+            }
+            harness.step();
+            held += u32::from(harness.state().simulation().hand().is_some());
+            assert!(harness.state().simulation().state().is_finite(), "{id}: frame {frame}");
+            if frame == frames / 2 {
+                memory_then = memory();
+            }
+        }
+        assert!(id == "article" || held > 0, "{id}: nothing was ever held");
+        if let (Some(before), Some(after)) = (memory_then, memory()) {
+            assert!(after < before + (32 << 20), "{id}: from {before} to {after} bytes");
+        }
+    }
+}
