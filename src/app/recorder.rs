@@ -6,13 +6,24 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
+use thiserror::Error;
+
 use super::record::{Phase, RecordOptions, RecordProgress, record};
-use super::{ThemeChoice, free_name};
+use super::{NoName, ThemeChoice, free_name};
 use crate::scene::{Scene, Source};
 use crate::words::count;
 
 /// Pixels of the recording.
 const SIZE: [u32; 2] = [640, 400];
+
+/// Why there is no recording.
+#[derive(Debug, Error)]
+pub(super) enum RecorderError {
+    #[error(transparent)]
+    NoName(#[from] NoName),
+    #[error("no thread for it: {0}")]
+    NoThread(#[from] std::io::Error),
+}
 
 enum Message {
     Progress(f32, String),
@@ -31,15 +42,17 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Starts to record a scene; or says why it cannot.
-    pub(super) fn start(source: Source, scene: Scene, theme: ThemeChoice) -> Result<Self, String> {
-        let path = free_name("gif").map_err(|error| error.to_string())?;
+    /// Starts to record a scene.
+    ///
+    /// # Errors
+    /// [`RecorderError`].
+    pub(super) fn start(source: Source, scene: Scene, theme: ThemeChoice) -> Result<Self, RecorderError> {
+        let path = free_name("gif")?;
         let (sender, receiver) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let cancelled = cancel.clone();
         let work = move || work(&source, scene, theme, &path, &sender, &cancelled);
-        let thread = std::thread::Builder::new().name("record".to_owned()).spawn(work);
-        thread.map_err(|error| format!("no thread for the recording: {error}"))?;
+        std::thread::Builder::new().name("record".to_owned()).spawn(work)?;
         Ok(Self { receiver, cancel, fraction: 0.0, words: String::new() })
     }
 
