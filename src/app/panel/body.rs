@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{Action, PanelInput, PanelState};
+use super::{Action, PanelInput, PanelState, number_row};
 use crate::app::action::MOST_ITERATIONS;
 use crate::app::field::{NumberField, show_message};
 use crate::method::METHODS;
@@ -10,11 +10,7 @@ use crate::scene::{Analysis, Plane, Scene, limits};
 
 pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Action>) {
     let mut row = |field: NumberField, value: f64, set: fn(&mut Scene, f64)| {
-        if let Some(new) = field.show(ui, &mut state.messages, value) {
-            let mut scene = Box::new(scene.clone());
-            set(&mut scene, new);
-            actions.push(Action::Edit(field.label, scene));
-        }
+        number_row(ui, scene, state, actions, (field, value), set);
     };
     let m = &scene.material;
     row(

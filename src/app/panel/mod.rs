@@ -3,7 +3,7 @@
 use egui::{Button, ComboBox, RichText, ScrollArea, Ui};
 
 use super::action::{Action, ViewOptions};
-use super::field::Messages;
+use super::field::{Messages, NumberField};
 use super::playback::Playback;
 use crate::scene::{Analysis, Scene, registry};
 use crate::simulation::Simulation;
@@ -91,6 +91,22 @@ pub(super) fn show(
 fn section(ui: &mut Ui, title: &str) {
     ui.separator();
     ui.strong(title);
+}
+
+/// A row that edits a number of the scene.
+fn number_row(
+    ui: &mut Ui,
+    scene: &Scene,
+    state: &mut PanelState,
+    actions: &mut Vec<Action>,
+    (field, value): (NumberField, f64),
+    set: fn(&mut Scene, f64),
+) {
+    if let Some(new) = field.show(ui, &mut state.messages, value) {
+        let mut scene = Box::new(scene.clone());
+        set(&mut scene, new);
+        actions.push(Action::Edit(field.label, scene));
+    }
 }
 
 fn scene_picker(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {

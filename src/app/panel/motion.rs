@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{Action, PanelInput, PanelState};
+use super::{Action, PanelInput, PanelState, number_row};
 use crate::app::field::{NumberField, show_message};
 use crate::app::format;
 use crate::dynamics::INTEGRATORS;
@@ -60,11 +60,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
         }
     });
     let mut row = |field: NumberField, value: f64, set: fn(&mut Scene, f64)| {
-        if let Some(new) = field.show(ui, &mut state.messages, value) {
-            let mut scene = Box::new(input.scene.clone());
-            set(&mut scene, new);
-            actions.push(Action::Edit(field.label, scene));
-        }
+        number_row(ui, input.scene, state, actions, (field, value), set);
     };
     row(
         NumberField {

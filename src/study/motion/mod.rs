@@ -12,7 +12,7 @@ use self::reference::fine_path;
 use super::pareto;
 use super::reference::{finest_element, first_probe, system_of};
 use super::timing::median_time;
-use super::trade::{Extent, Observer, Progress, StudyError, check, mesh_words};
+use super::trade::{Extent, Observer, Progress, Setting, StudyError, check, mesh_words};
 use crate::assembly::{Mass, System};
 use crate::dynamics::{Counts, INTEGRATORS, IntegratorEntry, critical_step};
 use crate::method::METHODS;
@@ -48,12 +48,8 @@ impl MotionSetting {
     /// The scene with this setting.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
-        let mut scene = scene.clone();
-        scene.set_element(self.element);
-        if let (Some(beam), Some(cells)) = (&mut scene.beam, self.cells) {
-            beam.cells = cells;
-        }
-        scene.solver.method = self.method;
+        let Self { element, cells, method, iterations, .. } = *self;
+        let mut scene = Setting { element, cells, method, iterations }.apply(scene);
         let dynamics = &mut scene.dynamics;
         (dynamics.integrator, dynamics.time_step) = (self.integrator, self.time_step);
         dynamics.iterations = self.iterations;
