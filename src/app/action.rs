@@ -1,7 +1,8 @@
 //! What panel, keys and drawers ask of the lab, and how the body is looked at.
 
+use super::mode::Mode;
 use super::motion_plot::MotionPlot;
-use crate::scene::{IntegratorKind, Scene};
+use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::Setting;
 
@@ -55,9 +56,14 @@ pub(super) enum Toggle {
     Wireframe,
     RestOutline,
     Ghost,
+    Exact,
     Trail,
     Panel,
     Help,
+    /// Why the status is what it is.
+    Why,
+    /// A mode, or back to exploring.
+    Mode(Mode),
     Drawer(Drawer),
 }
 
@@ -68,8 +74,24 @@ pub(super) enum Drawer {
     Curve,
     /// Energy, tip, phase and spectrum of a motion.
     Motion,
-    /// Error against time, and the settings within limits.
-    Budget,
+}
+
+impl Drawer {
+    /// That of a scene.
+    pub(super) fn of(scene: &Scene) -> Self {
+        match scene.analysis {
+            Analysis::Static => Self::Curve,
+            Analysis::Dynamic => Self::Motion,
+        }
+    }
+
+    /// Its name and what is in it.
+    pub(super) fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Curve => ("Load curve", "Load against deflection (L)"),
+            Self::Motion => ("Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),
+        }
+    }
 }
 
 /// How to look at the body.
@@ -81,10 +103,21 @@ pub(super) struct ViewOptions {
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
+    pub exact: bool,
     pub trail: bool,
+    pub mode: Mode,
     pub drawer: Option<Drawer>,
     pub motion_plot: MotionPlot,
+    /// Whether bars and panel are there at all: a picture may do without.
+    pub bars: bool,
+    /// Whether the panel is there where it has its own place.
     pub panel: bool,
+    /// Whether it lies over the body where it has none.
+    pub sheet: bool,
+    /// Whether the window is so narrow that it has none.
+    pub narrow: bool,
+    /// Whether the status is explained.
+    pub why: bool,
     pub help: bool,
 }
 
@@ -96,10 +129,16 @@ impl Default for ViewOptions {
             wireframe: true,
             rest_outline: true,
             ghost: true,
+            exact: true,
             trail: true,
+            mode: Mode::default(),
             drawer: None,
             motion_plot: MotionPlot::default(),
+            bars: true,
             panel: true,
+            sheet: false,
+            narrow: false,
+            why: false,
             help: false,
         }
     }
@@ -113,10 +152,19 @@ impl ViewOptions {
             Toggle::RestOutline => self.rest_outline ^= true,
             Toggle::Ghost => self.ghost ^= true,
             Toggle::Trail => self.trail ^= true,
+            Toggle::Exact => self.exact ^= true,
+            Toggle::Panel if self.narrow => self.sheet ^= true,
             Toggle::Panel => self.panel ^= true,
             Toggle::Help => self.help ^= true,
+            Toggle::Why => self.why ^= true,
+            Toggle::Mode(mode) => self.mode = if self.mode == mode { Mode::Explore } else { mode },
             Toggle::Drawer(drawer) => self.drawer = if self.drawer == Some(drawer) { None } else { Some(drawer) },
         }
+    }
+
+    /// Whether the panel is seen.
+    pub(super) fn shows_panel(&self) -> bool {
+        if self.narrow { self.sheet } else { self.panel }
     }
 
     /// Colours with another field; a fixed range was for the one before.

@@ -3,6 +3,7 @@
 use egui::{Context, Key};
 
 use super::action::{Action, Drawer, Toggle};
+use super::mode::Mode;
 use crate::simulation::Field;
 
 /// A key and what it does.
@@ -26,6 +27,7 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::W, "Wireframe on or off", || Action::Toggle(Toggle::Wireframe)),
     key(Key::O, "Rest outline on or off", || Action::Toggle(Toggle::RestOutline)),
     key(Key::G, "Ghost of the linear solution on or off", || Action::Toggle(Toggle::Ghost)),
+    key(Key::X, "Outline of the exact solution on or off", || Action::Toggle(Toggle::Exact)),
     key(Key::Num1, "Colour: von Mises stress", || Action::Color(Field::VonMises)),
     key(Key::Num2, "Colour: strain energy density", || Action::Color(Field::EnergyDensity)),
     key(Key::Num3, "Colour: largest strain", || Action::Color(Field::LargestStrain)),
@@ -33,7 +35,7 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::L, "Load curve on or off", || Action::Toggle(Toggle::Drawer(Drawer::Curve))),
     key(Key::E, "Energy, tip and spectrum of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
     key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
-    key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Drawer(Drawer::Budget))),
+    key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),
     key(Key::P, "Panel on or off", || Action::Toggle(Toggle::Panel)),
     key(Key::T, "Light or dark", || Action::ToggleTheme),
     key(Key::S, "Save a screenshot (PNG) here", || Action::Screenshot),
@@ -42,15 +44,19 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::F1, "This list", || Action::Toggle(Toggle::Help)),
 ];
 
-/// What the keys of this frame ask for; none while text is edited.
+/// What the keys of this frame ask for; none while text is edited. Space belongs to the control that has the focus.
 pub(super) fn actions(ctx: &Context, help_is_open: bool) -> Vec<Action> {
     if ctx.text_edit_focused() {
         return Vec::new();
     }
+    let focused = ctx.memory(|memory| memory.focused().is_some());
     ctx.input(|i| {
         let plain = i.modifiers.is_none();
-        let mut actions: Vec<Action> =
-            SHORTCUTS.iter().filter(|s| plain && i.key_pressed(s.key)).map(|s| (s.act)()).collect();
+        let mut actions: Vec<Action> = SHORTCUTS
+            .iter()
+            .filter(|s| plain && i.key_pressed(s.key) && !(focused && s.key == Key::Space))
+            .map(|s| (s.act)())
+            .collect();
         if help_is_open && i.key_pressed(Key::Escape) {
             actions.push(Action::Toggle(Toggle::Help));
         }

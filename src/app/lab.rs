@@ -6,19 +6,23 @@ use egui::{CentralPanel, Color32, Panel, Rect, Sense, Ui};
 use nalgebra::Vector2;
 
 use super::ThemeChoice;
-use super::action::{Action, Drawer, MOST_ITERATIONS, ViewOptions};
+use super::action::{Action, Drawer, MOST_ITERATIONS, Toggle, ViewOptions};
 use super::budget::{Budget, question};
 use super::drawing::Drawing;
 use super::finder::{Finder, LISTEN};
-use super::motion_plot;
+use super::intro::Intro;
+use super::mode::Mode;
 use super::overlay::{self, Overlay};
-use super::panel::{self, PanelInput, PanelState, status_words};
+use super::palette::{self, Palette};
+use super::panel::{self, PanelInput, PanelState};
 use super::playback::Playback;
 use super::pointer::{self, Look, Reach};
 use super::recorder::Recorder;
-use super::{help, keys, plot};
+use super::verdict::{self, Errors};
+use super::{headline, help, keys, motion_plot, plot, toolbar};
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
+use crate::render::colormap::ColorMap;
 use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
@@ -27,13 +31,24 @@ use crate::study::{LoadCurve, Reference, Study};
 use crate::timings::Timings;
 
 /// Width of the panel, points.
-pub const PANEL_WIDTH: f32 = 324.0;
+pub const PANEL_WIDTH: f32 = 284.0;
+
+/// A window narrower than this, points, has no place for the panel: it lies over the body, and can be put away.
+const NARROW: f32 = 900.0;
+
+/// Heights of the bars along the top and the bottom, points.
+const TOOLBAR_HEIGHT: f32 = 36.0;
+const HEADLINE_HEIGHT: f32 = 42.0;
 
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 
-/// Height of what is shown under the body, points.
+/// Height of what is shown under the body, points; at most a part of the window's.
 const DRAWER_HEIGHT: f32 = 270.0;
+const DRAWER_SHARE: f32 = 0.45;
+
+/// Residuals that are kept for the way down.
+const MOST_RESIDUALS: usize = 400;
 
 /// How long a message stays.
 const TOAST: Duration = Duration::from_secs(4);
@@ -78,6 +93,10 @@ pub struct Lab {
     iterations: u32,
     /// Time of the last iterations made for one displayed frame.
     timings: Timings,
+    /// The residual after every iteration since the last change.
+    residuals: Vec<f64>,
+    /// The first seconds, while they last.
+    intro: Option<Intro>,
 }
 
 /// Why a scene is not shown.
@@ -103,6 +122,7 @@ struct Shape {
     background: [u8; 3],
     surround: [u8; 3],
     absent_color: [u8; 3],
+    map: ColorMap,
 }
 
 impl Lab {
@@ -134,6 +154,8 @@ impl Lab {
             recorder: None,
             iterations: 1,
             timings: Timings::default(),
+            residuals: Vec::new(),
+            intro: None,
         };
         lab.solve_linear();
         lab
@@ -144,9 +166,14 @@ impl Lab {
         self.adapter = adapter;
     }
 
-    /// Shows or hides the panel.
+    /// Shows or hides the panel and the bars: without them the view is all of the picture.
     pub fn set_panel(&mut self, shown: bool) {
-        self.view.panel = shown;
+        self.view.bars = shown;
+    }
+
+    /// Lets the load grow before the eyes of who opens the window: nothing waits for it, and any input ends it.
+    pub(super) fn introduce(&mut self) {
+        self.intro = Intro::new(&self.simulation);
     }
 
     /// Shows the load curve under the body.
@@ -156,7 +183,7 @@ impl Lab {
 
     /// Shows a study under the body.
     pub fn show_study(&mut self, study: Study) {
-        self.view.drawer = Some(Drawer::Budget);
+        self.view.mode = Mode::Budget;
         self.budget.set(&self.scene, study);
     }
 
@@ -187,6 +214,7 @@ impl Lab {
     pub fn set_outlines(&mut self, shown: bool) {
         self.view.rest_outline = shown;
         self.view.ghost = shown;
+        self.view.exact = shown;
     }
 
     /// The scene as it stands.
@@ -256,6 +284,10 @@ impl Lab {
             if *self.simulation.status() == Status::Running {
                 self.simulation.step();
                 self.timings.add(self.simulation.last_iteration());
+                if self.simulation.iterations() <= 1 || self.residuals.len() >= MOST_RESIDUALS {
+                    self.residuals.clear();
+                }
+                self.residuals.push(self.simulation.residual());
             }
         }
     }
@@ -320,6 +352,9 @@ impl Lab {
             values: &shape.values,
             range: shape.range,
             lines: if self.view.wireframe { &self.drawing.lines } else { &[] },
+            beside: &self.drawing.beside,
+            pieces: self.drawing.pieces,
+            map: shape.map,
             line_color: shape.line_color,
             background: shape.background,
             surround: shape.surround,
@@ -329,67 +364,146 @@ impl Lab {
 
     fn update_shape(&mut self, visuals: &egui::Visuals) {
         let shape = &mut self.shape;
+        let simulation = self.intro.as_ref().map_or(&self.simulation, Intro::simulation);
         shape.nodes.clear();
-        let rest = self.simulation.system().mesh().nodes();
-        shape.nodes.extend(rest.iter().zip(self.simulation.displacement()).map(|(x, u)| x + u));
+        let rest = simulation.system().mesh().nodes();
+        shape.nodes.extend(rest.iter().zip(simulation.displacement()).map(|(x, u)| x + u));
         let nodes = &shape.nodes;
         self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
-        self.simulation.field(self.view.field, &mut shape.at_points);
+        simulation.field(self.view.field, &mut shape.at_points);
         self.drawing.values(&shape.at_points, &mut shape.values);
-        let range = panel::range_of(&shape.at_points);
+        let [mut low, mut high] = panel::range_of(&shape.at_points);
+        if palette::has_sign(self.view.field) {
+            let reach = high.abs().max(low.abs());
+            (low, high) = (-reach, reach);
+        }
         // Colours that jump from frame to frame say nothing of a motion: its range only grows.
         let before = self.swept.map(|_| shape.range).filter(|_| shape.field == Some(self.view.field));
-        let grown = before.map_or(range, |[low, high]| [low.min(range[0]), high.max(range[1])]);
+        let grown = before.map_or([low, high], |range| [low.min(range[0]), high.max(range[1])]);
         shape.field = Some(self.view.field);
         shape.range = self.view.fixed_range.unwrap_or(grown);
-        shape.background = if visuals.dark_mode { [22, 24, 28] } else { [244, 245, 247] };
+        let palette = Palette::new(visuals);
+        let opaque = |color: egui::Color32| [color.r(), color.g(), color.b()];
+        shape.background = opaque(palette.canvas);
         // What is behind panels: these fill nothing themselves, which is dear where a processor draws.
-        let [r, g, b, _] = visuals.panel_fill.to_array();
-        shape.surround = [r, g, b];
-        shape.absent_color = if visuals.dark_mode { [90, 90, 96] } else { [170, 170, 176] };
-        shape.line_color = if visuals.dark_mode { [0, 0, 0, 110] } else { [0, 0, 0, 90] };
+        shape.surround = opaque(palette.panel);
+        shape.absent_color = opaque(palette.absent);
+        shape.line_color = palette.wire;
+        shape.map = palette.map(self.view.field);
     }
 
-    /// Sizes and colours that the defaults get wrong here.
-    fn style(ctx: &egui::Context) {
-        ctx.all_styles_mut(|style| {
-            style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(11.0));
-        });
+    /// What toolbar, panel and headlines show.
+    fn input(&self) -> PanelInput<'_> {
+        PanelInput {
+            truth: self.truth.get(),
+            scene: &self.scene,
+            scene_name: self.source.name.to_str().unwrap_or_default(),
+            simulation: &self.simulation,
+            linear: self.linear.as_ref(),
+            running: self.running,
+            playback: &self.playback,
+            iterations: self.iterations,
+            timings: &self.timings,
+            residuals: &self.residuals,
+            adapter: &self.adapter,
+        }
     }
 
     /// Shows everything but the body, which is drawn under it, and does what was asked for.
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
-        Self::style(ui.ctx());
+        palette::install(ui.ctx());
         let mut actions = Vec::new();
         self.find_out(ui.ctx());
         self.budget.listen(ui.ctx());
-        if self.view.panel {
-            let input = PanelInput {
-                truth: self.truth.get(),
-                scene: &self.scene,
-                scene_name: self.source.name.to_str().unwrap_or_default(),
-                simulation: &self.simulation,
-                running: self.running,
-                playback: &self.playback,
-                iterations: self.iterations,
-                timings: &self.timings,
-                adapter: &self.adapter,
-            };
-            let panel = Panel::left("panel").exact_size(PANEL_WIDTH).resizable(false).frame(unfilled(ui));
-            panel.show(ui, |ui| panel::show(ui, &input, &mut self.panel, &mut self.view, &mut actions));
+        self.go_on_with_intro(ui.ctx());
+        self.view.narrow = ui.available_width() < NARROW;
+        if self.view.bars {
+            self.bars(ui, &mut actions);
         }
         actions.extend(keys::actions(ui.ctx(), self.view.help));
-        self.drawer(ui, &mut actions);
+        let mode = self.view.mode.entry();
+        if self.view.bars {
+            (mode.show)(self, ui, &mut actions);
+        }
         let mut requests = Vec::new();
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
-        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui));
+        let mut actions = Vec::new();
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, &mut actions));
+        if self.view.bars && self.view.narrow && self.view.sheet {
+            self.sheet(ui, &mut actions);
+        }
+        for action in actions {
+            self.act(ui.ctx(), action, &mut requests);
+        }
         help::show(ui.ctx(), &mut self.view.help);
-        if self.iterates() {
+        if self.iterates() || self.intro.is_some() {
             ui.ctx().request_repaint();
         }
         requests
+    }
+
+    /// The bars along the top and the bottom, and the panel where it has its place.
+    fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let errors = verdict::errors(&self.input());
+        let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
+        let top = Panel::top("toolbar").exact_size(TOOLBAR_HEIGHT).resizable(false).frame(bar(ui));
+        top.show(ui, |ui| toolbar::show(ui, &self.input(), &self.view, actions));
+        let bottom = Panel::bottom("headline").exact_size(HEADLINE_HEIGHT).resizable(false).frame(bar(ui));
+        bottom.show(ui, |ui| headline::show(ui, &self.input(), &errors, &self.view, actions));
+        if self.view.panel && !self.view.narrow {
+            let frame = unfilled(ui).inner_margin(egui::Margin { left: 12, right: 8, top: 8, bottom: 4 });
+            let panel = Panel::right("panel").exact_size(PANEL_WIDTH).resizable(false).frame(frame);
+            panel.show(ui, |ui| self.panel(ui, &errors, actions));
+        }
+    }
+
+    /// The panel over the body, where the window is narrow.
+    fn sheet(&mut self, ui: &Ui, actions: &mut Vec<Action>) {
+        let errors = verdict::errors(&self.input());
+        let rect = self.view_rect;
+        let width = PANEL_WIDTH.min(rect.width());
+        egui::Area::new(egui::Id::unique("sheet"))
+            .order(egui::Order::Foreground)
+            .fixed_pos(rect.right_top() - egui::vec2(width, 0.0))
+            .constrain(false)
+            .show(ui.ctx(), |ui| {
+                let palette = Palette::new(ui.visuals());
+                let margin = egui::Margin { left: 12, right: 8, top: 8, bottom: 4 };
+                let frame = egui::Frame::new().fill(palette.panel).inner_margin(margin);
+                frame.stroke(egui::Stroke::new(1.0, palette.line)).show(ui, |ui| {
+                    ui.set_width((width - 22.0).max(0.0));
+                    ui.set_height((rect.height() - 14.0).max(0.0));
+                    self.panel(ui, &errors, actions);
+                });
+            });
+        if ui.input(|i| i.key_pressed(egui::Key::Escape)) && !ui.ctx().text_edit_focused() {
+            self.view.sheet = false;
+        }
+    }
+
+    fn panel(&mut self, ui: &mut Ui, errors: &Errors, actions: &mut Vec<Action>) {
+        // The panel's own memory is apart from what it shows.
+        let (mut state, mut view) = (std::mem::take(&mut self.panel), self.view.clone());
+        panel::show(ui, &self.input(), errors, &mut state, &mut view, actions);
+        (self.panel, self.view) = (state, view);
+    }
+
+    /// Lets the load of the first seconds grow, until they are over or somebody does something.
+    fn go_on_with_intro(&mut self, ctx: &egui::Context) {
+        if self.intro.is_none() || self.iterates() {
+            return;
+        }
+        let (now, touched) = ctx.input(|i| {
+            let idle = |event: &egui::Event| {
+                matches!(event, egui::Event::PointerMoved(_) | egui::Event::WindowFocused(_) | egui::Event::PointerGone)
+            };
+            (i.time, i.events.iter().any(|event| !idle(event)))
+        });
+        if touched || !self.intro.as_mut().is_some_and(|intro| intro.advance(now)) {
+            self.intro = None;
+        }
     }
 
     /// Looks for what is known of the scene and of its result, once the body is at rest: a dragged slider need not wait.
@@ -410,18 +524,22 @@ impl Lab {
         }
     }
 
-    fn drawer(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    /// The plots under the body, where they are open.
+    pub(super) fn plots(&mut self, ui: &mut Ui, _: &mut Vec<Action>) {
         let Some(drawer) = self.view.drawer else { return };
-        let panel = Panel::bottom("drawer").exact_size(DRAWER_HEIGHT).resizable(false).frame(unfilled(ui));
-        panel.show(ui, |ui| match drawer {
+        drawer_panel(ui).show(ui, |ui| match drawer {
             Drawer::Curve => plot::show(ui, self.curve.get(), !self.curve.is_open()),
             Drawer::Motion => {
                 let frequency = self.frequency.get().copied();
                 let integrator = self.scene.dynamics.integrator;
                 motion_plot::show(ui, &mut self.view.motion_plot, &self.playback, integrator, frequency);
             }
-            Drawer::Budget => self.budget.show(ui, &self.scene, self.iterations, actions),
         });
+    }
+
+    /// Error against time, under the body.
+    pub(super) fn budget(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        drawer_panel(ui).show(ui, |ui| self.budget.show(ui, &self.scene, self.iterations, actions));
     }
 
     /// Takes a scene that should be as good as the present one; says so where it is not.
@@ -431,7 +549,7 @@ impl Lab {
         }
     }
 
-    fn body_view(&mut self, ui: &mut Ui) {
+    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         self.view_rect = rect;
         // What is pressed is what was seen: the last picture.
@@ -445,24 +563,88 @@ impl Lab {
             Look::Fit => self.camera = None,
         }
         let painter = ui.painter_at(rect);
-        let (words, bad) = status_words(&self.simulation, true);
+        let errors = verdict::errors(&self.input());
+        let (words, bad) = verdict::status_words(&self.simulation, true);
+        let shown = self.intro.as_ref().map_or(&self.simulation, Intro::simulation);
         let overlay = Overlay {
-            scene: &self.scene,
-            system: self.simulation.system(),
+            scene: shown.scene(),
+            system: shown.system(),
             drawing: &self.drawing,
             options: &self.view,
             camera: self.camera(),
             positions: &self.shape.nodes,
             ghost: self.ghost(),
-            time: self.simulation.state().time(),
+            exact: self.exact(),
+            errors: if self.intro.is_some() { Errors::default() } else { errors },
+            time: shown.state().time(),
             hand: self.simulation.hand(),
             playback: &self.playback,
             color_range: self.shape.range,
-            warning: bad.then_some(&words),
+            // Beside bars the status says it.
+            warning: (bad && !self.view.bars).then_some(&words),
         };
         overlay::paint(&painter, rect, &overlay, ui.visuals());
+        if self.view.bars && self.intro.is_none() {
+            self.status(ui, rect, &errors, actions);
+        }
         self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
+    }
+
+    /// How it stands, over the body; why; and what would help.
+    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
+        const WIDEST: f32 = 460.0;
+        let input = self.input();
+        let palette = Palette::new(ui.visuals());
+        let narrow = rect.width() < 640.0;
+        let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
+        let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
+        let area = egui::Area::new(egui::Id::unique("status"))
+            .order(egui::Order::Middle)
+            .fixed_pos(rect.left_bottom() + egui::vec2(14.0, -above))
+            .pivot(egui::Align2::LEFT_BOTTOM)
+            .constrain_to(rect);
+        area.show(ui.ctx(), |ui| {
+            ui.set_max_width(WIDEST.min(rect.width() - 28.0));
+            if self.view.why {
+                chip(palette.panel).show(ui, |ui| {
+                    for line in verdict::explanation(&input) {
+                        ui.add(egui::Label::new(line).wrap());
+                    }
+                });
+            }
+            if let Some(remedy) = verdict::remedy(&input, errors) {
+                chip(palette.error_chip).show(ui, |ui| {
+                    ui.horizontal_wrapped(|ui| {
+                        ui.colored_label(palette.error, &remedy.words);
+                        if ui.button(&remedy.offer).clicked() {
+                            actions.push(Action::Edit(remedy.edits, remedy.scene.clone()));
+                        }
+                    });
+                });
+            }
+            let (words, bad) = verdict::summary(&input);
+            let tint = if bad { palette.error_chip } else { palette.panel };
+            chip(tint).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.colored_label(if bad { palette.error } else { palette.text }, words);
+                    if verdict::is_stale(&input) && ui.button("Step now").clicked() {
+                        actions.push(Action::Step);
+                    }
+                    let why = ui.selectable_label(self.view.why, egui::RichText::new("why?").color(palette.accent));
+                    if why.clicked() {
+                        actions.push(Action::Toggle(Toggle::Why));
+                    }
+                });
+            });
+        });
+    }
+
+    /// The true outline, m, where it is known of what is shown.
+    fn exact(&self) -> &[Vec<Vector2<f64>>] {
+        let shown = self.view.exact && !self.moves() && !self.iterates() && self.simulation.hand().is_none();
+        let reference = self.truth.get().filter(|_| shown);
+        reference.map_or(&[], |reference| &reference.outline)
     }
 
     /// Fits the view to the body at rest and now, while nobody has moved it.
@@ -483,6 +665,12 @@ impl Lab {
             }
         };
         include(&mut self.shape.points.iter().copied());
+        if self.intro.is_some() {
+            // Where it is going to be.
+            let nodes = mesh.nodes().iter().zip(self.simulation.displacement());
+            include(&mut nodes.map(|(x, u)| x + u));
+        }
+        include(&mut self.exact().iter().flatten().copied());
         self.swept = Some([low, high]).filter(|_| self.moves());
         self.fitted = self.fit(low, high, [f64::from(rect.width()), f64::from(rect.height())]);
     }
@@ -506,7 +694,11 @@ impl Lab {
     /// The linear solution, if it is to be shown.
     fn ghost(&self) -> Option<&[Vector2<f64>]> {
         let wanted = self.view.ghost && self.scene.solver.method != MethodKind::Linear;
-        self.linear_displacement().filter(|_| wanted)
+        let linear = match &self.intro {
+            Some(intro) => intro.linear().map(Simulation::displacement),
+            None => self.linear_displacement(),
+        };
+        linear.filter(|_| wanted)
     }
 
     fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
@@ -519,9 +711,14 @@ impl Lab {
                     self.panel.messages.remove(label);
                 }
             }
+            // What has come to its end has nothing to pause.
+            Action::ToggleRun if self.running && !self.iterates() => {}
             Action::ToggleRun => self.running ^= true,
             Action::Step => {
                 self.running = false;
+                if !self.moves() && self.simulation.is_at_rest() {
+                    self.reset();
+                }
                 self.iterate(1);
             }
             Action::Reset => self.reset(),
@@ -578,6 +775,11 @@ impl Lab {
         }
         self.curve.forget();
         self.scene = scene;
+        self.intro = None;
+        if !(self.view.mode.entry().serves)(&self.scene) {
+            self.view.mode = Mode::Explore;
+        }
+        self.view.drawer = self.view.drawer.map(|_| Drawer::of(&self.scene));
         self.solve_linear();
         Ok(())
     }
@@ -690,6 +892,12 @@ fn natural_frequency(scene: &Scene) -> Option<f64> {
     let problem = simulation.problem();
     let mass = Mass::new(problem.system(), scene.material.area_density());
     Some(lowest_frequency(problem, &mass)? / std::f64::consts::TAU)
+}
+
+/// Where plots are, under the body.
+fn drawer_panel(ui: &Ui) -> Panel {
+    let height = DRAWER_HEIGHT.min(DRAWER_SHARE * ui.ctx().content_rect().height());
+    Panel::bottom("drawer").exact_size(height).resizable(false).frame(unfilled(ui))
 }
 
 /// A panel's frame without its background: the body's pass has filled that.

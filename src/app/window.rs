@@ -17,7 +17,7 @@ use super::shot::picture;
 use super::stage::Stage;
 use super::{AppError, NoName, free_name};
 use crate::render::{Gpu, RenderError};
-use crate::scene::{Scene, Source};
+use crate::scene::{Scene, Source, registry};
 use crate::simulation::Simulation;
 
 /// A connection to a display.
@@ -65,14 +65,13 @@ impl Display {
 /// # Errors
 /// [`AppError`]: no adapter, or no window.
 pub fn run(display: Display, source: Source, scene: Scene, simulation: Simulation) -> Result<(), AppError> {
-    let mut app = App {
-        lab: Lab::new(source, scene, simulation),
-        ctx: egui::Context::default(),
-        open: None,
-        start: Instant::now(),
-        wake: None,
-        error: None,
-    };
+    let first_picture = source.name.to_str() == Some(registry::DEFAULT);
+    let mut lab = Lab::new(source, scene, simulation);
+    if first_picture {
+        lab.introduce();
+    }
+    let mut app =
+        App { lab, ctx: egui::Context::default(), open: None, start: Instant::now(), wake: None, error: None };
     display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
     app.error.map_or(Ok(()), Err)
 }
@@ -107,8 +106,10 @@ const MAX_FAILURES: u32 = 10;
 
 impl OpenWindow {
     fn new(event_loop: &ActiveEventLoop, lab: &Lab, ctx: &egui::Context) -> Result<Self, AppError> {
-        let attributes =
-            Window::default_attributes().with_title(lab.title()).with_inner_size(LogicalSize::new(1280.0, 800.0));
+        let attributes = Window::default_attributes()
+            .with_title(lab.title())
+            .with_inner_size(first_size(event_loop))
+            .with_min_inner_size(SMALLEST);
         let window = Arc::new(event_loop.create_window(attributes).map_err(|e| AppError::Window(e.to_string()))?);
         let (instance, surface, gpu) = Gpu::first_of_backends(|backends| {
             let display = Box::new(event_loop.owned_display_handle());
@@ -188,6 +189,20 @@ impl OpenWindow {
     fn screen(&self, pixels_per_point: f32) -> ScreenDescriptor {
         ScreenDescriptor { size_in_pixels: [self.configuration.width, self.configuration.height], pixels_per_point }
     }
+}
+
+/// The smallest window, points: everything in it can still be reached.
+const SMALLEST: LogicalSize<f64> = LogicalSize::new(480.0, 360.0);
+
+/// The size of a new window: 1280×800 points, and never more than nine tenths of the screen.
+fn first_size(event_loop: &ActiveEventLoop) -> LogicalSize<f64> {
+    const SHARE: f64 = 0.9;
+    let wanted = LogicalSize::new(1280.0, 800.0);
+    let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
+    monitor.filter(|m| m.size().width > 0 && m.size().height > 0).map_or(wanted, |monitor| {
+        let screen = monitor.size().to_logical::<f64>(monitor.scale_factor());
+        LogicalSize::new(wanted.width.min(SHARE * screen.width), wanted.height.min(SHARE * screen.height))
+    })
 }
 
 impl App {

@@ -5,6 +5,7 @@ use egui::Ui;
 use super::{Action, PanelInput, PanelState};
 use crate::app::field::NumberField;
 use crate::scene::{Load, Scene, limits};
+use crate::words::engineering;
 
 const DOWN: f64 = -90.0;
 
@@ -26,19 +27,33 @@ fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
     [magnitude * c, magnitude * s]
 }
 
-pub(super) fn force_and_gravity(
-    ui: &mut Ui,
-    input: &PanelInput<'_>,
-    state: &mut PanelState,
-    actions: &mut Vec<Action>,
-) {
+fn gravity_of(scene: &Scene) -> Option<[f64; 2]> {
+    scene.loads.iter().find_map(|l| match l {
+        Load::Gravity { acceleration, .. } => Some(*acceleration),
+        _ => None,
+    })
+}
+
+fn moment_of(scene: &Scene) -> Option<f64> {
+    scene.loads.iter().find_map(|l| match l {
+        Load::Moment { moment, .. } => Some(*moment),
+        _ => None,
+    })
+}
+
+/// What there is of gravity and moment, in words.
+pub(super) fn summary(scene: &Scene) -> String {
+    let gravity = gravity_of(scene).map(|g| polar_form(g).0).filter(|&g| g > 0.0).map(|g| engineering(g, "m/s²"));
+    let moment = moment_of(scene).filter(|&m| m != 0.0).map(|m| engineering(m, "N m"));
+    let both: Vec<String> = gravity.into_iter().chain(moment).collect();
+    if both.is_empty() { "none".to_owned() } else { both.join(", ") }
+}
+
+/// Force and its direction.
+pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     let force = scene.loads.iter().find_map(|l| match l {
         Load::Force { force, .. } => Some(*force),
-        _ => None,
-    });
-    let gravity = scene.loads.iter().find_map(|l| match l {
-        Load::Gravity { acceleration, .. } => Some(*acceleration),
         _ => None,
     });
     let (magnitude, direction) = polar_form(force.unwrap_or_default());
@@ -73,7 +88,17 @@ pub(super) fn force_and_gravity(
         state.force_direction = Some(new);
         actions.push(Action::Edit("Direction", with_force(scene, vector(magnitude, new))));
     }
-    let (magnitude, direction) = polar_form(gravity.unwrap_or_default());
+}
+
+/// Gravity, and the moment on the right edge, or on whichever edge has one.
+pub(super) fn gravity_and_moment(
+    ui: &mut Ui,
+    input: &PanelInput<'_>,
+    state: &mut PanelState,
+    actions: &mut Vec<Action>,
+) {
+    let scene = input.scene;
+    let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
     let direction = direction.or(state.gravity_direction).unwrap_or(DOWN);
     let field = NumberField {
         label: "Gravity",
@@ -87,14 +112,7 @@ pub(super) fn force_and_gravity(
         state.gravity_direction = Some(direction);
         actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
     }
-}
-
-/// The moment on the right edge, or on whichever edge has one.
-pub(super) fn moment(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let current = input.scene.loads.iter().find_map(|l| match l {
-        Load::Moment { moment, .. } => Some(*moment),
-        _ => None,
-    });
+    let current = moment_of(scene);
     // What rolls the rest shape up once, rounded up: 2πEI/L.
     let (low, high) = input.simulation.system().mesh().bounds();
     let (length, height) = ((high - low).max(), (high - low).min());
