@@ -196,12 +196,14 @@ fn settings(
         logarithmic: Some(1e-3),
         whole: false,
     };
-    if let Some(time_ms) = time.show(ui, messages, limits.time_ms) {
-        limits.time_ms = time_ms;
-    }
-    if let Some(error_percent) = error.show(ui, messages, limits.error_percent) {
-        limits.error_percent = error_percent;
-    }
+    ui.columns_const(|[left, right]| {
+        if let Some(time_ms) = time.show(left, messages, limits.time_ms) {
+            limits.time_ms = time_ms;
+        }
+        if let Some(error_percent) = error.show(right, messages, limits.error_percent) {
+            limits.error_percent = error_percent;
+        }
+    });
     let meeting = &budget.meeting;
     ui.horizontal(|ui| {
         let best = meeting.first();
@@ -310,6 +312,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
                 .map(|m| format!("{}\n{}, {}", m.setting, milliseconds(m), percent(m.error.bound()))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
+        .grid_color(palette.line)
         .include_x(-2.5)
         .include_x(2.5)
         .include_y(-3.0)

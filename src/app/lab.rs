@@ -421,17 +421,14 @@ impl Lab {
             self.bars(ui, &mut actions);
         }
         actions.extend(keys::actions(ui.ctx(), self.view.help));
-        let mode = self.view.mode.entry();
-        if self.view.bars {
-            (mode.show)(self, ui, &mut actions);
-        }
+        (self.view.mode.entry().show)(self, ui, &mut actions);
         let mut requests = Vec::new();
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
         let mut actions = Vec::new();
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, &mut actions));
-        if self.view.bars && self.view.narrow && self.view.sheet {
+        if self.view.bars && self.view.narrow && self.view.sheet && self.view_rect.width() >= 160.0 {
             self.sheet(ui, &mut actions);
         }
         for action in actions {
@@ -492,7 +489,7 @@ impl Lab {
 
     /// Lets the load of the first seconds grow, until they are over or somebody does something.
     fn go_on_with_intro(&mut self, ctx: &egui::Context) {
-        if self.intro.is_none() || self.iterates() {
+        if self.intro.is_none() {
             return;
         }
         let (now, touched) = ctx.input(|i| {
@@ -501,7 +498,10 @@ impl Lab {
             };
             (i.time, i.events.iter().any(|event| !idle(event)))
         });
-        if touched || !self.intro.as_mut().is_some_and(|intro| intro.advance(now)) {
+        // Not before it is known where all of it goes: the view stands still then.
+        let waits = self.iterates() || self.truth.is_open();
+        let goes_on = waits || self.intro.as_mut().is_some_and(|intro| intro.advance(now));
+        if touched || !goes_on {
             self.intro = None;
         }
     }
@@ -574,7 +574,7 @@ impl Lab {
             camera: self.camera(),
             positions: &self.shape.nodes,
             ghost: self.ghost(),
-            exact: self.exact(),
+            exact: if self.intro.is_some() { &[] } else { self.exact() },
             errors: if self.intro.is_some() { Errors::default() } else { errors },
             time: shown.state().time(),
             hand: self.simulation.hand(),
@@ -585,7 +585,13 @@ impl Lab {
         };
         overlay::paint(&painter, rect, &overlay, ui.visuals());
         if self.view.bars && self.intro.is_none() {
-            self.status(ui, rect, &errors, actions);
+            let mut free = rect;
+            if self.view.narrow && self.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
+                free.max.x -= PANEL_WIDTH;
+            }
+            if free.width() >= 160.0 && free.height() >= 90.0 {
+                self.status(ui, free, &errors, actions);
+            }
         }
         self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
@@ -667,8 +673,9 @@ impl Lab {
         include(&mut self.shape.points.iter().copied());
         if self.intro.is_some() {
             // Where it is going to be.
-            let nodes = mesh.nodes().iter().zip(self.simulation.displacement());
-            include(&mut nodes.map(|(x, u)| x + u));
+            for u in std::iter::once(self.simulation.displacement()).chain(self.linear_displacement()) {
+                include(&mut mesh.nodes().iter().zip(u).map(|(x, u)| x + u));
+            }
         }
         include(&mut self.exact().iter().flatten().copied());
         self.swept = Some([low, high]).filter(|_| self.moves());

@@ -85,8 +85,8 @@ pub(super) fn show(
     }
 }
 
-fn plot<'a>(id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
-    still(id, x, y).legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true))
+fn plot<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
+    still(palette, id, x, y).legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true))
 }
 
 fn thinned(history: &History, point: impl Fn(&Sample) -> [f64; 2]) -> Vec<PlotPoint> {
@@ -112,7 +112,7 @@ fn curves(
     lines: impl Iterator<Item = (IntegratorKind, Vec<PlotPoint>)>,
     palette: &Palette,
 ) {
-    let plot = plot(id, x, y);
+    let plot = plot(palette, id, x, y);
     let plot = if let Some(history) = in_time { over_time(plot, history) } else { plot };
     plot.show(ui, |plot| {
         for (kind, points) in lines {
@@ -137,7 +137,7 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         ("lost by the integrator", lost, |s| s.ledger.integrator),
         ("put in", put_in, |s| s.ledger.pulses + s.ledger.hands + s.ledger.edits),
     ];
-    over_time(plot("energy", ("time", "s"), ("energy", "J")), history).show(ui, |plot| {
+    over_time(plot(&palette, "energy", ("time", "s"), ("energy", "J")), history).show(ui, |plot| {
         // Beside others only the sums: these are what is compared.
         let shown = if motions.len() == 1 { &kinds[..] } else { &[] };
         for (name, color, value) in shown {
@@ -206,7 +206,7 @@ fn spectra(
     let largest = all.iter().flat_map(|(_, s)| s).map(|p| p[1]).fold(0.0, f64::max);
     let seen = all.iter().flat_map(|(_, s)| s).filter(|p| p[1] > SEEN * largest).map(|p| p[0]).fold(0.0, f64::max);
     let end = seen.max(3.0 * frequency.unwrap_or(0.0));
-    plot("spectrum", ("frequency", "Hz"), ("amplitude", "m")).include_y(0.0).show(ui, |plot| {
+    plot(palette, "spectrum", ("frequency", "Hz"), ("amplitude", "m")).include_y(0.0).show(ui, |plot| {
         for (kind, spectrum) in all {
             let points: Vec<[f64; 2]> = spectrum.into_iter().take_while(|p| p[0] <= end).collect();
             let line = Line::new(kind.id(), PlotPoints::from(points));

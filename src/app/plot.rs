@@ -12,7 +12,9 @@ use crate::study::LoadCurve;
 use crate::words::{engineering, ticks};
 
 /// A plot that stands still, with round ticks and values in engineering units.
-pub(super) fn still<'a>(id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
+pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
+    /// Grid lines so far apart, points, are drawn in full, and so are their numbers.
+    const CLEAR: f32 = 40.0;
     /// A value between ticks, to three digits.
     fn value(value: f64, unit: &str) -> String {
         engineering(format!("{value:.2e}").parse().unwrap_or(value), unit)
@@ -31,6 +33,8 @@ pub(super) fn still<'a>(id: &str, x: (&str, &'static str), y: (&str, &'static st
             }
             HoverPosition::Elsewhere { .. } => None,
         })
+        .grid_color(palette.line)
+        .grid_spacing(egui::Rangef::new(8.0, CLEAR))
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
@@ -63,7 +67,7 @@ pub(super) fn show(ui: &mut Ui, curve: Option<&LoadCurve>, looked_for: bool) {
     let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {
         curve.samples.iter().map(|s| [100.0 * s.factor, value(s)]).collect()
     };
-    still("load curve", ("load, of the scene's", "%"), ("tip displacement", "m"))
+    still(&palette, "load curve", ("load, of the scene's", "%"), ("tip displacement", "m"))
         .legend(Legend::default().position(Corner::RightBottom).follow_insertion_order(true))
         .show(ui, |plot| {
             let exact = samples(|s| s.truth.norm());

@@ -180,14 +180,23 @@ fn scene_picker(ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut V
         .on_hover_text(&input.scene.about);
 }
 
+/// Where the sentences of a list begin, points.
+const NAMES_WIDTH: f32 = 76.0;
+
 /// An entry of a picker: its name, and what it is; in one line, or under the name.
 pub(super) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, about: &str, line: bool) -> Response {
     let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
     let mut job = LayoutJob::default();
     job.append(id, 0.0, format(BODY, palette.text));
-    job.append(if line { "   " } else { "\n" }, 0.0, format(BODY, palette.text));
+    let mut lead = 0.0;
+    if line {
+        let name = ui.painter().layout_no_wrap(id.to_owned(), FontId::proportional(BODY), palette.text);
+        lead = (NAMES_WIDTH - name.size().x).max(8.0);
+    } else {
+        job.append("\n", 0.0, format(BODY, palette.text));
+    }
     let secondary = if selected { palette.text } else { palette.secondary };
-    job.append(about, 0.0, format(SMALL, secondary));
+    job.append(about, lead, format(SMALL, secondary));
     let button = Button::selectable(selected, job);
     let response = ui.add(if line { button.truncate() } else { button.wrap() });
     response.widget_info(|| WidgetInfo::selected(Role::Button, response.enabled(), selected, id));

@@ -24,7 +24,7 @@ pub(super) struct ShotArgs {
     /// Its size in pixels, 64x64 to 8192x8192.
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = parse_size)]
     pub size: [u32; 2],
-    /// Only the view, without the panel.
+    /// Only the view, without panel and bars.
     #[arg(long)]
     pub no_panel: bool,
     /// With the load–deflection curve.
