@@ -158,8 +158,17 @@ impl ViewOptions {
             Toggle::Help => self.help ^= true,
             Toggle::Why => self.why ^= true,
             Toggle::Mode(mode) => self.mode = if self.mode == mode { Mode::Explore } else { mode },
-            Toggle::Drawer(drawer) => self.drawer = if self.drawer == Some(drawer) { None } else { Some(drawer) },
+            // Plots are for exploring: asked for in another mode they are shown there.
+            Toggle::Drawer(drawer) => {
+                let open = self.plots() == Some(drawer);
+                (self.mode, self.drawer) = (Mode::Explore, (!open).then_some(drawer));
+            }
         }
+    }
+
+    /// The plots that are seen.
+    pub(super) fn plots(&self) -> Option<Drawer> {
+        self.drawer.filter(|_| self.mode == Mode::Explore)
     }
 
     /// Whether the panel is seen.

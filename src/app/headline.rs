@@ -56,7 +56,7 @@ pub(super) fn show(
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let drawer = Drawer::of(input.scene);
-            let open = view.drawer.is_some();
+            let open = view.plots().is_some();
             let (word, tip) = drawer.words();
             let icon = if open { Icon::Close } else { Icon::Open };
             if icon_button(ui, icon, word, Some(word), open).on_hover_text(tip).clicked() {
