@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use thiserror::Error;
 
 #[cfg(feature = "app")]
 use super::draw_args::{DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
 use crate::scene;
 use crate::scene::limits::{BUDGET_MS, Limit, MAX_ERROR_PERCENT, OutOfRange};
-use crate::words::number;
+use crate::scene::units::{self, UnitError};
 
 const EXIT_CODES: &str = "Exit codes: 0 done and converged, 1 ran but did not converge (the result is still printed), \
 2 bad input or usage, or a result that could not be written, 3 no usable graphics adapter.";
@@ -187,24 +188,28 @@ impl From<RequiredSceneArgs> for scene::Source {
     }
 }
 
-/// A number with one of these units, each with its factor; the first is that of a bare number.
-pub(super) fn parse_with_unit(text: &str, limit: Limit, units: &[(&str, f64)]) -> Result<f64, OutOfRange> {
-    let text = text.trim();
-    let parsed = units.iter().rev().find_map(|(unit, factor)| {
-        let value: f64 = text.strip_suffix(unit)?.trim_end().parse().ok()?;
-        Some(value * factor)
-    });
-    let value = parsed.or_else(|| text.parse().ok()).ok_or_else(|| limit.expected(&format!("`{text}`")))?;
-    limit.check(value).map_err(|_| limit.expected(&number(value)))?;
+/// Why a number on the command line is refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub(super) enum NumberError {
+    #[error(transparent)]
+    Unit(#[from] UnitError),
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+}
+
+/// A number within the limit, in its unit or with another of the same kind.
+pub(super) fn parse_number(text: &str, limit: Limit) -> Result<f64, NumberError> {
+    let value = units::parse(text, limit.unit)?;
+    limit.check(value)?;
     Ok(value)
 }
 
-fn parse_percent(text: &str) -> Result<f64, OutOfRange> {
-    parse_with_unit(text, MAX_ERROR_PERCENT, &[("%", 1.0)])
+fn parse_percent(text: &str) -> Result<f64, NumberError> {
+    parse_number(text, MAX_ERROR_PERCENT)
 }
 
-fn parse_milliseconds(text: &str) -> Result<f64, OutOfRange> {
-    parse_with_unit(text, BUDGET_MS, &[("s", 1e3), ("ms", 1.0), ("us", 1e-3), ("µs", 1e-3)])
+fn parse_milliseconds(text: &str) -> Result<f64, NumberError> {
+    parse_number(text, BUDGET_MS)
 }
 
 #[cfg(test)]
