@@ -85,6 +85,11 @@ impl Budget {
         self.study.as_ref()
     }
 
+    /// The fastest setting that meets the limits, where one has been measured.
+    pub(super) fn chosen(&self) -> Option<Setting> {
+        self.study.as_ref()?.meeting(self.limits.into()).first().map(|m| m.setting)
+    }
+
     /// Takes a study made elsewhere.
     pub(super) fn set(&mut self, scene: &Scene, study: Study) {
         *self = Self { of: Some(question(scene)), study: Some(study), limits: self.limits, ..Self::default() };
@@ -281,7 +286,7 @@ fn legend(ui: &mut Ui) {
 }
 
 /// The mark of an element and its name: the first for the first of the registry.
-fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
+pub(super) fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
     const SHAPES: [(MarkerShape, &str); 4] = [
         (MarkerShape::Up, "triangles"),
         (MarkerShape::Circle, "circles"),

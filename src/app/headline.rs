@@ -6,7 +6,7 @@ use super::action::{Action, Drawer, Toggle, ViewOptions};
 use super::palette::{HEADLINE, Palette, SMALL};
 use super::panel::PanelInput;
 use super::toolbar::{Icon, icon_button};
-use super::verdict::{Errors, rho, rho_number};
+use super::verdict::{Errors, error_color, rho, rho_number};
 use crate::simulation::Motion;
 use crate::words::{engineering, percent};
 
@@ -85,12 +85,7 @@ fn of_solve<'a>(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [
             tip: format!(
                 "Distance of the first probe from {truth}, over its displacement; and where most of it comes from"
             ),
-            color: match errors.own {
-                Some(error) if error > 5.0 => palette.error,
-                Some(error) if error > 1.0 => palette.warning,
-                Some(_) => palette.good,
-                None => palette.secondary,
-            },
+            color: error_color(palette, errors.own),
             gauge: Gauge::Blocks(level(error)),
         },
         Headline {

@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 use super::ThemeChoice;
 use super::action::{Action, Drawer, MOST_ITERATIONS, Toggle, ViewOptions};
 use super::budget::{Budget, question};
+use super::compare::{Compare, CompareInput, Pane, PaneSetting};
 use super::drawing::Drawing;
 use super::finder::{Finder, LISTEN};
 use super::intro::Intro;
@@ -18,14 +19,15 @@ use super::panel::{self, PanelInput, PanelState};
 use super::playback::Playback;
 use super::pointer::{self, Look, Reach};
 use super::recorder::Recorder;
+use super::shape::Shape;
+use super::stage::viewport;
 use super::verdict::{self, Errors};
 use super::{headline, help, keys, motion_plot, plot, toolbar};
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
-use crate::render::colormap::ColorMap;
-use crate::render::{Camera, Frame, Margins};
+use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
-use crate::simulation::{Field, Simulation, SimulationError, Status};
+use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::study::{LoadCurve, Reference, Study};
 use crate::timings::Timings;
@@ -83,6 +85,7 @@ pub struct Lab {
     truth: Finder<Reference>,
     curve: Finder<LoadCurve>,
     budget: Budget,
+    compare: Compare,
     /// The lowest natural frequency, Hz.
     frequency: Finder<f64>,
     playback: Playback,
@@ -108,23 +111,6 @@ enum OpenError {
     Simulation(#[from] SimulationError),
 }
 
-/// What is drawn of the body at present, kept between frames.
-#[derive(Debug, Default)]
-struct Shape {
-    nodes: Vec<Vector2<f64>>,
-    points: Vec<Vector2<f64>>,
-    at_points: Vec<Option<f64>>,
-    values: Vec<Option<f64>>,
-    range: [f64; 2],
-    /// What the range is of.
-    field: Option<Field>,
-    line_color: [u8; 4],
-    background: [u8; 3],
-    surround: [u8; 3],
-    absent_color: [u8; 3],
-    map: ColorMap,
-}
-
 impl Lab {
     /// A lab with this scene, iterating from rest.
     #[must_use]
@@ -148,6 +134,7 @@ impl Lab {
             truth: Finder::new(|scene| Reference::of(scene).ok()),
             curve: Finder::new(LoadCurve::new),
             budget: Budget::default(),
+            compare: Compare::default(),
             frequency: Finder::new(natural_frequency),
             playback: Playback::default(),
             swept: None,
@@ -185,6 +172,27 @@ impl Lab {
     pub fn show_study(&mut self, study: Study) {
         self.view.mode = Mode::Budget;
         self.budget.set(&self.scene, study);
+    }
+
+    /// Shows panes side by side, one a setting, under the same load: two to four. Nothing happens in motion.
+    pub fn show_comparison(&mut self, settings: &[PaneSetting]) {
+        if self.moves() {
+            return;
+        }
+        self.view.mode = Mode::Compare;
+        self.compare.set(settings);
+    }
+
+    /// The panes that are compared.
+    #[must_use]
+    pub fn panes(&self) -> &[Pane] {
+        self.compare.panes()
+    }
+
+    /// Equilibria that the comparison has traced under the present kind of load: the setting, its load and deflection.
+    #[must_use]
+    pub fn traced(&self) -> Vec<(PaneSetting, [f64; 2])> {
+        self.compare.traced()
     }
 
     /// What has been measured of the scene, and whether more is being measured.
@@ -244,7 +252,7 @@ impl Lab {
     /// The camera of the last [`Self::ui`].
     #[must_use]
     pub fn camera(&self) -> Camera {
-        self.camera.unwrap_or(self.fitted)
+        if self.view.mode == Mode::Compare { self.compare.camera() } else { self.camera.unwrap_or(self.fitted) }
     }
 
     /// Title for the window.
@@ -309,6 +317,9 @@ impl Lab {
         }
         self.simulation.certify();
         self.truth.settle(&self.scene);
+        if self.view.mode == Mode::Compare {
+            self.compare.settle(&self.scene, self.simulation.system());
+        }
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.settle(&self.scene);
         }
@@ -345,51 +356,23 @@ impl Lab {
     /// What is drawn of the body, as of the last [`Self::ui`].
     #[must_use]
     pub fn frame(&self) -> Frame<'_> {
-        let shape = &self.shape;
-        Frame {
-            positions: &shape.points,
-            triangles: &self.drawing.triangles,
-            values: &shape.values,
-            range: shape.range,
-            lines: if self.view.wireframe { &self.drawing.lines } else { &[] },
-            beside: &self.drawing.beside,
-            pieces: self.drawing.pieces,
-            map: shape.map,
-            line_color: shape.line_color,
-            background: shape.background,
-            surround: shape.surround,
-            absent_color: shape.absent_color,
+        self.shape.frame(&self.drawing, self.view.wireframe)
+    }
+
+    /// What the body's pass draws, as of the last [`Self::ui`], with this many pixels a point.
+    pub(super) fn views(&self, pixels_per_point: f32) -> Vec<View<'_>> {
+        if self.view.mode == Mode::Compare {
+            return self.compare.views(self.view.wireframe, pixels_per_point);
         }
+        let viewport = viewport(self.view_rect, pixels_per_point);
+        vec![View { viewport, frame: self.frame(), camera: self.camera() }]
     }
 
     fn update_shape(&mut self, visuals: &egui::Visuals) {
-        let shape = &mut self.shape;
         let simulation = self.intro.as_ref().map_or(&self.simulation, Intro::simulation);
-        shape.nodes.clear();
-        let rest = simulation.system().mesh().nodes();
-        shape.nodes.extend(rest.iter().zip(simulation.displacement()).map(|(x, u)| x + u));
-        let nodes = &shape.nodes;
-        self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
-        simulation.field(self.view.field, &mut shape.at_points);
-        self.drawing.values(&shape.at_points, &mut shape.values);
-        let [mut low, mut high] = panel::range_of(&shape.at_points);
-        if palette::has_sign(self.view.field) {
-            let reach = high.abs().max(low.abs());
-            (low, high) = (-reach, reach);
-        }
         // Colours that jump from frame to frame say nothing of a motion: its range only grows.
-        let before = self.swept.map(|_| shape.range).filter(|_| shape.field == Some(self.view.field));
-        let grown = before.map_or([low, high], |range| [low.min(range[0]), high.max(range[1])]);
-        shape.field = Some(self.view.field);
-        shape.range = self.view.fixed_range.unwrap_or(grown);
-        let palette = Palette::new(visuals);
-        let opaque = |color: egui::Color32| [color.r(), color.g(), color.b()];
-        shape.background = opaque(palette.canvas);
-        // What is behind panels: these fill nothing themselves, which is dear where a processor draws.
-        shape.surround = opaque(palette.panel);
-        shape.absent_color = opaque(palette.absent);
-        shape.line_color = palette.wire;
-        shape.map = palette.map(self.view.field);
+        self.shape.update(simulation, &self.drawing, &self.view, self.swept.is_some());
+        self.shape.color(visuals, self.view.field);
     }
 
     /// What toolbar, panel and headlines show.
@@ -427,7 +410,9 @@ impl Lab {
             self.act(ui.ctx(), action, &mut requests);
         }
         let mut actions = Vec::new();
-        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, &mut actions));
+        CentralPanel::default()
+            .frame(egui::Frame::NONE)
+            .show(ui, |ui| (self.view.mode.entry().view)(self, ui, &mut actions));
         if self.view.bars && self.view.narrow && self.view.sheet && self.view_rect.width() >= 160.0 {
             self.sheet(ui, &mut actions);
         }
@@ -447,8 +432,11 @@ impl Lab {
         let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
         let top = Panel::top("toolbar").exact_size(TOOLBAR_HEIGHT).resizable(false).frame(bar(ui));
         top.show(ui, |ui| toolbar::show(ui, &self.input(), &self.view, actions));
-        let bottom = Panel::bottom("headline").exact_size(HEADLINE_HEIGHT).resizable(false).frame(bar(ui));
-        bottom.show(ui, |ui| headline::show(ui, &self.input(), &errors, &self.view, actions));
+        // Compared panes have each their own.
+        if self.view.mode != Mode::Compare {
+            let bottom = Panel::bottom("headline").exact_size(HEADLINE_HEIGHT).resizable(false).frame(bar(ui));
+            bottom.show(ui, |ui| headline::show(ui, &self.input(), &errors, &self.view, actions));
+        }
         if self.view.panel && !self.view.narrow {
             let frame = unfilled(ui).inner_margin(egui::Margin { left: 12, right: 8, top: 8, bottom: 4 });
             let panel = Panel::right("panel").exact_size(PANEL_WIDTH).resizable(false).frame(frame);
@@ -542,6 +530,34 @@ impl Lab {
         drawer_panel(ui).show(ui, |ui| self.budget.show(ui, &self.scene, self.iterations, actions));
     }
 
+    /// The presets over the panes that are compared, and the load curve under them.
+    pub(super) fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let (compare, input) = self.compared();
+        compare.bars(ui, &input, actions);
+    }
+
+    /// The panes that are compared, in the place of the body.
+    pub(super) fn comparison(&mut self, ui: &mut Ui, _: &mut Vec<Action>) {
+        let rect = ui.available_rect_before_wrap();
+        self.view_rect = rect;
+        // The truth does not depend on how the lab's own setting gets on.
+        if !self.compare.is_iterating() {
+            self.truth.ask(&self.scene, ui.ctx());
+        }
+        let (compare, input) = self.compared();
+        compare.show(ui, &input);
+        let painter = ui.painter_at(rect);
+        self.paint_recording(ui, &painter, rect);
+        self.paint_toast(ui, &painter, rect);
+    }
+
+    /// The comparison, and what it is of.
+    fn compared(&mut self) -> (&mut Compare, CompareInput<'_>) {
+        let Self { compare, scene, simulation, truth, view, running, budget, .. } = self;
+        let (system, truth, running, chosen) = (simulation.system(), truth.get(), *running, budget.chosen());
+        (compare, CompareInput { scene, system, truth, view, running, chosen })
+    }
+
     /// Takes a scene that should be as good as the present one; says so where it is not.
     fn edit(&mut self, ctx: &egui::Context, scene: Scene) {
         if let Err(error) = self.set_scene(scene) {
@@ -549,7 +565,7 @@ impl Lab {
         }
     }
 
-    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    pub(super) fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         self.view_rect = rect;
         // What is pressed is what was seen: the last picture.
@@ -727,6 +743,7 @@ impl Lab {
                     self.reset();
                 }
                 self.iterate(1);
+                self.compare.step();
             }
             Action::Reset => self.reset(),
             Action::Mark => {
@@ -737,7 +754,13 @@ impl Lab {
             Action::Speed(speed) => self.playback.pace.set_speed(speed),
             Action::Compare(integrator) => self.compare_with(integrator),
             Action::Iterations(iterations) => self.iterations = iterations.clamp(1, MOST_ITERATIONS),
-            Action::Fit => self.camera = None,
+            Action::Fit => {
+                self.camera = None;
+                self.compare.fit();
+            }
+            Action::Toggle(Toggle::Mode(mode)) if !(mode.entry().serves)(&self.scene) => {
+                self.say(ctx, mode.entry().unless.to_owned());
+            }
             Action::Toggle(what) => self.view.toggle(what),
             Action::Color(field) => self.view.color_with(field),
             Action::ToggleTheme => {
@@ -758,6 +781,7 @@ impl Lab {
 
     fn reset(&mut self) {
         self.playback.reset(&mut self.simulation);
+        self.compare.reset();
         self.swept = None;
     }
 
@@ -801,6 +825,7 @@ impl Lab {
                 self.reset();
                 self.panel.clear();
                 self.budget = Budget::default();
+                self.compare = Compare::default();
                 self.iterations = 1;
                 self.camera = None;
                 self.view.fixed_range = None;

@@ -12,6 +12,8 @@ pub(super) enum Mode {
     /// The body, its load and its numbers.
     #[default]
     Explore,
+    /// Two to four settings beside each other under one load.
+    Compare,
     /// Error against time, and the settings within limits.
     Budget,
 }
@@ -21,10 +23,13 @@ pub(super) struct ModeEntry {
     pub mode: Mode,
     pub name: &'static str,
     pub about: &'static str,
-    /// Whether it has something to show of a scene.
+    /// Whether it has something to show of a scene, and why not of others.
     pub serves: fn(&Scene) -> bool,
+    pub unless: &'static str,
     /// Shows what it has beside body and panel.
     pub show: fn(&mut Lab, &mut Ui, &mut Vec<Action>),
+    /// Shows what is in the place of the body.
+    pub view: fn(&mut Lab, &mut Ui, &mut Vec<Action>),
 }
 
 /// Every mode there is.
@@ -34,14 +39,27 @@ pub(super) const MODES: &[ModeEntry] = &[
         name: "Explore",
         about: "The body, its load, and how far from the truth it is",
         serves: |_| true,
+        unless: "",
         show: Lab::plots,
+        view: Lab::body_view,
+    },
+    ModeEntry {
+        mode: Mode::Compare,
+        name: "Compare",
+        about: "Methods, elements and meshes beside each other under one load (K)",
+        serves: |scene| scene.analysis == Analysis::Static,
+        unless: "Equilibria are compared. Of a motion, the Time fold of the panel shows other integrators over the body",
+        show: Lab::comparison_bars,
+        view: Lab::comparison,
     },
     ModeEntry {
         mode: Mode::Budget,
         name: "Budget",
         about: "Error against time on this machine, and the fastest setting within limits (B)",
         serves: |scene| scene.analysis == Analysis::Static,
+        unless: "Solves of an equilibrium are measured; `warpbeam study` measures motions",
         show: Lab::budget,
+        view: Lab::body_view,
     },
 ];
 

@@ -10,6 +10,7 @@ use super::playback::Playback;
 use super::verdict::Errors;
 use crate::assembly::{Hand, System};
 use crate::render::Camera;
+use crate::render::colormap::ColorMap;
 use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
 use crate::words::{engineering, percent, prefix, round_down, ticks};
 
@@ -93,6 +94,22 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         return;
     }
     let palette = Palette::new(visuals);
+    body(painter, rect, overlay, visuals);
+    legend(painter, rect, overlay, &palette, visuals);
+    key(painter, rect, overlay, &palette, visuals);
+    scale_bar(painter, rect, &overlay.camera, &palette);
+    if let Some((hand, force)) = overlay.hand {
+        pull(painter, &Projection { camera: overlay.camera, rect }, overlay, hand, force, visuals);
+    }
+    if let Some(warning) = overlay.warning {
+        let at = rect.center_top() + vec2(0.0, 46.0);
+        boxed_text(painter, at, Align2::CENTER_TOP, warning, visuals, visuals.error_fg_color, rect.width() - 48.0);
+    }
+}
+
+/// Paints what belongs to the body: outlines, supports, loads.
+pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
+    let palette = Palette::new(visuals);
     let Overlay { drawing, system, camera, .. } = *overlay;
     let projection = Projection { camera, rect };
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
@@ -136,16 +153,6 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     }
     supports(painter, &projection, overlay, &palette);
     loads(painter, &projection, overlay, &palette, visuals);
-    legend(painter, rect, overlay, &palette, visuals);
-    key(painter, rect, overlay, &palette, visuals);
-    scale_bar(painter, rect, &projection.camera, &palette);
-    if let Some((hand, force)) = overlay.hand {
-        pull(painter, &projection, overlay, hand, force, visuals);
-    }
-    if let Some(warning) = overlay.warning {
-        let at = rect.center_top() + vec2(0.0, 46.0);
-        boxed_text(painter, at, Align2::CENTER_TOP, warning, visuals, visuals.error_fg_color, rect.width() - 48.0);
-    }
 }
 
 /// The colour of the body's own solution.
@@ -403,7 +410,6 @@ pub(super) const LEGEND_HEIGHT: f32 = 66.0;
 fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     const BAR: Vec2 = vec2(240.0, 10.0);
     const MOST_TICKS: u32 = 5;
-    const STRIPS: u32 = 128;
     if rect.width() < 420.0 || rect.height() < 120.0 {
         return;
     }
@@ -419,7 +425,18 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     painter.galley(corner, title, palette.text);
     let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), BAR);
-    let map = palette.map(field);
+    color_bar(painter, bar, palette.map(field));
+    for value in ticks(low, high, MOST_TICKS) {
+        let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
+        painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
+        let words = engineering(value / 10f64.powi(power), "");
+        painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, words, font.clone(), palette.text);
+    }
+}
+
+/// The colours of a map, from the lowest to the highest.
+pub(super) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
+    const STRIPS: u32 = 128;
     let mut mesh = egui::Mesh::default();
     for i in 0..STRIPS {
         let at = |i: u32| bar.left() + bar.width() * i as f32 / STRIPS as f32;
@@ -428,12 +445,6 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
         mesh.add_colored_rect(strip, Color32::from_rgb(r, g, b));
     }
     painter.add(mesh);
-    for value in ticks(low, high, MOST_TICKS) {
-        let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
-        painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
-        let words = engineering(value / 10f64.powi(power), "");
-        painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, words, font.clone(), palette.text);
-    }
 }
 
 /// How a solution is drawn.
@@ -512,7 +523,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
 }
 
 /// A bar of a round length.
-fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
+pub(super) fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
     if rect.width() < 220.0 || rect.height() < 80.0 {
         return;
     }

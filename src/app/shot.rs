@@ -5,6 +5,7 @@ use std::path::Path;
 
 use egui_wgpu::ScreenDescriptor;
 
+use super::compare::PaneSetting;
 use super::lab::Lab;
 use super::stage::Stage;
 use super::{AppError, ThemeChoice};
@@ -30,13 +31,23 @@ pub struct ShotOptions {
     pub study: bool,
     /// Whether the plot of a motion's energy is, and the integrators that are shown beside the scene's.
     pub motion: Option<Vec<IntegratorKind>>,
+    /// The settings that are compared in panes; none for one view of the scene's own.
+    pub compare: Vec<PaneSetting>,
     /// Light or dark.
     pub theme: ThemeChoice,
 }
 
 impl Default for ShotOptions {
     fn default() -> Self {
-        Self { size: [1280, 800], panel: true, curve: false, study: false, motion: None, theme: ThemeChoice::default() }
+        Self {
+            size: [1280, 800],
+            panel: true,
+            curve: false,
+            study: false,
+            motion: None,
+            compare: Vec::new(),
+            theme: ThemeChoice::default(),
+        }
     }
 }
 
@@ -67,6 +78,9 @@ pub fn shot(
     if let Some(integrators) = &options.motion {
         lab.show_motion_plots();
         integrators.iter().for_each(|&integrator| lab.compare_with(integrator));
+    }
+    if !options.compare.is_empty() {
+        lab.show_comparison(&options.compare);
     }
     lab.solve();
     let picture = picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?;

@@ -45,13 +45,9 @@ impl Stage {
         lab: &Lab,
     ) {
         let ScreenDescriptor { size_in_pixels, pixels_per_point } = *screen;
-        let view = lab.view_rect() * pixels_per_point;
-        let [corner, end] = [view.min, view.max].map(|p| [p.x, p.y].map(|v| v.round().max(0.0) as u32));
-        let viewport = Viewport { corner, size: [0, 1].map(|axis| end[axis].saturating_sub(corner[axis])) };
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let camera = lab.camera();
-        let eye = (&camera, f64::from(pixels_per_point));
-        self.body.draw(gpu, &mut encoder, (target, size_in_pixels), viewport, &lab.frame(), eye);
+        let views = lab.views(pixels_per_point);
+        self.body.draw(gpu, &mut encoder, (target, size_in_pixels), &views, f64::from(pixels_per_point));
         let callbacks = self.egui.update_buffers(&gpu.device, &gpu.queue, &mut encoder, primitives, screen);
         let mut pass = encoder
             .begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -69,4 +65,11 @@ impl Stage {
         drop(pass);
         gpu.queue.submit(callbacks.into_iter().chain([encoder.finish()]));
     }
+}
+
+/// The pixels of a place in the window, with so many of them a point.
+pub(super) fn viewport(place: egui::Rect, pixels_per_point: f32) -> Viewport {
+    let place = place * pixels_per_point;
+    let [corner, end] = [place.min, place.max].map(|p| [p.x, p.y].map(|v| v.round().max(0.0) as u32));
+    Viewport { corner, size: [0, 1].map(|axis| end[axis].saturating_sub(corner[axis])) }
 }

@@ -32,9 +32,11 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, acti
         divide(ui);
         run(ui, input, wide, actions);
         divide(ui);
-        for entry in MODES.iter().filter(|entry| (entry.serves)(input.scene)) {
+        for entry in MODES {
             let chosen = view.mode == entry.mode;
-            if ui.selectable_label(chosen, entry.name).on_hover_text(entry.about).clicked() && !chosen {
+            let button = ui.add_enabled((entry.serves)(input.scene), Button::selectable(chosen, entry.name));
+            let button = button.on_hover_text(entry.about).on_disabled_hover_text(entry.unless);
+            if button.clicked() && !chosen {
                 actions.push(Action::Toggle(Toggle::Mode(entry.mode)));
             }
         }

@@ -1,5 +1,6 @@
 //! What the lab makes of a result: its error and where that comes from, its status in words, and what would mend it.
 
+use super::palette::Palette;
 use super::panel::PanelInput;
 use crate::method::rho_words;
 use crate::scene::{ElementKind, MethodKind, Scene, limits};
@@ -55,6 +56,16 @@ pub(super) fn errors(input: &PanelInput<'_>) -> Errors {
     });
     let linear = input.linear.and_then(percent_of).map(|(error, _)| error);
     Errors { own: own.map(|(error, _)| error), linear, source }
+}
+
+/// The colour of an error, percent.
+pub(super) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color32 {
+    match error {
+        Some(error) if error > 5.0 => palette.error,
+        Some(error) if error > 1.0 => palette.warning,
+        Some(_) => palette.good,
+        None => palette.secondary,
+    }
 }
 
 /// Whether the picture is of another load than the one that is set: an edit while paused.

@@ -36,9 +36,22 @@ pub(super) struct ShotArgs {
     /// Of a scene in time: with the plot of its energy, and the same motion under other integrators beside.
     #[arg(long, value_name = "INTEGRATOR", num_args = 0.., value_parser = parse_integrator, conflicts_with_all = ["curve", "study"])]
     pub motion: Option<Vec<IntegratorKind>>,
+    /// Two to four panes beside each other under one load. A pane is a method, an element, cells or most iterations, or
+    /// several of these between colons, in any order; the rest is as in the scene: linear,warped,newton or
+    /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene as it is.
+    #[arg(long, value_name = "PANE,PANE", value_parser = parse_panes, conflicts_with_all = ["curve", "study", "motion"])]
+    pub compare: Option<Panes>,
     /// Light or dark.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
+}
+
+/// Panes that are compared: one value of an option.
+#[derive(Clone, Debug)]
+pub(super) struct Panes(pub Vec<app::PaneSetting>);
+
+fn parse_panes(text: &str) -> Result<Panes, app::PaneSettingError> {
+    app::parse_panes(text).map(Panes)
 }
 
 /// What `record --help` says of files.

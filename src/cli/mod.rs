@@ -60,6 +60,11 @@ enum CliError {
     #[error(transparent)]
     Picture(#[from] PictureError),
     #[cfg(feature = "app")]
+    #[error(
+        "{scene}: expected a scene with analysis = \"static\": --compare shows equilibria; of a motion, --motion shows other integrators"
+    )]
+    ComparesMotion { scene: String },
+    #[cfg(feature = "app")]
     #[error(transparent)]
     App(#[from] crate::app::AppError),
 }

@@ -5,15 +5,19 @@ use std::process::ExitCode;
 
 use super::args::{RequiredSceneArgs, SetArgs, SolveArgs};
 use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
-use super::{CliError, commands, exit_code, simulate, text};
+use super::{CliError, commands, exit_code, named, simulate, text};
 use crate::app;
 use crate::scene::{self, registry};
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
-    let ShotArgs { scene, output, size, no_panel, curve, study, motion, theme } = args;
-    let options = app::ShotOptions { size, panel: !no_panel, curve, study, motion, theme };
+    let ShotArgs { scene, output, size, no_panel, curve, study, motion, compare, theme } = args;
+    let compare = compare.map(|panes| panes.0).unwrap_or_default();
+    let options = app::ShotOptions { size, panel: !no_panel, curve, study, motion, compare, theme };
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
+    if !options.compare.is_empty() && scene.analysis == scene::Analysis::Dynamic {
+        return Err(CliError::ComparesMotion { scene: named(&source) });
+    }
     let status = app::shot(source, scene, simulation, &options, &output)?;
     if let Some(reason) = status.failure() {
         eprintln!("warpbeam: {}: {reason}", status.id());

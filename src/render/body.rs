@@ -52,6 +52,17 @@ impl Viewport {
     }
 }
 
+/// A body in a part of a target.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// Where it is drawn; all of it is filled.
+    pub viewport: Viewport,
+    /// What is drawn.
+    pub frame: Frame<'a>,
+    /// How it is seen.
+    pub camera: Camera,
+}
+
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 struct Vertex {
@@ -66,13 +77,38 @@ struct CameraUniform {
     padding: [f32; 2],
 }
 
+/// What a camera is to the shader.
+#[derive(Debug)]
+struct Eye {
+    uniform: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+}
+
+impl Eye {
+    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Self {
+        let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("camera"),
+            size: size_of::<CameraUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("camera"),
+            layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+        });
+        Self { uniform, bind_group }
+    }
+}
+
 /// Draws bodies into targets of one format.
 #[derive(Debug)]
 pub struct BodyRenderer {
     triangles: wgpu::RenderPipeline,
     lines: wgpu::RenderPipeline,
-    camera: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
+    layout: wgpu::BindGroupLayout,
+    /// One a view: made when they are needed first.
+    eyes: Vec<Eye>,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
     format: wgpu::TextureFormat,
@@ -91,12 +127,6 @@ impl BodyRenderer {
             label: Some("body"),
             source: wgpu::ShaderSource::Wgsl(include_str!("../../shaders/mesh.wgsl").into()),
         });
-        let camera = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("camera"),
-            size: size_of::<CameraUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("camera"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -109,11 +139,6 @@ impl BodyRenderer {
                 },
                 count: None,
             }],
-        });
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("camera"),
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: camera.as_entire_binding() }],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("body"),
@@ -154,8 +179,8 @@ impl BodyRenderer {
         Self {
             triangles: pipeline(wgpu::PrimitiveTopology::TriangleList),
             lines: pipeline(wgpu::PrimitiveTopology::LineList),
-            camera,
-            bind_group,
+            layout,
+            eyes: Vec::new(),
             vertices: Self::vertex_buffer(gpu, 1024),
             scratch: Vec::new(),
             format,
@@ -179,35 +204,47 @@ impl BodyRenderer {
         })
     }
 
-    /// Draws `frame` as `camera` sees it, with this many pixels a point, into a part of a target of this size (pixels),
-    /// all of which it fills.
+    /// Draws the views, which do not overlap, with this many pixels a point, into a target of this size (pixels), all of
+    /// which it fills.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         (target, size): (&wgpu::TextureView, [u32; 2]),
-        viewport: Viewport,
-        frame: &Frame<'_>,
-        (camera, pixels_per_point): (&Camera, f64),
+        views: &[View<'_>],
+        pixels_per_point: f64,
     ) {
         if size != self.size {
             self.multisampled = Self::multisampled(gpu, self.format, size);
             self.size = size;
         }
-        let viewport = viewport.within(size);
-        let pixels_per_metre = camera.scale * pixels_per_point;
-        let triangle_vertices =
-            self.fill_vertices(frame, camera, viewport.size.map(|s| f64::from(s) / pixels_per_metre));
+        self.scratch.clear();
+        // Of every view that has an extent: its place, and its vertices.
+        let mut drawn = Vec::with_capacity(views.len());
+        for View { viewport, frame, camera } in views {
+            let viewport = viewport.within(size);
+            if viewport.size.contains(&0) {
+                continue;
+            }
+            let pixels_per_metre = camera.scale * pixels_per_point;
+            let first = self.scratch.len() as u32;
+            let lines = self.add_vertices(frame, camera, viewport.size.map(|s| f64::from(s) / pixels_per_metre));
+            let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side)) as f32);
+            let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
+            if self.eyes.len() == drawn.len() {
+                self.eyes.push(Eye::new(gpu, &self.layout));
+            }
+            gpu.queue.write_buffer(&self.eyes[drawn.len()].uniform, 0, bytemuck::bytes_of(&uniform));
+            drawn.push((viewport, first..lines, lines..self.scratch.len() as u32));
+        }
         let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
         if self.vertices.size() < bytes.len() as u64 {
             self.vertices = Self::vertex_buffer(gpu, (bytes.len() as u64).next_power_of_two());
         }
         gpu.queue.write_buffer(&self.vertices, 0, bytes);
-        let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side.max(1))) as f32);
-        let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
-        gpu.queue.write_buffer(&self.camera, 0, bytemuck::bytes_of(&uniform));
 
-        let [r, g, b] = frame.surround.map(|c| f64::from(c) / 255.0);
+        let surround = views.first().map_or([0; 3], |view| view.frame.surround);
+        let [r, g, b] = surround.map(|c| f64::from(c) / 255.0);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("body"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -221,29 +258,27 @@ impl BodyRenderer {
             })],
             ..Default::default()
         });
-        let Viewport { corner: [x, y], size: [width, height] } = viewport;
-        if width == 0 || height == 0 {
-            return;
-        }
-        pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
-        pass.set_scissor_rect(x, y, width, height);
-        pass.set_bind_group(0, &self.bind_group, &[]);
         pass.set_vertex_buffer(0, self.vertices.slice(..));
-        pass.set_pipeline(&self.triangles);
-        pass.draw(0..triangle_vertices, 0..1);
-        pass.set_pipeline(&self.lines);
-        pass.draw(triangle_vertices..self.scratch.len() as u32, 0..1);
+        for ((viewport, triangles, lines), eye) in drawn.into_iter().zip(&self.eyes) {
+            let Viewport { corner: [x, y], size: [width, height] } = viewport;
+            pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
+            pass.set_scissor_rect(x, y, width, height);
+            pass.set_bind_group(0, &eye.bind_group, &[]);
+            pass.set_pipeline(&self.triangles);
+            pass.draw(triangles, 0..1);
+            pass.set_pipeline(&self.lines);
+            pass.draw(lines, 0..1);
+        }
     }
 
-    /// Triangle vertices, the background's before the body's, then line vertices; returns how many of the former.
+    /// Adds triangle vertices, the background's before the body's, then line vertices; returns where these begin.
     /// `view` is what is seen, m.
-    fn fill_vertices(&mut self, frame: &Frame<'_>, camera: &Camera, view: [f64; 2]) -> u32 {
+    fn add_vertices(&mut self, frame: &Frame<'_>, camera: &Camera, view: [f64; 2]) -> u32 {
         // Relative to the camera before it becomes f32: zoomed in far from the origin, digits matter.
         let position = |node: u32| {
             let d = frame.positions.get(node as usize).copied().unwrap_or_default() - camera.center;
             [d.x as f32, d.y as f32]
         };
-        self.scratch.clear();
         let [r, g, b] = frame.background;
         let [x, y] = view.map(|side| (0.5 * side) as f32);
         let corners = [[-x, -y], [x, -y], [x, y], [-x, -y], [x, y], [-x, y]];
@@ -253,7 +288,7 @@ impl BodyRenderer {
             let [r, g, b] = value.map_or(frame.absent_color, color);
             self.scratch.extend(triangle.map(|node| Vertex { position: position(node), color: [r, g, b, 255] }));
         }
-        let triangle_vertices = self.scratch.len() as u32;
+        let lines = self.scratch.len() as u32;
         let at = |node: u32| frame.positions.get(node as usize).copied().unwrap_or_default();
         let [r, g, b, opacity] = frame.line_color;
         for (line, &beside) in frame.lines.iter().zip(frame.beside) {
@@ -267,7 +302,7 @@ impl BodyRenderer {
                 self.scratch.extend(line.map(|node| Vertex { position: position(node), color }));
             }
         }
-        triangle_vertices
+        lines
     }
 }
 

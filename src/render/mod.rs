@@ -12,7 +12,7 @@ mod camera;
 pub mod colormap;
 mod offscreen;
 
-pub use body::{BodyRenderer, Frame, Viewport};
+pub use body::{BodyRenderer, Frame, View, Viewport};
 pub use camera::{Camera, Margins};
 pub use offscreen::read_texture;
 

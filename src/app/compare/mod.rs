@@ -1,0 +1,646 @@
+//! Two to four settings beside each other: one load, one camera, one range of colours, and the load curve under them.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::emath::GuiRounding;
+use egui::{
+    Align, Align2, ComboBox, Context, FontId, Layout, Panel, Rect, RichText, Role, Sense, Stroke, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
+};
+use nalgebra::Vector2;
+
+use self::pane::{Doing, Equations, Turn};
+use self::setting::PANES;
+use self::trace::Trace;
+use super::action::{Action, ViewOptions};
+use super::field::round_to_slider;
+use super::finder::LISTEN;
+use super::overlay::{self, Overlay};
+use super::palette::{BODY, HEADLINE, Palette, SMALL};
+use super::playback::Playback;
+use super::pointer::{self, Look};
+use super::stage::viewport;
+use super::toolbar::{Icon, choice, icon_button};
+use super::verdict::{Errors, error_color, sentence};
+use crate::assembly::System;
+use crate::method::METHODS;
+use crate::render::{Camera, Margins, View};
+use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::study::{Reference, Setting};
+use crate::words::{count, engineering, percent, prefix};
+
+mod pane;
+mod setting;
+mod trace;
+
+pub use pane::{Pane, PaneEnd};
+pub use setting::{PaneSetting, PaneSettingError, parse_panes};
+
+/// Time for the iterations of all panes between two frames.
+const WORK: Duration = Duration::from_millis(12);
+/// Points between panes.
+const GAP: f32 = 6.0;
+/// Height of what a pane says over its body, points.
+const HEADER: f32 = 60.0;
+/// Height of the key under the panes, points.
+const KEY: f32 = 26.0;
+/// A pane is no narrower than this, points, where there is another row for it.
+const NARROWEST: f32 = 290.0;
+/// Height of the load curve, points; at most a part of the window's.
+const TRACE_HEIGHT: f32 = 190.0;
+const TRACE_SHARE: f32 = 0.28;
+/// In a window lower than this, points, the load curve is only shown where it is asked for.
+const LOW: f32 = 560.0;
+/// Points kept free around the bodies when the view is fitted: room for supports and the load's arrow.
+const FIT_MARGINS: Margins = Margins { sides: 40.0, top: 34.0, bottom: 62.0 };
+
+/// What the comparison is of, and how it is looked at.
+pub(super) struct CompareInput<'a> {
+    pub scene: &'a Scene,
+    /// The scene's equations.
+    pub system: &'a Arc<System>,
+    pub truth: Option<&'a Reference>,
+    pub view: &'a ViewOptions,
+    pub running: bool,
+    /// What the budget has chosen.
+    pub chosen: Option<Setting>,
+}
+
+/// The panes, and what they have in common.
+#[derive(Debug)]
+pub(super) struct Compare {
+    panes: Vec<Pane>,
+    trace: Trace,
+    /// Whether the load curve is shown; `None`: where there is room.
+    shows_trace: Option<bool>,
+    /// `None`: shows all bodies.
+    camera: Option<Camera>,
+    fitted: Option<Camera>,
+    /// What the fitted view was made for: its size, points.
+    fitted_size: [f64; 2],
+    /// Nothing has moved: bodies at rest have no past.
+    still: Playback,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        let mut compare = Self {
+            panes: Vec::new(),
+            trace: Trace::default(),
+            shows_trace: None,
+            camera: None,
+            fitted: None,
+            fitted_size: [0.0; 2],
+            still: Playback::default(),
+        };
+        compare.set(&METHODS_PRESET.map(PaneSetting::of_method));
+        compare
+    }
+}
+
+const METHODS_PRESET: [MethodKind; 3] = [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton];
+
+impl Compare {
+    pub(super) fn panes(&self) -> &[Pane] {
+        &self.panes
+    }
+
+    pub(super) fn traced(&self) -> Vec<(PaneSetting, [f64; 2])> {
+        self.trace.dots()
+    }
+
+    /// Compares these: at most four.
+    pub(super) fn set(&mut self, settings: &[PaneSetting]) {
+        self.panes = settings.iter().take(*PANES.end()).map(|&setting| Pane::new(setting)).collect();
+        self.fit();
+    }
+
+    fn settings(&self) -> Vec<PaneSetting> {
+        self.panes.iter().map(|pane| pane.setting).collect()
+    }
+
+    /// The camera of all panes.
+    pub(super) fn camera(&self) -> Camera {
+        let nothing = Camera { center: Vector2::zeros(), scale: 1.0 };
+        self.camera.or(self.fitted).unwrap_or(nothing)
+    }
+
+    /// Shows all bodies again.
+    pub(super) fn fit(&mut self) {
+        (self.camera, self.fitted) = (None, None);
+    }
+
+    /// All start over at rest.
+    pub(super) fn reset(&mut self) {
+        self.panes.iter_mut().for_each(Pane::reset);
+    }
+
+    /// One iteration of those that have not ended; from rest where all have.
+    pub(super) fn step(&mut self) {
+        if !self.is_iterating() {
+            self.reset();
+        }
+        self.panes.iter_mut().for_each(Pane::step);
+    }
+
+    /// Whether a pane has not come to its end.
+    pub(super) fn is_iterating(&self) -> bool {
+        self.panes.iter().any(|pane| !pane.is_settled())
+    }
+
+    /// What others may use of the equations there are.
+    fn equations(&self, scene: &Scene, system: &Arc<System>) -> Vec<Equations> {
+        let own = std::iter::once(Equations::new(scene, system));
+        let panes = self.panes.iter().filter_map(|pane| {
+            let simulation = pane.simulation()?;
+            Some(Equations::new(simulation.scene(), simulation.system()))
+        });
+        own.chain(panes).collect()
+    }
+
+    /// Solves everything, however long it takes.
+    pub(super) fn settle(&mut self, scene: &Scene, system: &Arc<System>) {
+        self.trace.follow(scene);
+        for i in 0..self.panes.len() {
+            let equations = self.equations(scene, system);
+            self.panes[i].settle(scene, &equations);
+            self.trace.record(scene, &self.panes[i]);
+        }
+        self.trace.settle(scene);
+    }
+
+    /// The bodies, with so many pixels a point.
+    pub(super) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
+        let camera = self.camera();
+        let seen = self.panes.iter().filter_map(|pane| {
+            let viewport = viewport(pane.place?, pixels_per_point);
+            Some(View { viewport, frame: pane.shape.frame(&pane.drawing, wireframe), camera })
+        });
+        seen.collect()
+    }
+
+    fn advance(&mut self, ctx: &Context, input: &CompareInput<'_>) {
+        let (moves, holds) = ctx.input(|i| (i.pointer.delta() != egui::Vec2::ZERO, i.pointer.any_down()));
+        self.trace.follow(input.scene);
+        let equations =
+            if self.is_changed(input.scene) { self.equations(input.scene, input.system) } else { Vec::new() };
+        let mut is_new = false;
+        let share = WORK / u32::try_from(self.panes.len().max(1)).unwrap_or(1);
+        for pane in &mut self.panes {
+            let until = Instant::now() + share;
+            pane.advance(input.scene, &equations, Turn { moves, holds, runs: input.running, until });
+            is_new |= self.trace.record(input.scene, pane);
+            pane.judge(input.truth);
+        }
+        if !holds || !moves {
+            self.trace.ask(input.scene, ctx);
+        }
+        let busy = |pane: &Pane| !pane.is_settled() && !pane.is_away() && !pane.waits();
+        if is_new || input.running && self.panes.iter().any(busy) {
+            ctx.request_repaint();
+        } else if self.panes.iter().any(Pane::is_away) {
+            ctx.request_repaint_after(LISTEN);
+        }
+    }
+
+    /// Whether a pane is going to need equations.
+    fn is_changed(&self, scene: &Scene) -> bool {
+        self.panes.iter().any(|pane| pane.scene() != Some(&pane.setting.apply(scene)) || !pane.is_settled())
+    }
+
+    /// The presets over the panes, and the load curve under them.
+    pub(super) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>, actions: &mut Vec<Action>) {
+        let height = ui.ctx().content_rect().height();
+        let shows_trace = self.shows_trace.unwrap_or(height >= LOW || !input.view.bars && height >= 380.0);
+        let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
+        if input.view.bars {
+            Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| self.presets(ui, input, shows_trace));
+        }
+        if shows_trace {
+            let height = TRACE_HEIGHT.min(TRACE_SHARE * height);
+            let panel = Panel::bottom("trace").exact_size(height).resizable(false).frame(frame);
+            panel.show(ui, |ui| self.trace.show(ui, input.scene, &self.panes, actions));
+        }
+    }
+
+    fn presets(&mut self, ui: &mut Ui, input: &CompareInput<'_>, shows_trace: bool) {
+        let elements: Vec<ElementKind> = input.scene.elements().collect();
+        let join = |words: Vec<&str>| words.join(" | ");
+        let methods = join(METHODS_PRESET.iter().map(|method| method.id()).collect());
+        let meshed = join(elements.iter().map(|element| element.id()).collect());
+        let chosen = [PaneSetting::default(), input.chosen.map(PaneSetting::from).unwrap_or_default()];
+        let presets = [
+            (
+                methods,
+                METHODS_PRESET.map(PaneSetting::of_method).to_vec(),
+                true,
+                "Three methods on the panel's mesh",
+                "",
+            ),
+            (
+                meshed,
+                elements.iter().map(|&element| PaneSetting::of_element(element)).collect(),
+                elements.len() > 1,
+                "The elements that the mesh can have, by the panel's method",
+                "The mesh of this file can have one element only",
+            ),
+            (
+                "budget".to_owned(),
+                chosen.to_vec(),
+                input.chosen.is_some(),
+                "The present setting beside the fastest that meets the limits of Budget",
+                "Measure in Budget first: what it marks is compared with the present setting",
+            ),
+        ];
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            for (name, settings, enabled, tip, unless) in presets {
+                let is_chosen = enabled && self.settings() == settings;
+                let button = ui.add_enabled(enabled, egui::Button::selectable(is_chosen, name));
+                if button.on_hover_text(tip).on_disabled_hover_text(unless).clicked() {
+                    self.set(&settings);
+                }
+            }
+            let more = ui.add_enabled(self.panes.len() < *PANES.end(), egui::Button::new("+ Pane"));
+            if more.on_hover_text("Another pane").on_disabled_hover_text("Four are the most").clicked() {
+                let used = |method: MethodKind| self.panes.iter().any(|pane| pane.setting.method == Some(method));
+                let unused = METHODS.iter().map(|entry| entry.kind).find(|&method| !used(method));
+                self.panes.push(Pane::new(unused.map(PaneSetting::of_method).unwrap_or_default()));
+                self.fit();
+            }
+            let icon = if shows_trace { Icon::Close } else { Icon::Open };
+            let button = icon_button(ui, icon, "Load curve", Some("Load curve"), shows_trace);
+            if button.on_hover_text("The load curve, traced while the load is dragged").clicked() {
+                self.shows_trace = Some(!shows_trace);
+            }
+        });
+    }
+
+    /// The panes.
+    pub(super) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) {
+        self.advance(ui.ctx(), input);
+        for pane in &mut self.panes {
+            pane.update_shape(input.view, ui.visuals());
+        }
+        self.share_colors(input.view);
+        let whole = ui.available_rect_before_wrap();
+        let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
+        let cells = cells(Rect::from_min_max(whole.min, key.right_top()), self.panes.len());
+        for (pane, cell) in self.panes.iter_mut().zip(&cells) {
+            let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + HEADER).min(cell.bottom())), cell.max);
+            // As pixels are cut: what is drawn and what is painted over it have the same middle.
+            pane.place = Some(place.round_ui());
+        }
+        self.refit(input);
+        let mut change = None;
+        for (number, cell) in cells.iter().enumerate() {
+            let Some(place) = self.panes.get(number).and_then(Pane::place) else { continue };
+            let header = Rect::from_min_max(cell.min, place.right_top());
+            let inner = header.shrink2(vec2(8.0, 3.0));
+            ui.scope_builder(UiBuilder::new().max_rect(inner).id_salt(("pane", number)), |ui| {
+                ui.set_clip_rect(header.intersect(ui.clip_rect()));
+                self.header(ui, number, input, &mut change);
+            });
+            self.body(ui, number, place, input);
+        }
+        self.key(ui, key, input.view);
+        match change {
+            Some((number, Some(setting))) => {
+                if let Some(pane) = self.panes.get_mut(number) {
+                    pane.set(setting);
+                    ui.ctx().request_repaint();
+                }
+            }
+            Some((number, None)) if self.panes.len() > *PANES.start() => {
+                self.panes.remove(number);
+                self.fit();
+                ui.ctx().request_repaint();
+            }
+            _ => {}
+        }
+        ui.advance_cursor_after_rect(whole);
+    }
+
+    /// One range of colours for all: that of the equilibria.
+    fn share_colors(&mut self, view: &ViewOptions) {
+        let is_good = |pane: &Pane| !matches!(pane.doing(), Doing::Rests(end) if end.status.failure().is_some());
+        let any = self.panes.iter().any(|pane| pane.range.is_some() && is_good(pane));
+        let counted = self.panes.iter().filter(|pane| !any || is_good(pane)).filter_map(|pane| pane.range);
+        let range = counted.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default();
+        let range = view.fixed_range.unwrap_or(range);
+        self.panes.iter_mut().for_each(|pane| pane.shape.range = range);
+    }
+
+    /// Fits the view to all bodies and the exact one, while nobody has moved it and nothing moves.
+    fn refit(&mut self, input: &CompareInput<'_>) {
+        let Some(size) = self
+            .panes
+            .iter()
+            .filter_map(Pane::place)
+            .map(|p| [p.width(), p.height()].map(f64::from))
+            .reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])])
+        else {
+            return;
+        };
+        if self.fitted.is_some() && self.is_iterating() && size == self.fitted_size {
+            return;
+        }
+        let (low, high) = input.system.mesh().bounds();
+        let mut bounds = [low, high];
+        let grow = |[low, high]: [Vector2<f64>; 2], p: &Vector2<f64>| [low.inf(p), high.sup(p)];
+        let truth = input.truth.filter(|_| input.view.exact);
+        bounds = truth.into_iter().flat_map(|truth| &truth.outline).flatten().fold(bounds, grow);
+        // Theories that are far off, and iterations that are lost, must not shrink the others to dots.
+        const LARGEST: f64 = 1.5;
+        let trusted = |pane: &&Pane| {
+            let linear = pane.scene().is_some_and(|scene| scene.solver.method == MethodKind::Linear);
+            !linear && matches!(pane.doing(), Doing::Rests(end) if end.status.is_success())
+        };
+        for pane in self.panes.iter().filter(trusted) {
+            bounds = pane.shape.points.iter().fold(bounds, grow);
+        }
+        let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
+        for pane in self.panes.iter().filter(|pane| !trusted(pane)) {
+            let with = pane.shape.points.iter().fold(bounds, grow);
+            if size_of(with) < LARGEST * size_of(bounds) {
+                bounds = with;
+            }
+        }
+        self.fitted = Some(Camera::fit(bounds[0], bounds[1], size, FIT_MARGINS));
+        self.fitted_size = size;
+    }
+
+    /// The pickers of a pane, and what it has found.
+    fn header(
+        &self,
+        ui: &mut Ui,
+        number: usize,
+        input: &CompareInput<'_>,
+        change: &mut Option<(usize, Option<PaneSetting>)>,
+    ) {
+        let Some(pane) = self.panes.get(number) else { return };
+        let palette = Palette::new(ui.visuals());
+        let shown = pane.setting.of(input.scene);
+        let name = format!("Pane {}", number + 1);
+        ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
+        ui.horizontal(|ui| {
+            let color = shown.method.map_or(palette.text, |method| palette.method(method));
+            let (bar, _) = ui.allocate_exact_size(vec2(10.0, 18.0), Sense::hover());
+            ui.painter().rect_filled(bar, 3.0, color);
+            let mut setting = pane.setting;
+            let close = self.panes.len() > *PANES.start() && input.view.bars;
+            let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
+            let widths = [0.38, 0.25, 0.37].map(|share| (share * room).min(120.0));
+            let method = METHODS.iter().map(|entry| (entry.kind, entry.id, entry.about));
+            let panels = (input.scene.solver.method.id(), "the panel's");
+            pick(ui, &palette, (&name, "method"), widths[0], (&mut setting.method, panels), method);
+            let elements = input.scene.elements().map(|e| (e, e.id(), e.entry().about));
+            let panels = (input.scene.element().id(), "the panel's");
+            pick(ui, &palette, (&name, "element"), widths[1], (&mut setting.element, panels), elements);
+            mesh_picker(ui, &palette, &name, widths[2], &mut setting.cells, input.scene);
+            if setting != pane.setting {
+                *change = Some((number, Some(setting)));
+            }
+            if close {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let button = ui.add(egui::Button::new("×").frame(false).min_size(vec2(24.0, 24.0)));
+                    let words = format!("Close pane {}", number + 1);
+                    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));
+                    if button.on_hover_text(words).clicked() {
+                        *change = Some((number, None));
+                    }
+                });
+            }
+        });
+        self.result(ui, &name, pane, input);
+    }
+
+    /// Error, time and iterations; or why there are none.
+    fn result(&self, ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
+        let palette = Palette::new(ui.visuals());
+        let setting = pane.setting.of(input.scene);
+        let (bad, words) = match pane.doing() {
+            Doing::Refused(reason) => (true, sentence(reason)),
+            Doing::Rests(end) => match end.status.failure() {
+                Some(reason) => (true, format!("Does not converge: {reason}.")),
+                None => {
+                    let stopped = if end.status.is_success() { "" } else { ", stopped" };
+                    let time = engineering(format!("{:.1e}", end.seconds).parse().unwrap_or(0.0), "s");
+                    // Pictures without bars have nothing that differs from run to run.
+                    let time = if input.view.bars { format!("{time} · ") } else { String::new() };
+                    (false, format!("{time}{}{stopped}", count(end.iterations, "iteration")))
+                }
+            },
+            Doing::Works(iterations) => (false, format!("solving: {}", count(iterations, "iteration"))),
+            Doing::Iterates(_) if !input.running => (false, "paused".to_owned()),
+            Doing::Iterates(iterations) => (false, count(iterations, "iteration")),
+        };
+        let error = pane.error.filter(|_| !bad);
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0), Sense::hover());
+        let painter = ui.painter();
+        let mut left = rect.left();
+        if bad {
+            painter.rect_filled(rect, 4.0, palette.error_chip);
+            left += 6.0;
+        } else {
+            let number = error.map_or_else(|| super::headline::UNKNOWN.to_owned(), percent);
+            let color = error_color(&palette, error);
+            let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
+            let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
+            // The font has one weight: drawn twice, a hair apart, it is semibold.
+            for shift in [0.0, 0.45] {
+                painter.galley(at.min + vec2(shift, 0.0), galley.clone(), color);
+            }
+            left = at.right() + 12.0;
+        }
+        let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
+        let mut job = egui::text::LayoutJob::simple_singleline(words.clone(), FontId::proportional(size), ink);
+        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left - 4.0).max(0.0));
+        let galley = painter.layout_job(job);
+        let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
+        painter.galley(at.min, galley, ink);
+        let error = error.map_or_else(String::new, |error| format!("error {}, ", percent(error)));
+        let spoken = format!("{name}: {setting}: {error}{words}");
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+        let truth = input.truth.map_or_else(|| "the truth, once that is known".to_owned(), ToString::to_string);
+        response.on_hover_text(format!(
+            "{words}\nError: distance of the first probe from {truth}. Time and iterations: of a solve from rest."
+        ));
+    }
+
+    /// The body of a pane, over what its pass has drawn.
+    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) {
+        let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
+        match pointer::look(ui, &response, self.camera(), false) {
+            Look::Same => {}
+            Look::At(camera) => self.camera = Some(camera),
+            Look::Fit => self.fit(),
+        }
+        let camera = self.camera();
+        let Some(pane) = self.panes.get(number) else { return };
+        let palette = Palette::new(ui.visuals());
+        let painter = ui.painter_at(place);
+        if let (Some(system), Some(scene)) = (pane.system(), pane.scene()) {
+            let overlay = Overlay {
+                scene,
+                system,
+                drawing: &pane.drawing,
+                options: input.view,
+                camera,
+                positions: &pane.shape.nodes,
+                ghost: None,
+                exact: input.truth.filter(|_| input.view.exact).map_or(&[], |truth| &truth.outline),
+                errors: Errors::default(),
+                time: 0.0,
+                hand: None,
+                playback: &self.still,
+                color_range: pane.shape.range,
+                warning: None,
+            };
+            overlay::body(&painter, place, &overlay, ui.visuals());
+        }
+        if number == 0 {
+            overlay::scale_bar(&painter, place, &camera, &palette);
+        }
+        if pane.is_outdated() {
+            painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.6));
+            painter.text(place.center(), Align2::CENTER_CENTER, "solving…", FontId::proportional(BODY), palette.text);
+        }
+    }
+
+    /// What lines and colours mean, for all panes.
+    fn key(&self, ui: &Ui, rect: Rect, view: &ViewOptions) {
+        let palette = Palette::new(ui.visuals());
+        let painter = ui.painter_at(rect);
+        let font = FontId::proportional(SMALL);
+        let middle = rect.center().y;
+        let mut x = rect.left() + 12.0;
+        let mut entry = |words: &str, mark: &dyn Fn(f32)| {
+            mark(x);
+            let place =
+                painter.text(pos2(x + 24.0, middle), Align2::LEFT_CENTER, words, font.clone(), palette.secondary);
+            x = place.right() + 16.0;
+        };
+        if view.exact {
+            entry("exact", &|x| {
+                for shift in [0.0, 7.0, 14.0] {
+                    painter.hline(x + shift..=x + shift + 4.5, middle, Stroke::new(2.0, palette.exact));
+                }
+            });
+        }
+        if view.rest_outline {
+            entry("rest", &|x| {
+                let swatch = Rect::from_center_size(pos2(x + 9.0, middle), vec2(18.0, 8.0));
+                painter.rect_stroke(swatch, 0.0, Stroke::new(1.0, palette.rest), egui::StrokeKind::Inside);
+            });
+        }
+        let Some(range) = self.panes.first().map(|pane| pane.shape.range) else { return };
+        let bar = if rect.width() < 560.0 { 70.0 } else { 130.0 };
+        let unit = view.field.unit();
+        let (power, symbol) = prefix(&range, unit);
+        let [low, high] = range.map(|v| engineering(round_to_slider(v / 10f64.powi(power)), ""));
+        let put = |right: f32, words: String| {
+            painter.text(pos2(right, middle), Align2::RIGHT_CENTER, words, font.clone(), palette.text).left() - 8.0
+        };
+        let right = put(rect.right() - 12.0, format!("{high} {symbol}{unit}"));
+        let bar = Rect::from_center_size(pos2(right - 0.5 * bar, middle), vec2(bar, 10.0));
+        overlay::color_bar(&painter, bar, palette.map(view.field));
+        let left = put(bar.left() - 8.0, low);
+        if left - x > 140.0 {
+            painter.text(pos2(left, middle), Align2::RIGHT_CENTER, view.field.name(), font, palette.secondary);
+        }
+    }
+}
+
+/// The places of so many panes: beside each other, or in two rows.
+fn cells(rect: Rect, panes: usize) -> Vec<Rect> {
+    let one_row = panes <= 2 || panes == 3 && (rect.width() - 2.0 * GAP) / 3.0 >= NARROWEST;
+    let first = if one_row { panes } else { panes.div_ceil(2) };
+    let rows = [first, panes - first];
+    let count = if rows[1] > 0 { 2.0 } else { 1.0 };
+    let height = ((rect.height() - GAP * (count - 1.0)) / count).floor();
+    let mut cells = Vec::with_capacity(panes);
+    let mut top = rect.top();
+    for row in rows {
+        let width = ((rect.width() - GAP * (row.max(1) - 1) as f32) / row.max(1) as f32).floor();
+        for column in 0..row {
+            let corner = pos2(rect.left() + (width + GAP) * column as f32, top);
+            cells.push(Rect::from_min_size(corner, vec2(width, height.max(0.0))));
+        }
+        top += height + GAP;
+    }
+    cells
+}
+
+/// A picker of a pane: an own value, or that of the panel.
+fn pick<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    palette: &Palette,
+    (pane, what): (&str, &str),
+    width: f32,
+    (value, (panels, of_panel)): (&mut Option<T>, (&str, &str)),
+    entries: impl Iterator<Item = (T, &'static str, &'static str)> + Clone,
+) {
+    let id = value.and_then(|own| entries.clone().find(|entry| entry.0 == own)).map_or(panels, |entry| entry.1);
+    let mut menu = |ui: &mut Ui| {
+        ui.set_width(280.0);
+        for (kind, id, about) in entries.clone() {
+            if choice(ui, palette, *value == Some(kind), id, about, false).clicked() {
+                *value = Some(kind);
+            }
+        }
+        let about = format!("{panels} at present; follows the panel");
+        if choice(ui, palette, value.is_none(), of_panel, &about, false).clicked() {
+            *value = None;
+        }
+    };
+    combo(ui, pane, what, id, width, &mut menu);
+}
+
+fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut dyn FnMut(&mut Ui)) {
+    let words = format!("{pane} {what}");
+    let combo = ComboBox::from_id_salt(&words).selected_text(RichText::new(text)).width(width).height(420.0).truncate();
+    let response = combo.show_ui(ui, menu).response;
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::ComboBox, true, &words);
+        info.current_text_value = Some(text.to_owned());
+        info
+    });
+}
+
+/// Finer and coarser meshes than the panel's.
+fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &mut Option<[u32; 2]>, scene: &Scene) {
+    /// Most cells that are offered.
+    const MOST: u64 = 40_000;
+    let words = |[along, across]: [u32; 2]| format!("{along}×{across}");
+    let Some(beam) = &scene.beam else {
+        return combo(ui, pane, "mesh", "as meshed", width, &mut |ui| {
+            ui.label("The mesh is that of the file.");
+        });
+    };
+    let own = beam.cells;
+    let text = words(cells.unwrap_or(own));
+    combo(ui, pane, "mesh", &text, width, &mut |ui| {
+        ui.set_width(200.0);
+        let about = format!("{} at present; follows the panel", words(own));
+        if choice(ui, palette, cells.is_none(), "the panel's", &about, false).clicked() {
+            *cells = None;
+        }
+        let coarser = own.map(|n| n.div_ceil(2));
+        let finer = [1, 2, 4, 8, 16].map(|times| own.map(|n| n.saturating_mul(times)));
+        let offered = std::iter::once(coarser).filter(|&c| c != own).chain(finer);
+        let small = offered.filter(|[a, b]| u64::from(*a) * u64::from(*b) <= MOST);
+        let other = cells.filter(|own| !small.clone().any(|offered| offered == *own));
+        for offered in small.chain(other) {
+            let about = match offered {
+                _ if offered == own => "as the panel has it now, whatever it has then",
+                _ if offered[0] < own[0] => "coarser",
+                _ => "finer",
+            };
+            if choice(ui, palette, *cells == Some(offered), &words(offered), about, false).clicked() {
+                *cells = Some(offered);
+            }
+        }
+    });
+}

@@ -1,0 +1,196 @@
+//! What a pane has of its own: method, element, mesh, iterations; and how that is written.
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use crate::element::ELEMENTS;
+use crate::method::METHODS;
+use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::study::Setting;
+use crate::words::count;
+
+/// Fewest and most panes.
+pub(super) const PANES: std::ops::RangeInclusive<usize> = 2..=4;
+
+/// What a pane has in the place of what its scene has; `None`: as the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PaneSetting {
+    /// Method.
+    pub method: Option<MethodKind>,
+    /// Element.
+    pub element: Option<ElementKind>,
+    /// Cells along and across.
+    pub cells: Option<[u32; 2]>,
+    /// Iterations after which a solve is stopped.
+    pub iterations: Option<u32>,
+}
+
+/// Why panes are not understood.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum PaneSettingError {
+    /// A part that is nothing known.
+    #[error(
+        "expected a method ({}), an element ({}), cells as in 10x2 or a number of iterations, got \u{201c}{part}\u{201d}",
+        METHODS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "),
+        ELEMENTS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "),
+    )]
+    Unknown {
+        /// The part.
+        part: String,
+    },
+    /// A part of a kind that was there before.
+    #[error("expected one method, element, mesh and number of iterations, got another one: \u{201c}{part}\u{201d}")]
+    Twice {
+        /// The part.
+        part: String,
+    },
+    /// Too few panes, or too many.
+    #[error("expected {} to {} panes, as in linear,warped,newton, got {got}", PANES.start(), PANES.end())]
+    Count {
+        /// How many there are.
+        got: usize,
+    },
+}
+
+impl PaneSetting {
+    /// One that differs in its method only.
+    pub(super) fn of_method(method: MethodKind) -> Self {
+        Self { method: Some(method), ..Self::default() }
+    }
+
+    /// One that differs in its element only.
+    pub(super) fn of_element(element: ElementKind) -> Self {
+        Self { element: Some(element), ..Self::default() }
+    }
+
+    /// The same with what it has of the scene written out.
+    #[must_use]
+    pub fn of(&self, scene: &Scene) -> Self {
+        Self {
+            method: Some(self.method.unwrap_or(scene.solver.method)),
+            element: Some(self.element.unwrap_or(scene.element())),
+            cells: scene.beam.as_ref().map(|beam| self.cells.unwrap_or(beam.cells)),
+            iterations: self.iterations,
+        }
+    }
+
+    /// The scene with it.
+    #[must_use]
+    pub fn apply(&self, scene: &Scene) -> Scene {
+        Setting {
+            method: self.method.unwrap_or(scene.solver.method),
+            element: self.element.unwrap_or(scene.element()),
+            cells: self.cells,
+            iterations: 0,
+        }
+        .apply(scene)
+    }
+}
+
+impl From<Setting> for PaneSetting {
+    fn from(setting: Setting) -> Self {
+        Self {
+            method: Some(setting.method),
+            element: Some(setting.element),
+            cells: setting.cells,
+            iterations: Some(setting.iterations),
+        }
+    }
+}
+
+impl fmt::Display for PaneSetting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let method = self.method.map(|method| method.id().to_owned());
+        let element = self.element.map(|element| element.id().to_owned());
+        let cells = self.cells.map(|[along, across]| format!("{along}×{across}"));
+        let iterations = self.iterations.map(|n| count(n, "iteration"));
+        let parts: Vec<String> = [method, element, cells, iterations].into_iter().flatten().collect();
+        f.write_str(if parts.is_empty() { "the scene" } else { "" })?;
+        f.write_str(&parts.join(" "))
+    }
+}
+
+/// Parts in any order, between colons: `warped:t6:10x2`, `t3`, `newton`, `warped:4`. `scene` is the scene as it is.
+impl FromStr for PaneSetting {
+    type Err = PaneSettingError;
+
+    fn from_str(text: &str) -> Result<Self, PaneSettingError> {
+        let mut setting = Self::default();
+        if text.trim() == "scene" {
+            return Ok(setting);
+        }
+        for part in text.split(':').map(str::trim) {
+            let method = METHODS.iter().find(|entry| entry.id == part).map(|entry| entry.kind);
+            let element = ELEMENTS.iter().find(|entry| entry.id == part).map(|entry| entry.kind);
+            let cells = part.split_once(['x', 'X', '×']).and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
+            let iterations = part.parse().ok().filter(|&n| n > 0);
+            let is_again = method.is_some() && setting.method.is_some()
+                || element.is_some() && setting.element.is_some()
+                || cells.is_some() && setting.cells.is_some()
+                || iterations.is_some() && setting.iterations.is_some();
+            if is_again {
+                return Err(PaneSettingError::Twice { part: part.to_owned() });
+            }
+            if method.is_none() && element.is_none() && cells.is_none() && iterations.is_none() {
+                return Err(PaneSettingError::Unknown { part: part.to_owned() });
+            }
+            setting = Self {
+                method: method.or(setting.method),
+                element: element.or(setting.element),
+                cells: cells.or(setting.cells),
+                iterations: iterations.or(setting.iterations),
+            };
+        }
+        Ok(setting)
+    }
+}
+
+/// Two to four settings between commas.
+///
+/// # Errors
+/// [`PaneSettingError`].
+pub fn parse_panes(text: &str) -> Result<Vec<PaneSetting>, PaneSettingError> {
+    let settings = text.split(',').map(str::parse).collect::<Result<Vec<PaneSetting>, _>>()?;
+    if PANES.contains(&settings.len()) { Ok(settings) } else { Err(PaneSettingError::Count { got: settings.len() }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_read_in_any_order() {
+        let all = PaneSetting {
+            method: Some(MethodKind::Warped),
+            element: Some(ElementKind::T6),
+            cells: Some([10, 2]),
+            iterations: Some(4),
+        };
+        for text in ["warped:t6:10x2:4", "10×2:4:t6:warped", " warped : t6 : 10x2 : 4 "] {
+            assert_eq!(text.parse(), Ok(all), "{text}");
+        }
+        assert_eq!(all.to_string(), "warped t6 10×2 4 iterations");
+        assert_eq!("newton".parse(), Ok(PaneSetting::of_method(MethodKind::Newton)));
+        assert_eq!("t3".parse(), Ok(PaneSetting::of_element(ElementKind::T3)));
+        assert_eq!("scene".parse(), Ok(PaneSetting::default()));
+        assert_eq!(parse_panes("linear,warped,newton").map(|panes| panes.len()), Ok(3));
+    }
+
+    #[test]
+    fn what_is_no_setting_is_refused_with_what_was_expected() {
+        for text in ["", "wraped", "t5", "10x", "0", "-1", "1.5"] {
+            let error = text.parse::<PaneSetting>().unwrap_err();
+            assert_eq!(error, PaneSettingError::Unknown { part: text.to_owned() });
+            assert!(error.to_string().contains("warped") && error.to_string().contains("t6"), "{error}");
+        }
+        for text in ["warped:newton", "t3:t6", "2x1:4x1", "3:4"] {
+            assert!(matches!(text.parse::<PaneSetting>(), Err(PaneSettingError::Twice { .. })), "{text}");
+        }
+        for (text, got) in [("warped", 1), ("t3,t6,q4,t3,t6", 5)] {
+            assert_eq!(parse_panes(text), Err(PaneSettingError::Count { got }), "{text}");
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What is drawn of a body in a state: where its points are, and the colours of its field. Kept between frames.
+
+use egui::{Color32, Visuals};
+use nalgebra::Vector2;
+
+use super::action::ViewOptions;
+use super::drawing::Drawing;
+use super::palette::{self, Palette};
+use super::panel;
+use crate::render::Frame;
+use crate::render::colormap::ColorMap;
+use crate::simulation::{Field, Simulation};
+
+/// What is drawn of a body at present.
+#[derive(Debug, Default)]
+pub(super) struct Shape {
+    /// Where the nodes are, m.
+    pub nodes: Vec<Vector2<f64>>,
+    /// Where the drawn points are, m.
+    pub points: Vec<Vector2<f64>>,
+    at_points: Vec<Option<f64>>,
+    values: Vec<Option<f64>>,
+    /// The field's values at the two ends of the colour map.
+    pub range: [f64; 2],
+    /// What the range is of.
+    field: Option<Field>,
+    line_color: [u8; 4],
+    background: [u8; 3],
+    surround: [u8; 3],
+    absent_color: [u8; 3],
+    map: ColorMap,
+}
+
+impl Shape {
+    /// Takes the state of a body on. A range that `grows` keeps what it has spanned of the field.
+    pub(super) fn update(&mut self, simulation: &Simulation, drawing: &Drawing, view: &ViewOptions, grows: bool) {
+        self.nodes.clear();
+        let rest = simulation.system().mesh().nodes();
+        self.nodes.extend(rest.iter().zip(simulation.displacement()).map(|(x, u)| x + u));
+        let nodes = &self.nodes;
+        drawing.points(&|n| nodes[n as usize], &mut self.points);
+        simulation.field(view.field, &mut self.at_points);
+        drawing.values(&self.at_points, &mut self.values);
+        let [mut low, mut high] = panel::range_of(&self.at_points);
+        if palette::has_sign(view.field) {
+            let reach = high.abs().max(low.abs());
+            (low, high) = (-reach, reach);
+        }
+        let before = Some(self.range).filter(|_| grows && self.field == Some(view.field));
+        let grown = before.map_or([low, high], |range| [low.min(range[0]), high.max(range[1])]);
+        self.field = Some(view.field);
+        self.range = view.fixed_range.unwrap_or(grown);
+    }
+
+    /// Takes the colours of a theme on.
+    pub(super) fn color(&mut self, visuals: &Visuals, field: Field) {
+        let palette = Palette::new(visuals);
+        let opaque = |color: Color32| [color.r(), color.g(), color.b()];
+        self.background = opaque(palette.canvas);
+        // What is behind panels: these fill nothing themselves, which is dear where a processor draws.
+        self.surround = opaque(palette.panel);
+        self.absent_color = opaque(palette.absent);
+        self.line_color = palette.wire;
+        self.map = palette.map(field);
+    }
+
+    /// What the body's pass draws.
+    pub(super) fn frame<'a>(&'a self, drawing: &'a Drawing, wireframe: bool) -> Frame<'a> {
+        Frame {
+            positions: &self.points,
+            triangles: &drawing.triangles,
+            values: &self.values,
+            range: self.range,
+            lines: if wireframe { &drawing.lines } else { &[] },
+            beside: &drawing.beside,
+            pieces: drawing.pieces,
+            map: self.map,
+            line_color: self.line_color,
+            background: self.background,
+            surround: self.surround,
+            absent_color: self.absent_color,
+        }
+    }
+}
