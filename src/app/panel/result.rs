@@ -180,8 +180,8 @@ fn rho_line(ui: &mut Ui, simulation: &Simulation) {
 fn stages(ui: &mut Ui, input: &PanelInput<'_>) {
     let time = input.timings;
     let stages = [
-        ("rotate", time.rotate, "Element maps and polar decompositions"),
-        ("assemble", time.assemble, "Stiffness of the turned elements, forces, residual"),
+        ("rotate", time.rotate, "Rotations found apart, at the end of time steps"),
+        ("assemble", time.assemble, "One sweep: rotations, stiffness of the turned elements, forces; and the residual"),
         ("factorize", time.factorize, "Sparse Cholesky"),
         ("solve", time.solve, "Forward and back substitution"),
     ];
