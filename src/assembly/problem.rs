@@ -5,8 +5,9 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::{Hand, Kinematics, Loads, Matrix, NodalProbe, System, SystemError};
-use crate::element::{Elements, MatrixSum, Tangent};
+use crate::element::{Elements, MatrixSum, Rotations, Tangent};
 use crate::material::Lame;
+use crate::rotation::Rotation;
 use crate::scene::{Load, Material, Scene};
 use crate::state::State;
 
@@ -184,7 +185,30 @@ impl Problem {
     /// it vanishes exactly at rest.
     pub fn linearize(&self, state: &State, forces: &mut Forces, tangent: Option<(Tangent, &mut Matrix)>) {
         self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
-            elements.linearize(moduli, &state.displacement, &state.rotations, force, magnitude, matrix);
+            let rotations = Rotations::Given(&state.rotations);
+            elements.linearize(moduli, &state.displacement, rotations, force, magnitude, matrix);
+        });
+    }
+
+    /// [`System::follow`] and [`Self::linearize`] in the same sweep: for a state whose displacement is new.
+    pub fn follow_and_linearize(
+        &self,
+        state: &mut State,
+        kinematics: Kinematics,
+        forces: &mut Forces,
+        tangent: Option<(Tangent, &mut Matrix)>,
+    ) {
+        self.system.turn_edges(state, kinematics);
+        let State { displacement: u, rotations, .. } = state;
+        let rotations = match kinematics {
+            Kinematics::Corotated => Rotations::Follow(rotations),
+            Kinematics::Linear => {
+                rotations.fill(Rotation::IDENTITY);
+                Rotations::Given(rotations)
+            }
+        };
+        self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
+            elements.linearize(moduli, u, rotations, force, magnitude, matrix);
         });
     }
 

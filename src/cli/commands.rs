@@ -1,5 +1,6 @@
 //! The commands that need no window.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -13,8 +14,8 @@ use crate::picture::draw_svg;
 use crate::scene::{self, Analysis, Scene};
 use crate::simulation::{Simulation, Solution, Status};
 use crate::study::{
-    Demand, Extent, LoadCurve, MotionStudy, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map,
-    motion_heat_map, plot,
+    Demand, Extent, LoadCurve, MotionStudy, Progress, Reference, Scaling, Study, StudyError, Tuning, extremes,
+    heat_map, motion_heat_map, parallel, plot,
 };
 use crate::timings::Timings;
 use crate::words::count;
@@ -169,6 +170,22 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     Ok(ended(interrupted, "the study lacks what was not measured yet"))
 }
 
+pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
+    let (scene, _) = simulate(source)?;
+    let watch = Watch::new();
+    let study = Scaling::new(&scene, extent(out), &mut |progress| watch.observe(&progress));
+    drop(watch);
+    let study = match study {
+        Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
+        study => study.map_err(failed(source))?,
+    };
+    let (table, svg, summary) = (study.table(), study.svg(), study.summary());
+    let texts = [("scaling.csv", table.as_str()), ("scaling.svg", &svg), ("scaling.txt", &summary)];
+    write_folder(&out.folder, &texts, "scaling.svg")?;
+    text::print(&summary)?;
+    Ok(ended(study.is_partial, "finer meshes have not been measured"))
+}
+
 /// The exit code of a command that may have been interrupted, and then says what is missing.
 fn ended(interrupted: bool, missing: &str) -> ExitCode {
     if !interrupted {
@@ -215,19 +232,23 @@ fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) ->
 pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (cases, motion_cases) = (extremes::cases(extent(out)), extremes::motion::cases(extent(out)));
     let all = cases.len() + motion_cases.len();
-    let (mut entries, mut motions) = (Vec::with_capacity(cases.len()), Vec::with_capacity(motion_cases.len()));
     let watch = Watch::new();
-    let show = |done: usize| watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
-    for case in cases.into_iter().take_while(|_| !watch.is_called_off()) {
-        let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
-        entries.push(case.solve().map_err(broken)?);
-        show(entries.len());
-    }
-    for case in motion_cases.into_iter().take_while(|_| !watch.is_called_off()) {
-        let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
-        motions.push(case.run().map_err(broken)?);
-        show(entries.len() + motions.len());
-    }
+    let observe = |done: usize| {
+        watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
+        if watch.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let entries = parallel::map(
+        &cases,
+        |case| case.solve().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
+        observe,
+    );
+    let entries: Vec<_> = entries.into_iter().flatten().collect::<Result<_, _>>()?;
+    let motions = parallel::map(
+        &motion_cases,
+        |case| case.run().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
+        |done| observe(cases.len() + done),
+    );
+    let motions: Vec<_> = motions.into_iter().flatten().collect::<Result<_, _>>()?;
     drop(watch);
     let missing = all - entries.len() - motions.len();
     let summary = format!("{}\n{}", extremes::summary(&entries), extremes::motion::summary(&motions));

@@ -89,7 +89,8 @@ pub fn main() -> ExitCode {
         Some(Command::Scenes) => text::print(&text::scenes()).map(|()| ExitCode::SUCCESS),
         Some(Command::Solve(args)) => commands::solve(args),
         Some(Command::Curve { scene, out }) => commands::curve(&scene.into(), out.as_deref()),
-        Some(Command::Study { scene, out }) => commands::study(&scene.into(), &out),
+        Some(Command::Study { scene, out, scaling: false }) => commands::study(&scene.into(), &out),
+        Some(Command::Study { scene, out, scaling: true }) => commands::scaling(&scene.into(), &out),
         Some(Command::Tune(args)) => commands::tune(args),
         Some(Command::Extremes { out }) => commands::extremes(&out),
         #[cfg(feature = "app")]

@@ -160,25 +160,28 @@ pub(crate) fn assemble(
     workspace.tangent = Some(tangent);
 }
 
-/// Measures a state that has the rotations of its displacement: its forces, and a tangent where one is wanted. Returns
-/// the relative residual.
+/// Measures a state: its forces, and a tangent where one is wanted. The displacement is new where rotations and turns of
+/// edges are to `follow` it, in the same sweep. Returns the relative residual.
 pub(crate) fn measure(
     problem: &Problem,
-    state: &State,
-    kinematics: Kinematics,
+    state: &mut State,
+    (kinematics, follow): (Kinematics, bool),
     (tangent, load_factor): (Option<Tangent>, f64),
     forces: &mut Forces,
     workspace: &mut Workspace,
     timings: &mut Timings,
 ) -> f64 {
     timed(&mut timings.assemble, || {
-        match tangent {
-            Some(tangent) => assemble(problem, state, forces, workspace, tangent, load_factor),
-            None => {
-                problem.linearize(state, forces, None);
-                workspace.tangent = None;
-            }
+        let matrix = tangent.map(|tangent| (tangent, &mut workspace.matrix));
+        if follow {
+            problem.follow_and_linearize(state, kinematics, forces, matrix);
+        } else {
+            problem.linearize(state, forces, matrix);
         }
+        if let Some(tangent) = tangent {
+            problem.add_load_stiffness(state, tangent, load_factor, &mut workspace.matrix);
+        }
+        workspace.tangent = tangent;
         problem.balance(state, kinematics, load_factor, forces)
     })
 }

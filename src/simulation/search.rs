@@ -98,9 +98,9 @@ impl Search {
         } else {
             if why == Restart::AtRest {
                 self.method.restart(why);
-                self.follow_displacement(body, &mut unmeasured);
             }
-            self.measure_forces(body, self.method.tangent(), self.method.load_factor(), &mut unmeasured);
+            let wanted = (self.method.tangent(), self.method.load_factor());
+            self.measure_forces(body, why == Restart::AtRest, wanted, &mut unmeasured);
         }
         let verdict = self.with_method(body, &mut unmeasured, |method, it| method.judge(it));
         self.follow(body, verdict, &mut unmeasured);
@@ -176,29 +176,24 @@ impl Search {
             self.status = Reason::IterationLimit(most).into();
             self.method.stop(&mut body.state);
             // What is missing to the whole load.
-            self.follow_displacement(body, timings);
-            self.measure_forces(body, None, 1.0, timings);
+            self.measure_forces(body, true, (None, 1.0), timings);
         }
     }
 
     /// Rotations, forces and residual of the current state under the load that is on the body at present, and the
     /// tangent that the next iteration needs.
     fn measure(&mut self, body: &mut Body, timings: &mut Timings) {
-        self.follow_displacement(body, timings);
-        self.measure_forces(body, self.method.tangent(), self.method.load_factor(), timings);
+        self.measure_forces(body, true, (self.method.tangent(), self.method.load_factor()), timings);
     }
 
-    fn follow_displacement(&mut self, body: &mut Body, timings: &mut Timings) {
-        let kinematics = self.method.kinematics();
-        timed(&mut timings.rotate, || body.problem.system().follow(&mut body.state, kinematics));
-    }
-
-    fn measure_forces(&mut self, body: &Body, tangent: Option<Tangent>, load_factor: f64, timings: &mut Timings) {
+    /// Forces and residual, and a tangent where one is wanted, under a load factor; rotations `follow` a displacement that
+    /// is new.
+    fn measure_forces(&mut self, body: &mut Body, follow: bool, wanted: (Option<Tangent>, f64), timings: &mut Timings) {
         self.residual = measure(
             &body.problem,
-            &body.state,
-            self.method.kinematics(),
-            (tangent, load_factor),
+            &mut body.state,
+            (self.method.kinematics(), follow),
+            wanted,
             &mut self.forces,
             &mut self.workspace,
             timings,

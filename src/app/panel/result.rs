@@ -144,8 +144,8 @@ fn stages(ui: &mut Ui, input: &PanelInput<'_>) {
     let times = input.timings;
     let secondary = Palette::new(ui.visuals()).secondary;
     let stages = [
-        ("rotate", times.rotate, "Element maps and polar decompositions"),
-        ("assemble", times.assemble, "Stiffness of the turned elements, forces, residual"),
+        ("rotate", times.rotate, "Rotations found apart, at the end of time steps"),
+        ("assemble", times.assemble, "One sweep: rotations, stiffness of the turned elements, forces and the residual"),
         ("factorize", times.factorize, "Sparse Cholesky"),
         ("solve", times.solve, "Forward and back substitution"),
     ];
