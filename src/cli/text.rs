@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::CliError;
 use super::commands::Spent;
 use crate::method::{Certificate, rho_words};
-use crate::scene::{Analysis, MethodKind, Scene, registry};
+use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
 use crate::study::{LoadCurve, Reference};
 use crate::words::{count, engineering, engineering_pair, prefix};
@@ -116,12 +116,17 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         pair(solution.reaction.force, "N"),
         engineering(solution.reaction.moment, "N m")
     );
-    let _ = writeln!(
+    text.push_str(&reactions(scene, solution));
+    let _ = write!(
         text,
         "elastic energy {}, work of the loads {}",
         joules(solution.energy.elastic),
         joules(solution.energy.external)
     );
+    text.push_str(&match moved(scene) {
+        true => format!(", of the moved supports {}\n", joules(solution.energy.supports)),
+        false => "\n".to_owned(),
+    });
     if let Some(motion) = &solution.motion {
         text.push_str(&books(motion));
     }
@@ -131,6 +136,33 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
     let shown: Vec<String> =
         shown.map(|(name, time)| format!("{} {}", name.replace('_', " "), seconds(*time))).collect();
     let _ = writeln!(text, "time {}: {}", seconds(spent.wall()), shown.join(", "));
+    text
+}
+
+fn moved(scene: &Scene) -> bool {
+    scene.supports.iter().any(Support::moves)
+}
+
+/// The reaction of each support, where there are several or one moves.
+fn reactions(scene: &Scene, solution: &Solution) -> String {
+    let mut text = String::new();
+    if solution.supports.len() < 2 && !moved(scene) {
+        return text;
+    }
+    for (support, reaction) in scene.supports.iter().zip(&solution.supports) {
+        let _ = write!(text, "  support {}", support.place);
+        if support.displacement != [0.0; 2] {
+            let _ = write!(text, ", moved by {}", engineering_pair(support.displacement, "m"));
+        }
+        if support.turn != 0.0 {
+            let _ = write!(text, ", turned by {}", engineering(support.turn.to_degrees(), "°"));
+        }
+        let _ = write!(text, ": reaction {}", pair(reaction.force, "N"));
+        if matches!(support.place, Place::Edge(_)) {
+            let _ = write!(text, ", moment about its middle {}", engineering(reaction.moment, "N m"));
+        }
+        text.push('\n');
+    }
     text
 }
 

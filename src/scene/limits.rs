@@ -73,6 +73,8 @@ pub const DIRECTION: Limit = Limit::new("°", -180.0, 180.0);
 pub const ACCELERATION: Limit = Limit::new("m/s²", 0.0, 1e6);
 /// A coordinate.
 pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
+/// A turn of a support.
+pub const TURN: Limit = Limit::new("rad", -100.0, 100.0);
 /// Metres per unit of a mesh file.
 pub const MESH_SCALE: Limit = Limit::new("m", 1e-9, 1e6);
 /// Relative residual at which a solve is done.

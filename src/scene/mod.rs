@@ -256,9 +256,13 @@ impl Scene {
         }
         for (i, support) in self.supports.iter().enumerate() {
             let key = format!("support.{i}");
-            support.place.validate(&key)?;
-            if support.fix.is_empty() {
-                return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
+            support.validate(&key)?;
+            if dynamic && support.moves() {
+                let name = if support.turn == 0.0 { "displacement" } else { "turn" };
+                return Err(Invalid::new(
+                    format!("{key}.{name}"),
+                    "expected analysis = \"static\" beside it: supports do not move in time",
+                ));
             }
         }
         for (i, load) in self.loads.iter().enumerate() {

@@ -98,6 +98,8 @@ const KEYS: &[(&str, Limit)] = &[
     ("material.density", limits::DENSITY),
     ("material.thickness", limits::THICKNESS),
     ("support.at", limits::COORDINATE),
+    ("support.displacement", limits::COORDINATE),
+    ("support.turn", limits::TURN),
     ("load.at", limits::COORDINATE),
     ("load.force", limits::FORCE),
     ("load.acceleration", limits::ACCELERATION),
