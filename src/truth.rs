@@ -300,7 +300,7 @@ impl BeamTruth {
         if scene.analysis != Analysis::Static || scene.supports.iter().any(Support::moves) {
             return None;
         }
-        let beam = scene.beam.as_ref()?;
+        let beam = scene.beam.as_ref().filter(|beam| beam.rise == 0.0)?;
         let m = &scene.material;
         let young = match m.plane {
             Plane::Stress => m.young,

@@ -8,10 +8,16 @@ use serde_json::{Map, Value, json};
 use super::commands::Spent;
 use crate::scene::{Place, Scene, Support};
 use crate::simulation::{MotionResult, ProbeResult, Solution, SupportReaction};
-use crate::study::{ProbeTruth, Reference};
+use crate::study::{Jump, ProbeTruth, Reference};
 
 /// A result.
-pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>, spent: &Spent) -> String {
+pub(super) fn solution(
+    scene: &Scene,
+    solution: &Solution,
+    jump: Option<Option<Jump>>,
+    truth: Option<&Reference>,
+    spent: &Spent,
+) -> String {
     let truths = truth.map_or(&[][..], Reference::probes);
     let probes: Vec<Value> = solution.probes.iter().enumerate().map(|(i, p)| probe(p, truths.get(i))).collect();
     let supports: Vec<Value> = scene.supports.iter().zip(&solution.supports).map(|(s, r)| support(s, r)).collect();
@@ -29,6 +35,8 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         "status": solution.status.id(),
         "reason": solution.status.failure(),
         "stable": certificate.stable,
+        "jumped": jump.map(|jump| jump.is_some()),
+        "jumped_at": jump.flatten().map(|jump| number(jump.factor)),
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
         "residual": number(solution.residual),

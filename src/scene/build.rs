@@ -43,8 +43,17 @@ impl Scene {
         let along = (length / height).round().clamp(4.0, 100.0);
         let along = if along.is_finite() { along as u32 } else { 4 };
         let beam =
-            Beam { length, height, cells: [along, 1], element: ElementKind::T6, diagonals: Diagonals::default() };
+            Beam { length, height, rise: 0.0, cells: [along, 1], element: ElementKind::T6, diagonals: Diagonals::default() };
         Self { beam: Some(beam), ..Self::named("Beam") }
+    }
+
+    /// Bent to an arch whose axis rises by so much, m, in its middle.
+    #[must_use]
+    pub fn with_rise(mut self, rise: f64) -> Self {
+        if let Some(beam) = &mut self.beam {
+            beam.rise = rise;
+        }
+        self
     }
 
     /// With so many cells along and across the beam.

@@ -49,6 +49,8 @@ impl Limit {
 pub const LENGTH: Limit = Limit::new("m", 1e-6, 1e6);
 /// Beam height.
 pub const HEIGHT: Limit = Limit::new("m", 1e-6, 1e6);
+/// Rise of an arch.
+pub const RISE: Limit = Limit::new("m", -1e6, 1e6);
 /// Cells along one direction.
 pub const CELLS: Limit = Limit::new("", 1.0, 100_000.0);
 /// Cells in all: what fits in memory with its factor (about a million unknowns).

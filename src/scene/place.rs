@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::dynamics::Pulse;
 use super::error::Invalid;
-use super::limits;
+use super::{is_zero, limits};
 use crate::words::number;
 
 /// A whole edge or one point.
@@ -269,11 +269,6 @@ struct SupportTable {
     displacement: [f64; 2],
     #[serde(skip_serializing_if = "is_zero", default)]
     turn: f64,
-}
-
-/// Whether nothing is said by writing it.
-fn is_zero<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }
 
 impl TryFrom<SupportTable> for Support {

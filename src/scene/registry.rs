@@ -30,6 +30,8 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
     "column",
     "cook",
     "bracket",
+    "snap",
+    "jump",
     "jelly",
     "swing",
     "flick",

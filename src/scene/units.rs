@@ -92,6 +92,7 @@ const PREFIXES: &[(&str, i32)] = &[
 const KEYS: &[(&str, Limit)] = &[
     ("beam.length", limits::LENGTH),
     ("beam.height", limits::HEIGHT),
+    ("beam.rise", limits::RISE),
     ("mesh.scale", limits::MESH_SCALE),
     ("material.young", limits::YOUNG),
     ("material.poisson", limits::POISSON_STRESS),

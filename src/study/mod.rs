@@ -4,8 +4,10 @@ mod chart;
 pub mod extremes;
 mod heat_map;
 mod load_curve;
+mod load_path;
 pub mod motion;
 mod pareto;
+pub mod path_chart;
 pub mod plot;
 mod reference;
 mod report;
@@ -15,6 +17,7 @@ mod tune;
 
 pub use heat_map::{heat_map, motion_heat_map};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
+pub use load_path::{Jump, LoadPath, PathState, support_name};
 pub use motion::MotionStudy;
 pub use reference::{ProbeTruth, Reference, TruthSource};
 pub use timing::times_from_rest;
