@@ -7,9 +7,11 @@ use std::f64::consts::{PI, TAU};
 
 use common::solved;
 use nalgebra::{Matrix2, Vector2};
+use warpbeam::assembly::Forces;
 use warpbeam::element::ELEMENTS;
-use warpbeam::method::METHODS;
+use warpbeam::method::{METHODS, Workspace, is_stable};
 use warpbeam::scene::{Axis, Support};
+use warpbeam::study::LoadPath;
 use warpbeam::{Field, Material, Mesh, MethodKind, Scene, Simulation, SimulationError, Status};
 
 const BOTH: &[Axis] = &[Axis::X, Axis::Y];
@@ -294,6 +296,93 @@ fn other_starts_and_stiffnesses_end_in_the_same_place() {
     let mut values = Vec::new();
     simulation.field(Field::VonMises, &mut values);
     assert!(values.iter().all(Option::is_some));
+}
+
+/// The limit load of a clamped shallow arch under a force in its middle, N, and the way of its middle there, m: beam theory
+/// of small slopes, EI w⁗ + N (w″ − 1/R) = −P δ with the thrust N = EI k² from the shortening of the axis. For every k the
+/// deflection is linear in P, and the shortening a quadratic equation for it.
+fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) -> [f64; 2] {
+    use nalgebra::{Matrix4, Vector4};
+    const POINTS: usize = 400;
+    let (half, curvature) = (0.5 * length, 8.0 * rise / (length * length));
+    let mut best = [0.0, 0.0];
+    for i in 1..2000 {
+        let k = f64::from(i) * 8.9 / (2000.0 * length);
+        let (s, c) = (k * half).sin_cos();
+        // w = a + b x + c cos kx + d sin kx + x²/2R; w = w′ = 0 at the clamp, w′ = 0 and EI w‴ = P/2 in the middle.
+        #[rustfmt::skip]
+        let conditions = Matrix4::new(
+            1.0, 0.0, 1.0, 0.0,
+            0.0, 1.0, 0.0, k,
+            0.0, 1.0, -k * s, k * c,
+            0.0, 0.0, k.powi(3) * s, -k.powi(3) * c,
+        );
+        let Some(inverse) = conditions.try_inverse() else { continue };
+        let alone = inverse * Vector4::new(0.0, 0.0, -curvature * half, 0.0);
+        let unit = inverse * Vector4::new(0.0, 0.0, 0.0, 0.5 / bending);
+        let slope = |v: &Vector4<f64>, x: f64| v[1] - v[2] * k * (k * x).sin() + v[3] * k * (k * x).cos();
+        let mut q = [bending * k * k * length / stiffness, 0.0, 0.0];
+        for j in 0..POINTS {
+            let x = half * (j as f64 + 0.5) / POINTS as f64;
+            let rest = 4.0 * rise / length * (1.0 - 2.0 * x / length);
+            let (a, b) = (slope(&alone, x) + curvature * x, slope(&unit, x));
+            let weight = length / POINTS as f64;
+            q[0] += weight * (rest * a + 0.5 * a * a);
+            q[1] += weight * (rest * b + a * b);
+            q[2] += weight * 0.5 * b * b;
+        }
+        let root = q[1] * q[1] - 4.0 * q[2] * q[0];
+        for sign in [1.0, -1.0] {
+            let force = (-q[1] + sign * root.sqrt()) / (2.0 * q[2]);
+            let middle = |v: &Vector4<f64>| v[0] + v[1] * half + v[2] * c + v[3] * s;
+            let way = -(middle(&alone) + 0.5 * curvature * half * half + force * middle(&unit));
+            // Before the crown is as low as its ends.
+            if force > best[0] && (0.0..rise).contains(&way) {
+                best = [force, way];
+            }
+        }
+    }
+    best
+}
+
+/// The arch of `snap` passes the limit load of beam theory; where it is unstable under force control its exact tangent
+/// with the crown free is indefinite, and held at the crown it is stable everywhere.
+#[test]
+fn the_arch_passes_its_limit_load() {
+    let scene = common::scene("snap");
+    let path = LoadPath::of(&scene).unwrap();
+    assert!(path.complete && path.jump.is_none());
+    let pairs: Vec<[f64; 2]> = path.states.iter().map(|s| path.driven_pair(&scene, s).unwrap()).collect();
+    // A parabola through the highest three.
+    let top = pairs[..30].iter().enumerate().max_by(|a, b| a.1[1].total_cmp(&b.1[1])).unwrap().0;
+    let [a, b, c] = [0, 1, 2].map(|i| pairs[top - 1 + i][1]);
+    let limit = b + (c - a).powi(2) / (8.0 * (2.0 * b - a - c));
+    let (e, h, t) = (210e9, 0.001_f64, 0.02);
+    let [expected, way] = shallow_arch_limit(0.2, 0.008, [e * t * h.powi(3) / 12.0, e * t * h]);
+    println!(
+        "limit load {limit} N at {} mm, of shallow beam theory {expected} N at {} mm",
+        1e3 * pairs[top][0],
+        1e3 * way
+    );
+    assert!((limit - expected).abs() < 0.005 * expected, "{limit} {expected}");
+    assert!((pairs[top][0] - way).abs() < 3e-4, "{} {way}", pairs[top][0]);
+    // The crown free along its way, and nothing else changed.
+    let mut free = scene.clone();
+    free.supports[2] = Support::new(free.supports[2].place.clone(), &[Axis::X]);
+    let free = Simulation::new(&free).unwrap();
+    let (mut unstable, mut agree) = (0, 0);
+    for state in &path.states {
+        let mut part = scene.clone();
+        part.scale_loads(state.factor);
+        let held = solved(&part);
+        let mut forces = Forces::new(held.displacement().len());
+        let mut workspace = Workspace::new(free.system()).unwrap();
+        let stable = is_stable(free.problem(), held.state(), 1.0, &mut forces, &mut workspace);
+        agree += u32::from(state.stable == Some(stable));
+        unstable += u32::from(!stable);
+    }
+    assert_eq!(agree as usize, path.states.len());
+    assert!((20..50).contains(&unstable), "{unstable}");
 }
 
 #[test]

@@ -14,6 +14,7 @@ use super::motion_plot;
 use super::overlay::{self, Overlay};
 use super::panel::{self, PanelInput, PanelState, status_words};
 use super::playback::Playback;
+use super::plot::Curve;
 use super::pointer::{self, Look, Reach};
 use super::recorder::Recorder;
 use super::{help, keys, plot};
@@ -23,7 +24,7 @@ use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{LoadCurve, Reference, Study};
+use crate::study::{Jump, LoadPath, Reference, Study};
 use crate::timings::Timings;
 
 /// Width of the panel, points.
@@ -66,7 +67,9 @@ pub struct Lab {
     shape: Shape,
     /// What errors are measured against; looked for when the body has come to rest.
     truth: Finder<Reference>,
-    curve: Finder<LoadCurve>,
+    curve: Finder<Curve>,
+    /// Where the body jumps on its way from rest.
+    jump: Finder<Jump>,
     budget: Budget,
     /// The lowest natural frequency, Hz.
     frequency: Finder<f64>,
@@ -126,7 +129,8 @@ impl Lab {
             drawing,
             shape: Shape::default(),
             truth: Finder::new(|scene| Reference::of(scene).ok()),
-            curve: Finder::new(LoadCurve::new),
+            curve: Finder::new(Curve::of),
+            jump: Finder::new(LoadPath::jump_of),
             budget: Budget::default(),
             frequency: Finder::new(natural_frequency),
             playback: Playback::default(),
@@ -277,6 +281,7 @@ impl Lab {
         }
         self.simulation.certify();
         self.truth.settle(&self.scene);
+        self.jump.settle(&self.scene);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.settle(&self.scene);
         }
@@ -307,7 +312,7 @@ impl Lab {
             Some(Drawer::Motion) => self.frequency.is_open(),
             _ => false,
         };
-        open || self.truth.is_open() && !self.moves()
+        open || (self.truth.is_open() || self.jump.is_open()) && !self.moves()
     }
 
     /// What is drawn of the body, as of the last [`Self::ui`].
@@ -366,6 +371,7 @@ impl Lab {
         if self.view.panel {
             let input = PanelInput {
                 truth: self.truth.get(),
+                jump: self.jump.get(),
                 scene: &self.scene,
                 scene_name: self.source.name.to_str().unwrap_or_default(),
                 simulation: &self.simulation,
@@ -405,6 +411,7 @@ impl Lab {
         }
         self.simulation.certify();
         self.truth.ask(&self.scene, ctx);
+        self.jump.ask(&self.scene, ctx);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.ask(&self.scene, ctx);
         }
@@ -446,6 +453,8 @@ impl Lab {
         }
         let painter = ui.painter_at(rect);
         let (words, bad) = status_words(&self.simulation, true);
+        let moves = self.simulation.problem().supports().move_the_body();
+        let reactions = if moves { self.simulation.support_reactions() } else { Vec::new() };
         let overlay = Overlay {
             scene: &self.scene,
             system: self.simulation.system(),
@@ -457,6 +466,7 @@ impl Lab {
             time: self.simulation.state().time(),
             hand: self.simulation.hand(),
             playback: &self.playback,
+            reactions: &reactions,
             color_range: self.shape.range,
             warning: bad.then_some(&words),
         };
@@ -577,6 +587,7 @@ impl Lab {
             self.truth.forget();
         }
         self.curve.forget();
+        self.jump.forget();
         self.scene = scene;
         self.solve_linear();
         Ok(())

@@ -1,11 +1,29 @@
-//! The load–deflection plot: linear theory, the exact beam, every method's point, and where linear theory leaves.
+//! The load–deflection plot. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory
+//! leaves. Of any other scene: its load path, what is unstable dashed.
 
 use egui::{Color32, Ui};
 use egui_plot::{Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
 
-use crate::scene::MethodKind;
+use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
-use crate::study::LoadCurve;
+use crate::study::path_chart::{Ordinate, Piece, drawn};
+use crate::study::{LoadCurve, LoadPath};
+
+/// What is known of a scene's load and deflection.
+#[derive(Debug)]
+pub(super) enum Curve {
+    /// Of a cantilever.
+    Beam(LoadCurve),
+    /// Of any scene at rest; of the scene with it.
+    Path(Box<(LoadPath, Scene)>),
+}
+
+impl Curve {
+    pub(super) fn of(scene: &Scene) -> Option<Self> {
+        let path = || Some(Self::Path(Box::new((LoadPath::of(scene)?, scene.clone()))));
+        LoadCurve::new(scene).map(Self::Beam).or_else(path)
+    }
+}
 
 /// The colour of a method.
 pub(super) fn method_color(method: MethodKind, dark: bool) -> Color32 {
@@ -14,61 +32,91 @@ pub(super) fn method_color(method: MethodKind, dark: bool) -> Color32 {
 }
 
 /// Shows the plot, or says why there is none: not yet, or not at all.
-pub(super) fn show(ui: &mut Ui, curve: Option<&LoadCurve>, looked_for: bool) {
-    let Some(curve) = curve else {
-        ui.centered_and_justified(|ui| {
-            ui.weak(if looked_for {
-                "No load curve: it needs a beam clamped left, loaded on its right edge or by its weight."
-            } else {
-                "Looking for the load curve."
+pub(super) fn show(ui: &mut Ui, curve: Option<&Curve>, looked_for: bool) {
+    match curve {
+        Some(Curve::Beam(curve)) => beam(ui, curve),
+        Some(Curve::Path(of)) => path(ui, &of.0, &of.1),
+        None => {
+            ui.centered_and_justified(|ui| {
+                ui.weak(if looked_for {
+                    "No load curve: linear theory knows one straight line only."
+                } else {
+                    "The load curve comes when the body has come to rest."
+                });
             });
-        });
-        return;
-    };
+        }
+    }
+}
+
+fn fixed(plot: Plot<'_>) -> Plot<'_> {
+    plot.allow_drag(false).allow_zoom(false).allow_scroll(false).allow_boxed_zoom(false)
+}
+
+fn path(ui: &mut Ui, path: &LoadPath, scene: &Scene) {
+    let drawn = drawn(path, scene, &Ordinate::Usual);
+    let (dark, text) = (ui.visuals().dark_mode, ui.visuals().text_color());
+    let (stable, unstable) = (method_color(MethodKind::Newton, dark), method_color(MethodKind::Warped, dark));
+    // Where the curve is not: a load's begins low, that of a support that moves falls again.
+    let corner = if path.driven.is_some() { Corner::RightTop } else { Corner::LeftTop };
+    let plot = Plot::new("load path")
+        .legend(Legend::default().position(corner).follow_insertion_order(true))
+        .x_axis_label(drawn.x_label.clone())
+        .y_axis_label(drawn.y_label.clone());
+    fixed(plot).show(ui, |plot| {
+        for (points, piece) in drawn.pieces(path) {
+            let (name, color, style) = match piece {
+                Piece::Stable => ("stable", stable, LineStyle::Solid),
+                Piece::Unstable => ("unstable under force control", unstable, LineStyle::dashed_loose()),
+                Piece::Jump => ("it jumps", unstable, LineStyle::dotted_dense()),
+            };
+            plot.line(Line::new(name, PlotPoints::from(points)).color(color).width(2.0).style(style));
+        }
+        let at: Vec<[f64; 2]> = drawn.points.last().map(|p| p.0).into_iter().collect();
+        plot.points(Points::new("the scene", at).color(text).radius(4.0));
+    });
+}
+
+fn beam(ui: &mut Ui, curve: &LoadCurve) {
     let text = ui.visuals().text_color();
     let dark = ui.visuals().dark_mode;
     let linear = method_color(MethodKind::Linear, dark);
     let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {
         curve.samples.iter().map(|s| [100.0 * s.factor, value(s)]).collect()
     };
-    Plot::new("load curve")
+    let plot = Plot::new("load curve")
         .legend(Legend::default().position(Corner::RightBottom).follow_insertion_order(true))
         .x_axis_label("load, % of the scene's")
-        .y_axis_label("tip displacement, m")
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .show(ui, |plot| {
-            let exact = samples(|s| s.truth.norm());
-            let top = exact.iter().map(|p| p[1]).fold(0.0, f64::max);
-            // Linear theory leaves the picture instead of stretching it.
-            let straight: Vec<[f64; 2]> = samples(|s| s.linear.norm())
-                .into_iter()
-                .take_while(|p| p[1] <= 1.35 * top.max(f64::MIN_POSITIVE))
-                .collect();
-            plot.line(Line::new("linear theory", PlotPoints::from(straight)).color(linear).width(1.5));
-            plot.line(Line::new("exact beam", PlotPoints::from(exact)).color(text).width(2.0));
-            for departure in &curve.departures {
-                let name =
-                    format!("linear off by {} %: {:.1}°", departure.percent, departure.at.rotation.to_degrees().abs());
-                plot.vline(
-                    VLine::new(name, 100.0 * departure.at.factor)
-                        .color(linear.gamma_multiply(0.7))
-                        .style(LineStyle::dashed_dense()),
-                );
-            }
-            for point in &curve.methods {
-                let off = point.tip.norm() > 1.35 * top;
-                let word = match point.status {
-                    Status::Converged if off => ", off the picture",
-                    Status::Converged => "",
-                    _ => ", not converged",
-                };
-                let at = if off { Vec::new() } else { vec![[100.0, point.tip.norm()]] };
-                let shape = if point.status == Status::Converged { MarkerShape::Circle } else { MarkerShape::Cross };
-                let points = Points::new(format!("{}{word}", point.method.id()), at);
-                plot.points(points.color(method_color(point.method, dark)).radius(5.0).shape(shape));
-            }
-        });
+        .y_axis_label("tip displacement, m");
+    fixed(plot).show(ui, |plot| {
+        let exact = samples(|s| s.truth.norm());
+        let top = exact.iter().map(|p| p[1]).fold(0.0, f64::max);
+        // Linear theory leaves the picture instead of stretching it.
+        let straight: Vec<[f64; 2]> = samples(|s| s.linear.norm())
+            .into_iter()
+            .take_while(|p| p[1] <= 1.35 * top.max(f64::MIN_POSITIVE))
+            .collect();
+        plot.line(Line::new("linear theory", PlotPoints::from(straight)).color(linear).width(1.5));
+        plot.line(Line::new("exact beam", PlotPoints::from(exact)).color(text).width(2.0));
+        for departure in &curve.departures {
+            let name =
+                format!("linear off by {} %: {:.1}°", departure.percent, departure.at.rotation.to_degrees().abs());
+            plot.vline(
+                VLine::new(name, 100.0 * departure.at.factor)
+                    .color(linear.gamma_multiply(0.7))
+                    .style(LineStyle::dashed_dense()),
+            );
+        }
+        for point in &curve.methods {
+            let off = point.tip.norm() > 1.35 * top;
+            let word = match point.status {
+                Status::Converged if off => ", off the picture",
+                Status::Converged => "",
+                _ => ", not converged",
+            };
+            let at = if off { Vec::new() } else { vec![[100.0, point.tip.norm()]] };
+            let shape = if point.status == Status::Converged { MarkerShape::Circle } else { MarkerShape::Cross };
+            let points = Points::new(format!("{}{word}", point.method.id()), at);
+            plot.points(points.color(method_color(point.method, dark)).radius(5.0).shape(shape));
+        }
+    });
 }

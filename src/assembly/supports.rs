@@ -126,17 +126,17 @@ impl Supports {
             let mut new = NodalSupport { place, nodes: Vec::new(), weights, displacement, turn, middle };
             for node in nodes {
                 let mut own = axes(support);
-                for axis in 0..2 {
-                    if let (true, Some(&first)) = (own[axis], owner.get(&(node, axis))) {
-                        own[axis] = false;
-                        agree(&all[first], &new, mesh.node(node), axis, system.size()).map_err(|there| {
-                            let message =
-                                format!("expected what support.{first} does to the node at {there}, which both fix");
-                            Invalid::new(&key, message)
-                        })?;
-                    } else if own[axis] {
+                for (axis, own) in own.iter_mut().enumerate().filter(|(_, own)| **own) {
+                    let Some(&first) = owner.get(&(node, axis)) else {
                         owner.insert((node, axis), i);
-                    }
+                        continue;
+                    };
+                    *own = false;
+                    agree(&all[first], &new, mesh.node(node), axis, system.size()).map_err(|there| {
+                        let message =
+                            format!("expected what support.{first} does to the node at {there}, which both fix");
+                        Invalid::new(&key, message)
+                    })?;
                 }
                 new.nodes.push((node, own));
             }

@@ -12,11 +12,11 @@ use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::picture::draw_svg;
 use crate::scene::{self, Analysis, Scene};
 use crate::simulation::{Simulation, Solution, Status};
-use crate::study::{
-    Demand, Extent, LoadCurve, LoadPath, MotionStudy, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map,
-    motion_heat_map, path_chart, plot,
-};
 use crate::study::path_chart::Ordinate;
+use crate::study::{
+    Demand, Extent, LoadCurve, LoadPath, MotionStudy, Progress, Reference, Study, StudyError, Tuning, extremes,
+    heat_map, motion_heat_map, path_chart, plot,
+};
 use crate::timings::Timings;
 use crate::words::count;
 

@@ -47,7 +47,9 @@ enum CliError {
     Simulation { scene: String, error: SimulationError },
     #[error("{scene}: {error}")]
     Study { scene: String, error: StudyError },
-    #[error("{0}: expected a scene at rest with a method other than linear: a load path is one of equilibria under finite rotations")]
+    #[error(
+        "{0}: expected a scene at rest with a method other than linear: a load path is one of equilibria under finite rotations"
+    )]
     NoPath(String),
     #[error("--of {name}: expected one of {}", known.join(", "))]
     NoOrdinate { name: String, known: Vec<String> },

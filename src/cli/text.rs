@@ -341,7 +341,10 @@ pub(super) fn path_table(scene: &Scene, path: &LoadPath) -> String {
     }
     for i in 0..scene.supports.len() {
         let name = support_name(scene, i);
-        let _ = write!(text, ",{name}_displacement_x,{name}_displacement_y,{name}_turn,{name}_force_x,{name}_force_y,{name}_moment");
+        let _ = write!(
+            text,
+            ",{name}_displacement_x,{name}_displacement_y,{name}_turn,{name}_force_x,{name}_force_y,{name}_moment"
+        );
     }
     text.push_str(",stable_under_force\n");
     for state in &path.states {

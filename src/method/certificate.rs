@@ -76,6 +76,8 @@ pub fn support_stiffness(
         system.follow(&mut trial, Kinematics::Corotated);
         problem.linearize(&trial, forces, None);
         problem.balance(&trial, Kinematics::Corotated, load_factor, forces);
+        // Along the free unknowns it is in balance but for the error of `free`, which then counts by its square only.
+        pattern.add_free(&free, 1.0, &mut way);
         let force: f64 = way.iter().zip(forces.residual()).map(|(way, residual)| -way.dot(residual)).sum();
         stiffness += force / (2.0 * h);
     }

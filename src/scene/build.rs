@@ -42,8 +42,14 @@ impl Scene {
         // Cells about as long as high.
         let along = (length / height).round().clamp(4.0, 100.0);
         let along = if along.is_finite() { along as u32 } else { 4 };
-        let beam =
-            Beam { length, height, rise: 0.0, cells: [along, 1], element: ElementKind::T6, diagonals: Diagonals::default() };
+        let beam = Beam {
+            length,
+            height,
+            rise: 0.0,
+            cells: [along, 1],
+            element: ElementKind::T6,
+            diagonals: Diagonals::default(),
+        };
         Self { beam: Some(beam), ..Self::named("Beam") }
     }
 

@@ -42,7 +42,11 @@ impl std::fmt::Display for Jump {
         let percent = engineering(100.0 * self.factor, "%");
         match self.distance {
             0.0 => write!(f, "beyond {percent} of the load no stable equilibrium was found"),
-            distance => write!(f, "it jumped: beyond {percent} of the load the next equilibrium is {} away", engineering(distance, "m")),
+            distance => write!(
+                f,
+                "it jumped: beyond {percent} of the load the next equilibrium is {} away",
+                engineering(distance, "m")
+            ),
         }
     }
 }
@@ -76,8 +80,12 @@ const FARTHER: f64 = 4.0;
 /// What is no jump however small the step was: part of the largest displacement. A column that buckles leaves the
 /// straight way fast, but without a jump.
 const NO_JUMP: f64 = 0.05;
+/// Iterations that take a body to the next equilibrium of its path.
+const FEW_ITERATIONS: u32 = 20;
+/// Iterations that take a body which jumps to where it ends.
+const ENOUGH_ITERATIONS: u32 = 500;
 /// Solves after which a path is given up.
-const MOST_SOLVES: u32 = 600;
+const MOST_SOLVES: u32 = 300;
 /// Unknowns beyond which a path is too dear to be a by-product of a solve.
 const MOST_UNKNOWNS: usize = 6000;
 
@@ -95,7 +103,9 @@ impl LoadPath {
         /// Part of the largest displacement that is no other equilibrium.
         const SAME: f64 = 0.02;
         let follower = Follower::new(scene)?;
-        if follower.simulation.system().dofs() > MOST_UNKNOWNS || result.len() != follower.simulation.displacement().len() {
+        if follower.simulation.system().dofs() > MOST_UNKNOWNS
+            || result.len() != follower.simulation.displacement().len()
+        {
             return None;
         }
         let path = follower.follow(FOLLOWED)?;
@@ -106,6 +116,16 @@ impl LoadPath {
         let elsewhere = distance > SAME * largest(result).max(largest(&path.end));
         // Another equilibrium than that of the path was reached by going through a jump of one's own.
         path.complete.then(|| elsewhere.then_some(Jump { factor: 1.0, distance }))
+    }
+
+    /// Where a scene's body jumps on its way from rest; `None` where it does not, or that is not known.
+    #[must_use]
+    pub fn jump_of(scene: &Scene) -> Option<Jump> {
+        let follower = Follower::new(scene)?;
+        if follower.simulation.system().dofs() > MOST_UNKNOWNS {
+            return None;
+        }
+        follower.follow(FOLLOWED)?.jump
     }
 
     /// The way of the support that moves at a state: its displacement, m, or its turn, rad, where it only turns; and the
@@ -147,6 +167,7 @@ impl Follower {
         linear.solve();
         let rate = largest(linear.displacement());
         scene.solver.method = MethodKind::Newton;
+        scene.solver.max_iterations = scene.solver.max_iterations.max(ENOUGH_ITERATIONS);
         let system = linear.system().clone();
         let whole = Problem::new(&scene, system.clone()).ok()?;
         let workspace = Workspace::new(&system).ok()?;
@@ -186,10 +207,9 @@ impl Follower {
         while self.reached < goal {
             // The last part of the way must not be left to rounding.
             let to = if goal - self.reached <= step * (1.0 + 1e-9) { goal } else { self.reached + step };
-            let (converged, in_one) = self.solve(to);
+            let converged = self.solve_near(to);
             let moved = self.distance();
-            let near = moved <= FARTHER * self.rate * (to - self.reached);
-            if converged && in_one && near {
+            if converged && moved <= FARTHER * self.rate * (to - self.reached) {
                 self.accept(to, moved);
                 step *= 2.0;
                 continue;
@@ -202,7 +222,9 @@ impl Follower {
                 self.go_back();
                 continue;
             }
-            // No near equilibrium: wherever the solve went is where the body goes.
+            // No near equilibrium: wherever the solve goes is where the body goes.
+            let converged = *self.simulation.solve() == Status::Converged;
+            let moved = self.distance();
             if !converged {
                 path.jump.get_or_insert(Jump { factor: self.reached, distance: 0.0 });
                 return false;
@@ -219,12 +241,18 @@ impl Follower {
         true
     }
 
-    /// Solves at a load factor from where the body is; says whether that converged, and in one load step.
-    fn solve(&mut self, factor: f64) -> (bool, bool) {
+    /// Solves at a load factor from where the body is, as long as that takes few iterations of one load step; says whether
+    /// it did.
+    fn solve_near(&mut self, factor: f64) -> bool {
         self.solves += 1;
-        let converged = self.simulation.change_scene(&part(&self.scene, factor)).is_ok()
-            && *self.simulation.solve() == Status::Converged;
-        (converged, self.simulation.load_stepping().1 == 1)
+        if self.simulation.change_scene(&part(&self.scene, factor)).is_err() {
+            return false;
+        }
+        let gets_on = |s: &Simulation| *s.status() == Status::Running && s.iterations() < FEW_ITERATIONS;
+        while gets_on(&self.simulation) && self.simulation.load_stepping().1 == 1 {
+            self.simulation.step();
+        }
+        *self.simulation.status() == Status::Converged && self.simulation.load_stepping().1 == 1
     }
 
     /// How far some node is from the last accepted state, m.

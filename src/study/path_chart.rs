@@ -38,7 +38,7 @@ pub fn drawn(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Drawn {
     let (name, unit) = match path.driven {
         Some(i) if turns => (format!("turn of {}", support_name(scene, i)), "°"),
         Some(i) => (format!("way of {}", support_name(scene, i)), "m"),
-        None => ("load, of the scene's".to_owned(), "%"),
+        None => ("part of the load".to_owned(), "%"),
     };
     if turns {
         x.iter_mut().for_each(|angle| *angle = angle.to_degrees());
@@ -74,10 +74,41 @@ fn scaled(values: &mut [f64], name: &str, unit: &str) -> String {
     format!("{name}, {symbol}{unit}")
 }
 
+/// What a line of a path is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// Equilibria that are stable under force control too.
+    Stable,
+    /// Equilibria that are stable only as supports hold them.
+    Unstable,
+    /// No equilibria: from where the body jumps to where it comes to rest.
+    Jump,
+}
+
 impl Drawn {
-    /// Lines of neighbouring points that are of one kind, each with whether it is stable; they share their ends.
+    /// The lines of a path.
     #[must_use]
-    pub fn branches(&self) -> Vec<(Vec<[f64; 2]>, bool)> {
+    pub fn pieces(&self, path: &LoadPath) -> Vec<(Vec<[f64; 2]>, Piece)> {
+        let kind = |stable: bool| if stable { Piece::Stable } else { Piece::Unstable };
+        let jump = path.jump.filter(|jump| jump.distance > 0.0);
+        let cut = jump.and_then(|jump| path.states.iter().position(|s| s.factor > jump.factor));
+        let Some(cut) = cut.filter(|&cut| cut > 0) else {
+            return self.branches().into_iter().map(|(points, stable)| (points, kind(stable))).collect();
+        };
+        let (before, after) = self.points.split_at(cut);
+        let mut pieces = Vec::new();
+        for part in [before, after] {
+            let part = Self { points: part.to_vec(), ..self.clone() };
+            pieces.extend(part.branches().into_iter().map(|(points, stable)| (points, kind(stable))));
+        }
+        if let (Some(from), Some(to)) = (before.last(), after.first()) {
+            pieces.push((vec![from.0, to.0], Piece::Jump));
+        }
+        pieces
+    }
+
+    /// Lines of neighbouring points that are of one kind, each with whether it is stable; they share their ends.
+    fn branches(&self) -> Vec<(Vec<[f64; 2]>, bool)> {
         let mut branches: Vec<(Vec<[f64; 2]>, bool)> = Vec::new();
         for pair in self.points.windows(2) {
             // A piece is stable where both of its ends are.
@@ -129,10 +160,8 @@ impl Axis {
 #[must_use]
 pub fn svg(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> String {
     let drawn = drawn(path, scene, ordinate);
-    let (x, y) = (
-        Axis::around(drawn.points.iter().map(|(p, _)| p[0])),
-        Axis::around(drawn.points.iter().map(|(p, _)| p[1])),
-    );
+    let (x, y) =
+        (Axis::around(drawn.points.iter().map(|(p, _)| p[0])), Axis::around(drawn.points.iter().map(|(p, _)| p[1])));
     let (across, up) = ([LEFT, SIZE[0] - RIGHT], [SIZE[1] - BOTTOM, TOP]);
     let at = |p: [f64; 2]| [x.place(p[0], across), y.place(p[1], up)];
     let mut svg = format!(
@@ -173,8 +202,8 @@ pub fn svg(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> String {
         0.5 * (up[0] + up[1]),
         escape(&drawn.y_label)
     );
-    let jump = path.jump.filter(|j| j.distance > 0.0).map(|j| j.factor);
-    for (points, stable) in pieces(&drawn, path, jump) {
+    let jumps = path.jump.is_some_and(|jump| jump.distance > 0.0);
+    for (points, stable) in drawn.pieces(path) {
         let line: Vec<String> = points.iter().map(|&p| at(p)).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         let (color, dashes) = match stable {
             Piece::Stable => ("#0064b4", ""),
@@ -189,7 +218,7 @@ pub fn svg(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> String {
     }
     let mut row = 0.0;
     let mut key = |words: &str, color: &str, dashes: &str| {
-        let (right, y) = (across[1] - 250.0 + 0.0 * row, 24.0 + row);
+        let (right, y) = (across[1] - 230.0, 24.0 + row);
         let _ = writeln!(
             svg,
             "<line x1=\"{right}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{color}\" stroke-width=\"2.2\"{dashes}/><text x=\"{}\" y=\"{}\">{words}</text>",
@@ -202,36 +231,11 @@ pub fn svg(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> String {
     if drawn.points.iter().any(|(_, stable)| !stable) {
         key("unstable under force control", "#be141e", " stroke-dasharray=\"9 5\"");
     }
-    if jump.is_some() {
+    if jumps {
         key("it jumps", "#be141e", " stroke-dasharray=\"2 5\"");
     }
     svg.push_str("</svg>\n");
     svg
-}
-
-enum Piece {
-    Stable,
-    Unstable,
-    Jump,
-}
-
-/// The branches, cut where the body jumps.
-fn pieces(drawn: &Drawn, path: &LoadPath, jump: Option<f64>) -> Vec<(Vec<[f64; 2]>, Piece)> {
-    let kind = |stable: bool| if stable { Piece::Stable } else { Piece::Unstable };
-    let cut = jump.and_then(|factor| path.states.iter().position(|s| s.factor > factor));
-    let Some(cut) = cut.filter(|&cut| cut > 0) else {
-        return drawn.branches().into_iter().map(|(points, stable)| (points, kind(stable))).collect();
-    };
-    let (before, after) = drawn.points.split_at(cut);
-    let mut pieces = Vec::new();
-    for part in [before, after] {
-        let part = Drawn { points: part.to_vec(), ..drawn.clone() };
-        pieces.extend(part.branches().into_iter().map(|(points, stable)| (points, kind(stable))));
-    }
-    if let (Some(from), Some(to)) = (before.last(), after.first()) {
-        pieces.push((vec![from.0, to.0], Piece::Jump));
-    }
-    pieces
 }
 
 /// A number at an axis, without the rounding of its steps.

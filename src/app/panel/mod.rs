@@ -7,13 +7,14 @@ use super::field::{Messages, NumberField};
 use super::playback::Playback;
 use crate::scene::{Analysis, Scene, registry};
 use crate::simulation::Simulation;
-use crate::study::Reference;
+use crate::study::{Jump, Reference};
 use crate::timings::Timings;
 
 mod body;
 mod loads;
 mod motion;
 mod result;
+mod supports;
 mod view;
 
 pub(super) use result::status_words;
@@ -32,6 +33,8 @@ pub(super) struct PanelInput<'a> {
     pub timings: &'a Timings,
     /// What errors are measured against, once it is known.
     pub truth: Option<&'a Reference>,
+    /// Where the body jumps on its way from rest, once it is known.
+    pub jump: Option<&'a Jump>,
     pub adapter: &'a str,
 }
 
@@ -75,6 +78,10 @@ pub(super) fn show(
             section(ui, "Load");
             loads::force_and_gravity(ui, input, state, actions);
             loads::moment(ui, input, state, actions);
+            if let Some(support) = supports::chosen(ui, input) {
+                section(ui, "Moved support");
+                supports::show(ui, input, support, state, actions);
+            }
             section(ui, "Result");
             result::show(ui, input);
             section(ui, "Material");

@@ -51,7 +51,10 @@ fn sentence(words: &str) -> String {
 
 pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>) {
     let simulation = input.simulation;
-    let (words, bad) = status_words(simulation, input.running);
+    let (mut words, bad) = status_words(simulation, input.running);
+    if let (Some(jump), Status::Converged) = (input.jump, simulation.status()) {
+        words += &format!("; {jump}.");
+    }
     let color = if bad { ui.visuals().error_fg_color } else { ui.visuals().strong_text_color() };
     // Nothing here may change its height: a slider further down would move away under the pointer that drags it.
     ui.allocate_ui(egui::vec2(ui.available_width(), STATUS_HEIGHT), |ui| {
@@ -97,6 +100,9 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>) {
             },
         );
         row("Auto", words, &tip);
+        if simulation.problem().supports().move_the_body() {
+            super::supports::reaction_rows(&mut row, simulation);
+        }
         frame_row(&mut row, input, "the iterations of one displayed frame");
     });
     if simulation.motion().is_none() {
