@@ -391,6 +391,9 @@ fn every_scene_and_element_can_be_chosen() {
         assert_eq!(harness.state().scene().name, scene(id).name);
         assert_eq!(*harness.state().simulation().status(), Status::Converged, "{id}");
         for element in ["t3", "t6"] {
+            // Below what a scene with more to say shows.
+            harness.get_by_label(element).scroll_to_me();
+            harness.run();
             harness.get_by_label(element).click();
             harness.run();
             assert_eq!(harness.state().scene().element().id(), element, "{id}");

@@ -100,10 +100,10 @@ fn edited(scene: &Scene, number: usize, edit: impl FnOnce(&mut Support)) -> Box<
     scene
 }
 
-/// A round length a little above this one.
+/// A round length of about this size.
 fn reach(length: f64) -> f64 {
     let decade = 10f64.powf(length.max(1e-12).log10().floor());
-    [1.0, 2.0, 5.0].map(|m| m * decade).into_iter().find(|r| *r >= length).unwrap_or(10.0 * decade)
+    [1.0, 2.0, 5.0].map(|m| m * decade).into_iter().find(|r| *r >= 0.9 * length).unwrap_or(10.0 * decade)
 }
 
 /// A row for every support of a body at rest: its reaction.
