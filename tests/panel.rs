@@ -384,6 +384,8 @@ fn results_are_certified_and_compared_with_the_truth() {
 fn every_scene_and_element_can_be_chosen() {
     let mut harness = harness("article");
     for id in common::ids_of(Analysis::Static) {
+        harness.get_by_role_and_label(Role::ComboBox, "Scene").scroll_to_me();
+        harness.run();
         harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
         harness.run();
         harness.get_by_role_and_label(Role::Button, id).click();
