@@ -16,6 +16,7 @@ use super::overlay::{self, Overlay};
 use super::palette::{self, Palette};
 use super::panel::{self, PanelInput, PanelState};
 use super::playback::Playback;
+use super::plot::Curve;
 use super::pointer::{self, Look, Reach};
 use super::recorder::Recorder;
 use super::verdict::{self, Errors};
@@ -27,7 +28,7 @@ use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{LoadCurve, Reference, Study};
+use crate::study::{Jump, LoadPath, Reference, Study};
 use crate::timings::Timings;
 
 /// Width of the panel, points.
@@ -81,7 +82,9 @@ pub struct Lab {
     shape: Shape,
     /// What errors are measured against; looked for when the body has come to rest.
     truth: Finder<Reference>,
-    curve: Finder<LoadCurve>,
+    curve: Finder<Curve>,
+    /// Where the body jumps on its way from rest.
+    jump: Finder<Jump>,
     budget: Budget,
     /// The lowest natural frequency, Hz.
     frequency: Finder<f64>,
@@ -146,7 +149,8 @@ impl Lab {
             drawing,
             shape: Shape::default(),
             truth: Finder::new(|scene| Reference::of(scene).ok()),
-            curve: Finder::new(LoadCurve::new),
+            curve: Finder::new(Curve::of),
+            jump: Finder::new(LoadPath::jump_of),
             budget: Budget::default(),
             frequency: Finder::new(natural_frequency),
             playback: Playback::default(),
@@ -309,6 +313,7 @@ impl Lab {
         }
         self.simulation.certify();
         self.truth.settle(&self.scene);
+        self.jump.settle(&self.scene);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.settle(&self.scene);
         }
@@ -339,7 +344,7 @@ impl Lab {
             Some(Drawer::Motion) => self.frequency.is_open(),
             _ => false,
         };
-        open || self.truth.is_open() && !self.moves()
+        open || (self.truth.is_open() || self.jump.is_open()) && !self.moves()
     }
 
     /// What is drawn of the body, as of the last [`Self::ui`].
@@ -396,6 +401,7 @@ impl Lab {
     fn input(&self) -> PanelInput<'_> {
         PanelInput {
             truth: self.truth.get(),
+            jump: self.jump.get(),
             scene: &self.scene,
             scene_name: self.source.name.to_str().unwrap_or_default(),
             simulation: &self.simulation,
@@ -519,6 +525,7 @@ impl Lab {
         }
         self.simulation.certify();
         self.truth.ask(&self.scene, ctx);
+        self.jump.ask(&self.scene, ctx);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.ask(&self.scene, ctx);
         }
@@ -566,6 +573,8 @@ impl Lab {
         let errors = verdict::errors(&self.input());
         let (words, bad) = verdict::status_words(&self.simulation, true);
         let shown = self.intro.as_ref().map_or(&self.simulation, Intro::simulation);
+        let moves = self.simulation.problem().supports().move_the_body();
+        let reactions = if moves { self.simulation.support_reactions() } else { Vec::new() };
         let overlay = Overlay {
             scene: shown.scene(),
             system: shown.system(),
@@ -579,6 +588,7 @@ impl Lab {
             time: shown.state().time(),
             hand: self.simulation.hand(),
             playback: &self.playback,
+            reactions: &reactions,
             color_range: self.shape.range,
             // Beside bars the status says it.
             warning: (bad && !self.view.bars).then_some(&words),
@@ -781,6 +791,7 @@ impl Lab {
             self.truth.forget();
         }
         self.curve.forget();
+        self.jump.forget();
         self.scene = scene;
         self.intro = None;
         if !(self.view.mode.entry().serves)(&self.scene) {

@@ -11,6 +11,7 @@ use super::verdict::Errors;
 use crate::assembly::{Hand, System};
 use crate::render::Camera;
 use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
+use crate::simulation::SupportReaction;
 use crate::words::{engineering, percent, prefix, round_down, ticks};
 
 /// What is painted over the body.
@@ -34,6 +35,8 @@ pub(super) struct Overlay<'a> {
     pub hand: Option<(&'a Hand, Vector2<f64>)>,
     /// The past of a motion, and the same motion under other integrators.
     pub playback: &'a Playback,
+    /// The reactions of the supports, where one moves.
+    pub reactions: &'a [SupportReaction],
     /// The field's values at the two ends of the colour map.
     pub color_range: [f64; 2],
     /// What is wrong with the state, in words.
@@ -136,6 +139,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     }
     supports(painter, &projection, overlay, &palette);
     loads(painter, &projection, overlay, &palette, visuals);
+    moved_supports(painter, &projection, overlay, &palette, visuals);
     legend(painter, rect, overlay, &palette, visuals);
     key(painter, rect, overlay, &palette, visuals);
     scale_bar(painter, rect, &projection.camera, &palette);
@@ -369,6 +373,34 @@ fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
             (Align2::CENTER_BOTTOM, tip - direction * (ARROW * 0.5) - vec2(0.0, 10.0))
         };
         boxed_text(painter, at, anchor, &label, visuals, palette.load, 200.0);
+    }
+}
+
+/// The force of every support that moves, as an arrow to where it pushes or from where it pulls.
+fn moved_supports(
+    painter: &Painter,
+    projection: &Projection,
+    overlay: &Overlay<'_>,
+    palette: &Palette,
+    visuals: &Visuals,
+) {
+    for (support, reaction) in overlay.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
+        let direction = vec2(reaction.force.x as f32, -reaction.force.y as f32).normalized();
+        if direction == Vec2::ZERO || !direction.is_finite() {
+            continue;
+        }
+        let middle = projection.point(reaction.middle);
+        // It pushes the way it has gone: from outside. Else it holds back.
+        let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
+        let from = if pushes { middle - direction * ARROW } else { middle };
+        let tip = arrow(painter, from, direction, palette.support);
+        let tail = if pushes { from } else { tip };
+        let (anchor, away) = match (pushes, direction.y > 0.0) {
+            (true, true) | (false, false) => (Align2::CENTER_BOTTOM, -6.0),
+            (true, false) | (false, true) => (Align2::CENTER_TOP, 6.0),
+        };
+        let label = engineering(reaction.force.norm(), "N");
+        boxed_text(painter, tail + vec2(0.0, away), anchor, &label, visuals, palette.support, 200.0);
     }
 }
 

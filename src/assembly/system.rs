@@ -149,7 +149,9 @@ impl System {
             Origin::Beam(_) | Origin::File(_) => scene.validate()?,
         }
         let couples = || self.moment_edges(scene).iter().all(|edge| self.coupled.contains(edge));
-        if scene.supports == self.supports && couples() {
+        let same_supports = scene.supports.len() == self.supports.len()
+            && scene.supports.iter().zip(&self.supports).all(|(a, b)| a.fixes_as(b));
+        if same_supports && couples() {
             check_held(self.hold, scene.analysis)?;
             return Ok(self.clone());
         }

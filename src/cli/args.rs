@@ -57,15 +57,10 @@ pub(super) enum Command {
     /// Find the equilibrium of a scene, or take a scene in motion to the end of its duration.
     #[command(after_help = format!("{SOLVE_FILES}\n{EXIT_CODES}"))]
     Solve(SolveArgs),
-    /// Print load against deflection of a cantilever: linear theory, the exact beam, every method, and where linear
-    /// theory leaves the exact beam by 3, 5 and 10 percent.
-    Curve {
-        #[command(flatten)]
-        scene: RequiredSceneArgs,
-        /// Also write the curve as a table.
-        #[arg(long, value_name = "FILE.csv")]
-        out: Option<PathBuf>,
-    },
+    /// Print the load path of a scene: its equilibria as loads are put on and supports taken on their way, where they lose
+    /// their stability under force control, and where the body jumps. Of a cantilever: linear theory, the exact beam,
+    /// every method, and where linear theory leaves the exact beam by 3, 5 and 10 percent.
+    Curve(CurveArgs),
     /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
     /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt). Of a scene in motion: the
     /// error of the first probe's path against the time of computing a simulated second, for every integrator and time
@@ -153,6 +148,22 @@ pub(super) struct SolveArgs {
     /// Do not certify the result: whether it is stable, and ρ. That takes some more solves.
     #[arg(long)]
     pub no_certificate: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CurveArgs {
+    #[command(flatten)]
+    pub scene: RequiredSceneArgs,
+    /// Also write the curve as a table.
+    #[arg(long, value_name = "FILE.csv")]
+    pub out: Option<PathBuf>,
+    /// Also draw the load path: over the way of the support that moves, or over the load; what is unstable is dashed.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub picture: Option<PathBuf>,
+    /// What the picture shows: a probe's name, or `support.N` for the reaction of a support. Else the reaction of the support that moves,
+    /// or the displacement of the first probe.
+    #[arg(long, value_name = "NAME", requires = "picture")]
+    pub of: Option<String>,
 }
 
 #[derive(Debug, Args)]

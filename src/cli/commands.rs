@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use super::args::{FolderArgs, SolveArgs, TuneArgs};
+use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::progress::Watch;
 use super::{CliError, NOT_CONVERGED, exit_code, json, named, simulate, text};
 use crate::dynamics::StopReason;
@@ -13,9 +13,10 @@ use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::picture::draw_svg;
 use crate::scene::{self, Analysis, Scene};
 use crate::simulation::{Simulation, Solution, Status};
+use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Demand, Extent, LoadCurve, MotionStudy, Progress, Reference, Scaling, Study, StudyError, Tuning, extremes,
-    heat_map, motion_heat_map, parallel, plot,
+    Demand, Extent, LoadCurve, LoadPath, MotionStudy, Progress, Reference, Scaling, Study, StudyError, Tuning,
+    extremes, heat_map, motion_heat_map, parallel, path_chart, plot,
 };
 use crate::timings::Timings;
 use crate::words::count;
@@ -84,16 +85,23 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
             march(&mut simulation, writer)
         }
     };
+    let certified = Instant::now();
+    let jump = (status == Status::Converged && !no_certificate && !simulation.is_linear())
+        .then(|| LoadPath::jump_before(&scene, simulation.displacement()))
+        .flatten();
+    let certify_path = certified.elapsed();
     // A scene without a truth has a result all the same.
     let sought = Instant::now();
     let truth = if no_truth { None } else { Reference::of(&scene).ok() };
     let truth_time = sought.elapsed();
     let solution = Solution { status, ..simulation.solution() };
-    let spent = Spent { wall: began.elapsed(), set_up, stages: solution.time, truth: truth_time };
+    let mut stages = solution.time;
+    stages.certify += certify_path;
+    let spent = Spent { wall: began.elapsed(), set_up, stages, truth: truth_time };
     text::print(&if json {
-        json::solution(&scene, &solution, truth.as_ref(), &spent)
+        json::solution(&scene, &solution, jump, truth.as_ref(), &spent)
     } else {
-        text::solution(&scene, &solution, truth.as_ref(), &spent)
+        text::solution(&scene, &solution, jump, truth.as_ref(), &spent)
     })?;
     // What could not be written is no reason to keep the result from who waits for it.
     written?;
@@ -126,14 +134,50 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>) -> (Stat
     (status, written)
 }
 
-pub(super) fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliError> {
-    let (scene, _) = simulate(source)?;
-    let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoBeam(named(source)))?;
-    if let Some(path) = out {
-        export::write_text(path, &text::curve_table(&curve))?;
+pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
+    let CurveArgs { scene, out, picture, of } = args;
+    let source = scene::Source::from(scene);
+    let (scene, _) = simulate(&source)?;
+    // What cannot be drawn is said before the work.
+    let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
+    let is_png = |path: &Path| match path.extension().and_then(|e| e.to_str()) {
+        Some("png") => Ok(true),
+        Some("svg") => Ok(false),
+        _ => Err(CliError::NoPictureFormat(path.to_owned())),
+    };
+    let is_png = picture.as_deref().map(is_png).transpose()?;
+    let beam = LoadCurve::new(&scene);
+    let path = if beam.is_none() || picture.is_some() { LoadPath::of(&scene) } else { None };
+    let (words, table) = match (&beam, &path) {
+        (Some(curve), _) => (text::curve(&scene, curve), text::curve_table(curve)),
+        (None, Some(path)) => (text::path(&scene, path), text::path_table(&scene, path)),
+        (None, None) => return Err(CliError::NoPath(named(&source))),
+    };
+    if let Some(out) = out {
+        export::write_text(&out, &table)?;
     }
-    text::print(&text::curve(&scene, &curve))?;
-    Ok(ExitCode::SUCCESS)
+    if let (Some(picture), Some(is_png)) = (picture, is_png) {
+        let path = path.as_ref().ok_or_else(|| CliError::NoPath(named(&source)))?;
+        let svg = path_chart::svg(path, &scene, &ordinate);
+        if is_png { draw_svg(&svg)?.write_png(&picture)? } else { export::write_text(&picture, &svg)? }
+    }
+    text::print(&words)?;
+    Ok(if path.is_none_or(|path| path.complete) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
+}
+
+/// What a name on the command line asks to be drawn.
+fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
+    if let Some(i) = scene.probes.iter().position(|p| p.name == name) {
+        return Ok(Ordinate::Probe(i));
+    }
+    let supports = (0..scene.supports.len()).map(|i| format!("support.{i}"));
+    match supports.clone().position(|support| support == name) {
+        Some(i) => Ok(Ordinate::Reaction(i)),
+        None => {
+            let known = scene.probes.iter().map(|p| p.name.clone()).chain(supports).collect();
+            Err(CliError::NoOrdinate { name, known })
+        }
+    }
 }
 
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {

@@ -3,13 +3,13 @@
 use nalgebra::Vector2;
 
 use super::{Body, Status};
-use crate::assembly::{Change, Forces, Kinematics, Problem};
+use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
 use crate::element::Tangent;
 use crate::method::{
     AutoReport, Certificate, Iteration, IterationError, Method, Reason, Restart, Tolerances, Verdict, Workspace,
     fixed_point_rho, is_stable, measure,
 };
-use crate::scene::{Scene, SolverSettings};
+use crate::scene::{Scene, SolverSettings, Support};
 use crate::solver::SolverError;
 use crate::state::State;
 use crate::timings::{Timings, timed};
@@ -69,7 +69,11 @@ impl Search {
             self.workspace.tangent = None;
         }
         let same_method = body.scene.solver.method == before.solver.method;
-        let keeps_state = same_method && !matches!(self.status, Status::Diverged(_)) && body.is_useful_start();
+        let same_unknowns = change <= Change::Stiffness;
+        let keeps_state = same_method
+            && !matches!(self.status, Status::Diverged(_))
+            && self.can_follow(&before.supports, &body.scene.supports)
+            && body.is_useful_start(same_unknowns);
         if !same_method {
             self.method = (body.scene.solver.method.entry().start)();
         }
@@ -81,6 +85,14 @@ impl Search {
             self.restart(body, Restart::AtRest);
         }
         Ok(())
+    }
+
+    /// Whether the body can go on from where it is to where other supports take it: not where these turn far, or were
+    /// still turning. It would not be known how often they have gone round.
+    fn can_follow(&self, before: &[Support], after: &[Support]) -> bool {
+        let far = |angle: f64| angle.abs() > LARGEST_TURN;
+        let mut pairs = before.iter().zip(after);
+        before == after || !pairs.any(|(a, b)| far(b.turn - a.turn) || far(a.turn) && self.status != Status::Converged)
     }
 
     /// Forgets iterations and times, and measures the state it starts from.

@@ -245,6 +245,6 @@ fn shape(x: f64, y: f64, element: ElementKind, [r, g, b]: [u8; 3], size: f64) ->
     format!("<path d=\"M{}Z\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>", path.join("L"))
 }
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

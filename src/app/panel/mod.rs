@@ -14,13 +14,14 @@ use super::verdict::Errors;
 use crate::method::METHODS;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::Simulation;
-use crate::study::Reference;
+use crate::study::{Jump, Reference};
 use crate::timings::Timings;
 
 mod body;
 mod loads;
 mod motion;
 mod result;
+mod supports;
 mod view;
 
 pub(super) use view::range_of;
@@ -43,6 +44,8 @@ pub(super) struct PanelInput<'a> {
     pub residuals: &'a [f64],
     /// What errors are measured against, once it is known.
     pub truth: Option<&'a Reference>,
+    /// Where the body jumps on its way from rest, once it is known.
+    pub jump: Option<&'a Jump>,
     pub adapter: &'a str,
 }
 
@@ -88,6 +91,10 @@ pub(super) fn show(
         }
         let summary = loads::summary(input.scene);
         fold(ui, "Gravity, moment", &summary, false, |ui| loads::gravity_and_moment(ui, input, state, actions));
+        if let Some(support) = supports::chosen(ui, input) {
+            let summary = supports::summary(input.scene, support);
+            fold(ui, "Moved support", &summary, true, |ui| supports::show(ui, input, support, state, actions));
+        }
         let summary = body::material_summary(input.scene);
         fold(ui, "Material", &summary, false, |ui| body::material(ui, input.scene, state, actions));
         let summary = body::mesh_summary(input);

@@ -2,12 +2,12 @@
 
 use egui::{Grid, RichText, Ui};
 
-use super::PanelInput;
+use super::{PanelInput, supports};
 use crate::app::headline::UNKNOWN;
 use crate::app::palette::Palette;
 use crate::app::verdict::{Errors, rho, sentence, stability};
 use crate::method::rho_words;
-use crate::simulation::{Motion, Simulation, energy, reaction};
+use crate::simulation::{Motion, Simulation, energy};
 use crate::words::{count, engineering, engineering_pair, percent};
 
 /// Room for what a row is, points.
@@ -68,8 +68,7 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
     if simulation.is_at_rest() {
         let (problem, state) = (simulation.problem(), simulation.state());
         row("Energy", engineering(energy(problem, state, factor).elastic, "J"), "Stored in the body");
-        let reaction = reaction(problem, state, simulation.forces());
-        row("Reaction", engineering_pair(reaction.force.into(), "N"), "Force of the supports on the body");
+        supports::reaction_rows(row, simulation);
     }
     if let Some(auto) = simulation.auto_report() {
         let [solves, factors] = [count(auto.solves, "back substitution"), count(auto.factorizations, "factorization")];
