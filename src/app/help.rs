@@ -5,6 +5,7 @@ use egui::{Align2, Context};
 use super::keys::SHORTCUTS;
 
 const MOUSE: &[(&str, &str)] = &[
+    ("Drag an arrow's tip", "Set a force; Shift: its direction in steps of 15°"),
     ("Drag the body", "Pull it with a spring; let go and it springs back"),
     ("Drag beside it, two fingers", "Move the view"),
     ("Scroll, pinch", "Zoom to the pointer"),

@@ -7,14 +7,15 @@ use nalgebra::Vector2;
 
 use super::ThemeChoice;
 use super::action::{Action, Drawer, MOST_ITERATIONS, ViewOptions};
+use super::arrow::{Forces, vector};
 use super::budget::{Budget, question};
 use super::drawing::Drawing;
 use super::finder::{Finder, LISTEN};
 use super::motion_plot;
-use super::overlay::{self, Overlay};
+use super::overlay::{self, Overlay, Projection};
 use super::panel::{self, PanelInput, PanelState, status_words};
 use super::playback::Playback;
-use super::pointer::{self, Look, Reach};
+use super::pointer::{Look, Pointer, Reach};
 use super::recorder::Recorder;
 use super::{help, keys, plot};
 use crate::assembly::Mass;
@@ -60,6 +61,7 @@ pub struct Lab {
     camera: Option<Camera>,
     fitted: Camera,
     view_rect: Rect,
+    pointer: Pointer,
     adapter: String,
     toast: Option<(String, f64)>,
     drawing: Drawing,
@@ -121,6 +123,7 @@ impl Lab {
             camera: None,
             fitted: Camera { center: Vector2::zeros(), scale: 1.0 },
             view_rect: Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1.0, 1.0)),
+            pointer: Pointer::default(),
             adapter: String::new(),
             toast: None,
             drawing,
@@ -211,6 +214,13 @@ impl Lab {
     #[must_use]
     pub fn view_rect(&self) -> Rect {
         self.view_rect
+    }
+
+    /// Where the tips of the forces' arrows are in the window, points, with the number of each among the scene's loads.
+    #[must_use]
+    pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
+        let projection = Projection { camera: self.camera(), rect: self.view_rect };
+        self.forces().arrows(&projection).iter().map(|arrow| (arrow.load, arrow.tip())).collect()
     }
 
     /// The camera of the last [`Self::ui`].
@@ -384,7 +394,7 @@ impl Lab {
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
-        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui));
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, &mut requests));
         help::show(ui.ctx(), &mut self.view.help);
         if self.iterates() {
             ui.ctx().request_repaint();
@@ -431,15 +441,31 @@ impl Lab {
         }
     }
 
-    fn body_view(&mut self, ui: &mut Ui) {
+    fn body_view(&mut self, ui: &mut Ui, requests: &mut Vec<Request>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        self.view_rect = rect;
         // What is pressed is what was seen: the last picture.
-        let reach = Reach { camera: self.camera(), positions: &self.shape.nodes, outline: &self.drawing.boundary };
-        let holds = pointer::hold(ui, &response, &reach, &mut self.simulation, &mut self.playback);
+        let projection = Projection { camera: self.camera(), rect: self.view_rect };
+        let arrows = self.forces().arrows(&projection);
+        let reach = Reach {
+            camera: projection.camera,
+            positions: &self.shape.nodes,
+            outline: &self.drawing.boundary,
+            arrows: &arrows,
+        };
+        self.view_rect = rect;
+        let wish = self.pointer.follow(ui, &response, &reach, &mut self.simulation, &mut self.playback);
+        if let Some((load, magnitude, degrees)) = wish.force {
+            self.panel.keep_force_direction(degrees);
+            let mut scene = Box::new(self.scene.clone());
+            // There is such a force: its arrow was taken.
+            if scene.set_force(load, vector(magnitude, degrees)).is_ok() && *scene != self.scene {
+                self.act(ui.ctx(), Action::Edit("Force", scene), requests);
+                ui.ctx().request_repaint();
+            }
+        }
         self.update_shape(ui.visuals());
         self.follow(rect);
-        match pointer::look(ui, &response, self.camera(), holds) {
+        match wish.look {
             Look::Same => {}
             Look::At(camera) => self.camera = Some(camera),
             Look::Fit => self.camera = None,
@@ -455,6 +481,8 @@ impl Lab {
             positions: &self.shape.nodes,
             ghost: self.ghost(),
             time: self.simulation.state().time(),
+            direction: self.panel.force_direction(),
+            hot: self.pointer.hot_arrow(),
             hand: self.simulation.hand(),
             playback: &self.playback,
             color_range: self.shape.range,
@@ -465,10 +493,21 @@ impl Lab {
         self.paint_toast(ui, &painter, rect);
     }
 
+    /// What the arrows of the last picture are of.
+    fn forces(&self) -> Forces<'_> {
+        Forces {
+            scene: &self.scene,
+            system: self.simulation.system(),
+            positions: &self.shape.nodes,
+            time: self.simulation.state().time(),
+            direction: self.panel.force_direction(),
+        }
+    }
+
     /// Fits the view to the body at rest and now, while nobody has moved it.
     fn follow(&mut self, rect: Rect) {
         // A view that moved with the body would move the place under a pointer that holds it.
-        if self.simulation.hand().is_some() {
+        if self.pointer.holds() {
             return;
         }
         let mesh = self.simulation.system().mesh();
@@ -500,7 +539,22 @@ impl Lab {
                 (low, high) = (ghost_low, ghost_high);
             }
         }
-        Camera::fit(low, high, view, FIT_MARGINS)
+        Camera::fit(low, high, view, self.margins())
+    }
+
+    /// What is kept free around the body: room for the loads' arrows too, wherever they start.
+    fn margins(&self) -> Margins {
+        /// Beyond a tip, points: its force stands there.
+        const BEYOND: f64 = 36.0;
+        let projection = Projection { camera: self.camera(), rect: self.view_rect };
+        self.forces().arrows(&projection).iter().fold(FIT_MARGINS, |margins, arrow| {
+            let [x, y] = [arrow.way.x, arrow.way.y].map(f64::from);
+            Margins {
+                sides: margins.sides.max(x.abs() + BEYOND),
+                top: margins.top.max(BEYOND - y),
+                bottom: margins.bottom.max(BEYOND + y),
+            }
+        })
     }
 
     /// The linear solution, if it is to be shown.

@@ -8,6 +8,7 @@ use thiserror::Error;
 use crate::render::RenderError;
 
 mod action;
+mod arrow;
 mod background;
 mod budget;
 mod drawing;

@@ -4,6 +4,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, 
 use nalgebra::Vector2;
 
 use super::action::ViewOptions;
+use super::arrow::{self, Arrow, Forces};
 use super::drawing::Drawing;
 use super::format;
 use super::motion_plot::integrator_color;
@@ -25,6 +26,10 @@ pub(super) struct Overlay<'a> {
     pub ghost: Option<&'a [Vector2<f64>]>,
     /// Simulated time, s.
     pub time: f64,
+    /// Direction of an arrow without force, degrees.
+    pub direction: f64,
+    /// The arrow whose tip the pointer is on, or has taken and dragged so far.
+    pub hot: Option<HotArrow>,
     /// The hand that pulls, and its force, N.
     pub hand: Option<(&'a Hand, Vector2<f64>)>,
     /// The past of a motion, and the same motion under other integrators.
@@ -33,6 +38,14 @@ pub(super) struct Overlay<'a> {
     pub color_range: [f64; 2],
     /// What is wrong with the state, in words.
     pub warning: Option<&'a str>,
+}
+
+/// An arrow whose tip the pointer is on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HotArrow {
+    pub arrow: Arrow,
+    /// Where it has been dragged since it was taken, points.
+    pub dragged: Option<Vec2>,
 }
 
 /// The colours of the overlay, chosen to differ in brightness too.
@@ -73,9 +86,10 @@ impl Palette {
 }
 
 /// Metres to window positions.
-struct Projection {
-    camera: Camera,
-    rect: Rect,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Projection {
+    pub camera: Camera,
+    pub rect: Rect,
 }
 
 impl Projection {
@@ -84,7 +98,7 @@ impl Projection {
     }
 
     /// The window position of a point; far outside the view, somewhere outside the view.
-    fn point(&self, p: Vector2<f64>) -> Pos2 {
+    pub(super) fn point(&self, p: Vector2<f64>) -> Pos2 {
         let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
         self.rect.center() + vec2(x, y)
     }
@@ -281,19 +295,6 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-const ARROW: f32 = 58.0;
-
-fn arrow(painter: &Painter, from: Pos2, direction: Vec2, color: Color32) -> Pos2 {
-    const HEAD: f32 = 12.0;
-    let direction = direction.normalized();
-    let tip = from + direction * ARROW;
-    let side = vec2(-direction.y, direction.x) * (HEAD * 0.42);
-    let neck = tip - direction * HEAD;
-    painter.line_segment([from, neck], Stroke::new(3.0, color));
-    painter.add(egui::Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
-    tip
-}
-
 /// An arc of three quarters of a turn with a head, and the moment beside it.
 fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, visuals: &Visuals) {
     const RADIUS: f32 = 26.0;
@@ -316,57 +317,38 @@ fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, v
     boxed_text(painter, center + vec2(0.0, RADIUS + 12.0), Align2::CENTER_TOP, &label, visuals, color, 200.0);
 }
 
-/// Where a load pulls now: the middle of its edge, or its node, m.
-fn load_point(overlay: &Overlay<'_>, place: &Place) -> Option<Vector2<f64>> {
-    let mesh = overlay.system.mesh();
-    let nodes = match place {
-        Place::Edge(name) => mesh.edge_nodes(name)?,
-        Place::At(at) => vec![mesh.nearest_node((*at).into())],
-    };
-    let sum: Vector2<f64> = nodes.iter().map(|&n| overlay.positions[n as usize]).sum();
-    (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
-}
-
 fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    let view = projection.rect;
-    for load in &overlay.scene.loads {
-        /// Less than this part of a pulse is not drawn.
-        const SEEN: f64 = 0.02;
-        if load.pulse().is_some_and(|pulse| pulse.factor(overlay.time) < SEEN) {
-            continue;
+    /// Length of the arrow of a weight, which tells its direction only, points.
+    const WEIGHT: f32 = 58.0;
+    let Overlay { scene, system, positions, time, .. } = *overlay;
+    let forces = Forces { scene, system, positions, time, direction: overlay.direction };
+    for arrow in forces.arrows(projection) {
+        let hot = overlay.hot.as_ref().filter(|hot| hot.arrow.load == arrow.load);
+        arrow.paint(painter, palette.load, visuals, hot.is_some_and(|hot| hot.dragged.is_none()));
+        if let Some((taken, by)) = hot.and_then(|hot| Some((hot.arrow, hot.dragged?))) {
+            taken.paint_handle(painter, by, palette.load);
         }
-        let (vector, from, label) = match load {
-            Load::Force { place, force, .. } => {
-                let Some(point) = load_point(overlay, place) else {
-                    continue;
-                };
-                let magnitude = force[0].hypot(force[1]);
-                (force, projection.point(point), format!("{} N", format::short(magnitude)))
-            }
+    }
+    for load in scene.loads.iter().filter(|load| arrow::is_seen(load, time)) {
+        match load {
+            Load::Force { .. } => {}
             Load::Moment { edge, moment, .. } => {
-                if let (Some(point), true) = (load_point(overlay, &Place::from(edge.as_str())), *moment != 0.0) {
+                let place = Place::from(edge.as_str());
+                if let (Some(point), true) = (arrow::load_point(system.mesh(), positions, &place), *moment != 0.0) {
                     turning_arrow(painter, projection.point(point), *moment, palette.load, visuals);
                 }
-                continue;
             }
-            Load::Gravity { acceleration, .. } => {
-                let magnitude = acceleration[0].hypot(acceleration[1]);
-                (acceleration, view.right_top() + vec2(-64.0, 30.0), format!("{} m/s²", format::short(magnitude)))
+            Load::Gravity { acceleration: [x, y], .. } => {
+                let direction = vec2(*x as f32, -*y as f32).normalized();
+                if direction == Vec2::ZERO || !direction.is_finite() {
+                    continue;
+                }
+                let from = projection.rect.right_top() + vec2(-64.0, 30.0);
+                let tip = arrow::paint_arrow(painter, from, direction * WEIGHT, palette.load);
+                let label = format!("{} m/s²", format::short(x.hypot(*y)));
+                boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
             }
-        };
-        let direction = vec2(vector[0] as f32, -vector[1] as f32).normalized();
-        if direction == Vec2::ZERO || !direction.is_finite() {
-            continue;
         }
-        let tip = arrow(painter, from, direction, palette.load);
-        let (anchor, at) = if direction.y.abs() > direction.x.abs() {
-            let below = direction.y > 0.0;
-            let anchor = if below { Align2::CENTER_TOP } else { Align2::CENTER_BOTTOM };
-            (anchor, tip + vec2(0.0, 6.0 * direction.y.signum()))
-        } else {
-            (Align2::CENTER_BOTTOM, tip - direction * (ARROW * 0.5) - vec2(0.0, 10.0))
-        };
-        boxed_text(painter, at, anchor, &label, visuals, palette.load, 200.0);
     }
 }
 

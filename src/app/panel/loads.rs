@@ -3,28 +3,9 @@
 use egui::Ui;
 
 use super::{Action, PanelInput, PanelState};
+use crate::app::arrow::{DOWN, SMALLEST, largest_force, polar_form, vector};
 use crate::app::field::NumberField;
 use crate::scene::{Load, Scene, limits};
-
-const DOWN: f64 = -90.0;
-
-/// Magnitude and direction (degrees) of a vector; the direction is `None` at zero.
-fn polar_form([x, y]: [f64; 2]) -> (f64, Option<f64>) {
-    let magnitude = x.hypot(y);
-    (magnitude, (magnitude > 0.0).then(|| y.atan2(x).to_degrees()))
-}
-
-/// The vector of a magnitude and a direction in degrees, exact along the axes.
-fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
-    let (s, c) = match degrees {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        -90.0 => (-1.0, 0.0),
-        180.0 | -180.0 => (0.0, -1.0),
-        _ => degrees.to_radians().sin_cos(),
-    };
-    [magnitude * c, magnitude * s]
-}
 
 pub(super) fn force_and_gravity(
     ui: &mut Ui,
@@ -42,23 +23,18 @@ pub(super) fn force_and_gravity(
         _ => None,
     });
     let (magnitude, direction) = polar_form(force.unwrap_or_default());
-    let direction = direction.or(state.force_direction).unwrap_or(DOWN);
-    let material = &scene.material;
-    // A force that strains the whole section by 1, rounded up: as far as anything can be seen.
-    let (low, high) = input.simulation.system().mesh().bounds();
-    let height = (high - low).min();
-    let largest = (material.young * material.thickness * height).clamp(1e-6, 1e14);
-    let largest = 10f64.powf(largest.log10().ceil());
+    let direction = direction.unwrap_or(state.force_direction());
+    let largest = largest_force(&scene.material, input.simulation.system().mesh());
     let field = NumberField {
         label: "Force",
         tooltip: "Magnitude of the force, N. Type a number for values the slider has not, such as 12 kN.",
         limit: limits::FORCE,
         slider: 0.0..=largest,
-        logarithmic: Some(1e-5 * largest),
+        logarithmic: Some(SMALLEST * largest),
         whole: false,
     };
     if let Some(new) = field.show(ui, &mut state.messages, magnitude) {
-        state.force_direction = Some(direction);
+        state.keep_force_direction(direction);
         actions.push(Action::Edit("Force", with_force(scene, vector(new, direction))));
     }
     let field = NumberField {
@@ -70,7 +46,7 @@ pub(super) fn force_and_gravity(
         whole: false,
     };
     if let Some(new) = field.show(ui, &mut state.messages, shown_degrees(direction)) {
-        state.force_direction = Some(new);
+        state.keep_force_direction(new);
         actions.push(Action::Edit("Direction", with_force(scene, vector(magnitude, new))));
     }
     let (magnitude, direction) = polar_form(gravity.unwrap_or_default());
@@ -153,20 +129,4 @@ fn with_gravity(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
         None => scene.loads.push(Load::gravity(new)),
     }
     scene
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vectors_go_to_polar_form_and_back() {
-        for v in [[3.0, -4.0], [0.0, -40_000.0], [-2.0, 0.0], [1e-3, 1e3]] {
-            let (magnitude, direction) = polar_form(v);
-            let back = vector(magnitude, direction.unwrap());
-            assert!((back[0] - v[0]).hypot(back[1] - v[1]) < 1e-12 * magnitude, "{v:?} {back:?}");
-        }
-        assert_eq!(vector(5.0, -90.0), [0.0, -5.0]);
-        assert_eq!(polar_form([0.0, 0.0]), (0.0, None));
-    }
 }

@@ -3,6 +3,7 @@
 use egui::{Button, ComboBox, RichText, ScrollArea, Ui};
 
 use super::action::{Action, ViewOptions};
+use super::arrow::DOWN;
 use super::field::{Messages, NumberField};
 use super::playback::Playback;
 use crate::scene::{Analysis, Scene, registry};
@@ -48,6 +49,16 @@ impl PanelState {
     /// Forgets what belonged to another scene.
     pub(super) fn clear(&mut self) {
         *self = Self::default();
+    }
+
+    /// Direction of a force of zero, degrees.
+    pub(super) fn force_direction(&self) -> f64 {
+        self.force_direction.unwrap_or(DOWN)
+    }
+
+    /// Keeps the direction of a force that may become zero, degrees.
+    pub(super) fn keep_force_direction(&mut self, degrees: f64) {
+        self.force_direction = Some(degrees);
     }
 }
 
