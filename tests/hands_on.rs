@@ -5,7 +5,7 @@ mod common;
 
 use common::{scene, solve_json};
 use egui::accesskit::Role;
-use egui::{Event, Modifiers, Pos2, vec2};
+use egui::{Event, Key, Modifiers, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
@@ -13,17 +13,21 @@ use warpbeam::app::Lab;
 use warpbeam::scene::{Load, Source};
 use warpbeam::simulation::{Simulation, Status};
 
+/// Time between frames, s: two clicks within some of them are a double click.
+const STEP: f32 = 0.05;
+
 fn harness(id: &str) -> Harness<'static, Lab> {
     let scene = scene(id);
     let simulation = Simulation::new(&scene).unwrap();
     let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
-    let mut harness = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
-        |ui, lab: &mut Lab| {
-            lab.advance(ui.input(|i| i.time));
-            lab.ui(ui);
-        },
-        lab,
-    );
+    let mut harness =
+        Harness::builder().with_size([1280.0, 800.0]).with_max_steps(2000).with_step_dt(STEP).build_ui_state(
+            |ui, lab: &mut Lab| {
+                lab.advance(ui.input(|i| i.time));
+                lab.ui(ui);
+            },
+            lab,
+        );
     harness.run();
     harness
 }
@@ -163,4 +167,322 @@ fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
     assert_eq!(force(harness.state()), before);
     let moved = camera.to_world([0.0, 0.0]) - harness.state().camera().to_world([50.0, -30.0]);
     assert!(moved.norm() < 1e-2 / camera.scale.min(1.0), "the view did not follow the pointer: {moved}");
+}
+
+fn key(harness: &mut Harness<'_, Lab>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run();
+}
+
+const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// A drag is one step, whatever it passed through; steps are undone and done again in order.
+#[test]
+fn edits_are_undone_and_done_again() {
+    let mut harness = harness("cantilever");
+    assert!(!harness.state().can_undo() && !harness.state().can_redo());
+    let start = harness.state().scene().clone();
+    let tip_now = tip(harness.state());
+    drag(&mut harness, tip_now, tip_now + vec2(-30.0, -12.0), Modifiers::NONE);
+    let dragged = force(harness.state());
+    let slider = harness.get_by_role_and_label(Role::Slider, "Poisson ν").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    drag(&mut harness, at(0.3), at(0.6), Modifiers::NONE);
+    let poisson = harness.state().scene().material.poisson;
+    assert_ne!(poisson, start.material.poisson);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.state().scene().material.poisson, start.material.poisson);
+    assert_eq!(force(harness.state()), dragged);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), start);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    assert!(!harness.state().can_undo() && harness.state().can_redo());
+    key(&mut harness, Modifiers::COMMAND, Key::Y);
+    key(&mut harness, COMMAND_SHIFT, Key::Z);
+    assert_eq!((force(harness.state()), harness.state().scene().material.poisson), (dragged, poisson));
+    assert!(!harness.state().can_redo());
+    // Another scene is a step too; what it was opened over comes back with its edits.
+    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
+    harness.run();
+    harness.get_by_label("bridge").click();
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Bridge");
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!((force(harness.state()), harness.state().scene().material.poisson), (dragged, poisson));
+    assert!(harness.state().title().contains("Cantilever*"), "{}", harness.state().title());
+    let json = solve_json(&[
+        "cantilever",
+        "--set",
+        &format!("load.0.force={dragged:?}"),
+        "--set",
+        &format!("material.poisson={poisson}"),
+    ]);
+    let u = harness.state().simulation().solution().probes[0].u;
+    assert!((u.y - json["probes"][0]["u"][1].as_f64().unwrap()).abs() < 1e-5 * u.norm());
+}
+
+/// A double click on the tip brings the scene's own force back, and does not fit the view.
+#[test]
+fn a_double_click_on_the_tip_resets_the_force() {
+    let mut harness = harness("cantilever");
+    let before = force(harness.state());
+    let from = tip(harness.state());
+    drag(&mut harness, from, from + vec2(-30.0, -12.0), Modifiers::NONE);
+    assert_ne!(force(harness.state()), before);
+    let from = tip(harness.state());
+    harness.hover_at(from);
+    for _ in 0..2 {
+        harness.drag_at(from);
+        harness.step();
+        harness.drop_at(from);
+        harness.step();
+    }
+    harness.run();
+    assert_eq!(force(harness.state()), before);
+}
+
+/// Resting on the body shows the field there; a click keeps the numbers of the point, another one on them lets them go.
+#[test]
+fn the_body_says_its_values_and_a_click_keeps_them() {
+    let mut harness = harness("article");
+    let at = Vector2::new(2.2, 0.3);
+    let pos = on_body(harness.state(), at);
+    harness.hover_at(pos);
+    harness.run();
+    assert!(harness.state().probed().is_none());
+    let click = |harness: &mut Harness<'_, Lab>, pos: Pos2| {
+        harness.hover_at(pos);
+        harness.run();
+        harness.drag_at(pos);
+        harness.step();
+        harness.drop_at(pos);
+        harness.run();
+    };
+    let before = harness.state().simulation().displacement().to_vec();
+    click(&mut harness, pos);
+    let lab = harness.state();
+    let away = lab.simulation().displacement().iter().zip(&before).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(away < 1e-6, "a click has moved the body by {away} m");
+    let point = lab.simulation().point_state(lab.probed().expect("a kept point")).unwrap();
+    assert!((point.rest - at).norm() < 0.02, "{}", point.rest);
+    let texts: Vec<String> = harness
+        .get_all_by(|_| true)
+        .flat_map(|n| [n.accesskit_node().label(), n.accesskit_node().value()])
+        .flatten()
+        .collect();
+    for (what, number) in [("F", point.gradient.m11), ("R", point.rotation.c), ("S", point.stretch.m22)] {
+        let number = format!("{number:.4}");
+        assert!(texts.iter().any(|text| text.contains(&number)), "{what}: no {number} in {texts:?}");
+    }
+    // It follows the material point, not the place.
+    harness.state_mut().set_scene(scene("article")).unwrap();
+    harness.run();
+    assert!(harness.state().probed().is_some());
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.state().probed().is_none());
+    click(&mut harness, pos);
+    assert!(harness.state().probed().is_some());
+    let card = harness.get_by_label("Click or Escape closes it").rect().center();
+    click(&mut harness, card);
+    assert!(harness.state().probed().is_none(), "a click on the card does not close it");
+    // A dragged body keeps nothing.
+    let pos = on_body(harness.state(), at);
+    drag(&mut harness, pos, pos + vec2(0.0, 60.0), Modifiers::NONE);
+    assert!(harness.state().probed().is_none());
+}
+
+/// What does not converge may be anywhere: the view does not go after it.
+#[test]
+fn the_view_does_not_follow_what_has_not_converged() {
+    let mut harness = harness("cantilever");
+    let camera = harness.state().camera();
+    let mut heavy = harness.state().scene().clone();
+    heavy.set_force(0, [0.0, -9000.0]).unwrap();
+    harness.state_mut().set_scene(heavy).unwrap();
+    for _ in 0..20 {
+        harness.step();
+        let now = harness.state().camera();
+        assert!((now.scale / camera.scale - 1.0).abs() < 0.2, "{camera:?} {now:?}");
+    }
+    harness.run();
+    assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
+    let now = harness.state().camera();
+    assert!((now.scale / camera.scale - 1.0).abs() < 0.2, "{camera:?} {now:?}");
+}
+
+/// A view that eases is on its way for some frames, then it is where one that jumps is, and nothing is redrawn.
+#[test]
+fn the_view_eases_to_where_it_would_jump() {
+    let mut jumps = harness("elastica");
+    let mut eases = harness("elastica");
+    eases.state_mut().set_easing(true);
+    let before = eases.state().camera();
+    for harness in [&mut jumps, &mut eases] {
+        let mut light = harness.state().scene().clone();
+        light.set_force(0, [0.0, -30.0]).unwrap();
+        harness.state_mut().set_scene(light).unwrap();
+    }
+    jumps.run();
+    let goal = jumps.state().camera();
+    assert!((goal.scale / before.scale - 1.0).abs() > 0.05);
+    let mut between = 0;
+    for _ in 0..400 {
+        eases.step();
+        let now = eases.state().camera();
+        between += u32::from(now != before && now != goal);
+    }
+    assert!(between >= 1, "it jumps");
+    assert_eq!(eases.state().camera(), goal);
+}
+
+#[derive(Debug)]
+struct Dropped(std::path::PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// Files are opened by dropping them and by a dialog, saved to where they came from or elsewhere, and offered again when
+/// somebody else has written them.
+#[test]
+fn files_are_dropped_opened_saved_and_offered_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    let mut own = scene("shear");
+    own.name = "Mine".to_owned();
+    std::fs::write(&path, own.to_toml().unwrap()).unwrap();
+    let mut harness = harness("article");
+    harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path.clone())));
+    harness.run();
+    harness.input_mut().dropped_files.clear();
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Mine");
+    assert!(harness.state().can_undo());
+    // Edited and saved.
+    let from = tip(harness.state());
+    drag(&mut harness, from, from + vec2(-6.0, -6.0), Modifiers::NONE);
+    let edited = harness.state().scene().clone();
+    assert!(harness.state().title().starts_with("Mine*"));
+    key(&mut harness, Modifiers::COMMAND, Key::S);
+    assert!(harness.state().title().starts_with("Mine \u{2013}"), "{}", harness.state().title());
+    let read = |path: &std::path::Path| warpbeam::Scene::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap();
+    assert_eq!(read(&path), edited);
+    // Saved to another file by the dialog, which adds what the name lacks.
+    key(&mut harness, COMMAND_SHIFT, Key::S);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.event(Event::Text("other".to_owned()));
+    harness.step();
+    key(&mut harness, Modifiers::NONE, Key::Enter);
+    let other = folder.path().join("other.toml");
+    assert_eq!(read(&other), edited);
+    // Nobody else has written it: nothing is offered. Then somebody does.
+    harness.event(Event::WindowFocused(true));
+    harness.run();
+    assert!(harness.query_by_label("Reload").is_none());
+    own.name = "Theirs".to_owned();
+    std::fs::write(&other, own.to_toml().unwrap()).unwrap();
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(5);
+    std::fs::File::options().write(true).open(&other).unwrap().set_modified(later).unwrap();
+    harness.event(Event::WindowFocused(true));
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Mine");
+    harness.get_by_label("Reload").click();
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Theirs");
+    assert!(harness.query_by_label("Reload").is_none());
+    // Opened by the dialog; what is no scene is refused there, and the dialog stays.
+    std::fs::write(folder.path().join("bad.toml"), "name = 3").unwrap();
+    for (name, scene) in [("bad.toml", "Theirs"), ("mine.toml", "Mine")] {
+        if harness.query_by_label("Open a scene").is_none() {
+            key(&mut harness, Modifiers::COMMAND, Key::O);
+        }
+        harness.get_by_role_and_label(Role::Button, name).click();
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, "Open").click();
+        harness.run();
+        assert_eq!(harness.state().scene().name, scene);
+        assert_eq!(harness.query_by_label("Open a scene").is_some(), name == "bad.toml");
+    }
+    // Only scene files are there: nothing was left beside them.
+    let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["bad.toml", "mine.toml", "other.toml"]);
+}
+
+/// What a user has set is as it was in another lab that takes the settings on.
+#[test]
+fn settings_go_from_one_lab_to_the_next() {
+    let mut first = harness("article");
+    for wanted in [Key::P, Key::Num4, Key::B, Key::T] {
+        key(&mut first, Modifiers::NONE, wanted);
+    }
+    let settings = first.state().settings(&first.ctx);
+    let mut second = harness("article");
+    assert_ne!(second.state().settings(&second.ctx), settings);
+    let ctx = second.ctx.clone();
+    second.state_mut().set_settings(&ctx, settings.clone());
+    second.run();
+    assert_eq!(second.state().settings(&second.ctx), settings);
+    assert!(second.query_by_role_and_label(Role::Slider, "Force").is_none());
+    assert_eq!(second.ctx.theme(), first.ctx.theme());
+}
+
+/// Types a number into the field of this label.
+fn type_into(harness: &mut Harness<'_, Lab>, label: &str, text: &str) {
+    harness.get_by_role_and_label(Role::SpinButton, label).click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.event(Event::Text(text.to_owned()));
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run();
+}
+
+/// A moment goes on an edge that can turn, whatever the edges are called, and moves the body there.
+#[test]
+fn a_moment_goes_on_an_edge_that_can_turn() {
+    for (id, moment, held) in [("bracket", "200", "wall"), ("cook", "1", "clamp"), ("bridge", "500", "right")] {
+        let mut harness = harness(id);
+        let before = harness.state().simulation().displacement().to_vec();
+        type_into(&mut harness, "Moment", moment);
+        let edge = harness.state().scene().loads.iter().find_map(|l| match l {
+            Load::Moment { edge, .. } => Some(edge.clone()),
+            _ => None,
+        });
+        let edge = edge.unwrap_or_else(|| unreachable!("{id}: no moment"));
+        assert_ne!(edge, held, "{id}: a held edge cannot turn");
+        let moved = harness.state().simulation().displacement().iter().zip(&before).map(|(a, b)| (a - b).norm());
+        assert!(moved.fold(0.0, f64::max) > 1e-6, "{id}: the moment on {edge} does nothing");
+    }
+}
+
+/// The edge of a load is picked from a list, and is shown in the view while the pointer is on its name.
+#[test]
+fn loads_and_supports_are_put_on_other_edges() {
+    let mut harness = harness("cantilever");
+    harness.get_by_label("Edges").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::ComboBox, "Force on").click();
+    harness.run();
+    assert!(harness.query_by_role_and_label(Role::Button, "left").is_none(), "a load on a held edge does nothing");
+    harness.get_by_role_and_label(Role::Button, "top").click();
+    harness.run();
+    assert_eq!(harness.state().scene().loads, [Load::force("top", force(harness.state()))]);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    harness.get_by_role_and_label(Role::ComboBox, "Held at").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "right").click();
+    harness.run();
+    assert_eq!(harness.state().scene().supports[0].place, "right".into());
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), scene("cantilever"));
 }

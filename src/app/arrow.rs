@@ -242,7 +242,7 @@ mod tests {
             Arrow { load: 0, from: Pos2::ZERO, way: vec2(0.0, scale.length(1e3) as f32), scale, magnitude: 1e3 };
         assert_eq!(arrow.dragged(Vec2::ZERO, false), (1e3, DOWN));
         let (more, direction) = arrow.dragged(vec2(0.0, DECADE as f32), false);
-        assert!((more / 1e4 - 1.0).abs() < 0.01 && direction == DOWN, "{more} {direction}");
+        assert!((more / 1e4 - 1.0).abs() < 0.02 && direction == DOWN, "{more} {direction}");
         let (_, direction) = arrow.dragged(vec2(20.0, 0.0), true);
         assert_eq!(direction, -75.0);
         assert_eq!(arrow.dragged(-arrow.way, false).0, 0.0);

@@ -175,6 +175,16 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     if overlay.options.trail {
         trails(painter, &projection, overlay, &palette, visuals);
     }
+    if let Some(edge) = &overlay.options.edge {
+        let segments = system.mesh().edges().get(edge).into_iter().flatten();
+        for piece in segments.flat_map(|s| s.nodes().windows(2)) {
+            let ends = [piece[0], piece[1]].map(|n| overlay.positions[n as usize]);
+            if let Some(segment) = projection.segment(ends[0], ends[1]) {
+                painter.line_segment(segment, Stroke::new(9.0, palette.load.gamma_multiply(0.35)));
+                painter.line_segment(segment, Stroke::new(3.5, palette.load));
+            }
+        }
+    }
     supports(painter, &projection, overlay, &palette);
     loads(painter, &projection, overlay, &palette, visuals);
     legend(painter, rect, overlay, &palette, visuals);

@@ -1,6 +1,8 @@
 //! The pointer over the view. A press takes one thing: the tip of an arrow sets its force, the body is pulled, empty
 //! space moves the view. The wheel zooms to the pointer.
 
+use std::ops::RangeInclusive;
+
 use egui::{CursorIcon, Pos2, Response, Ui, Vec2};
 use nalgebra::Vector2;
 
@@ -73,6 +75,8 @@ pub(super) struct Reach<'a> {
     pub positions: &'a [Vector2<f64>],
     pub outline: &'a [Segment],
     pub arrows: &'a [Arrow],
+    /// Magnifications that the wheel may reach.
+    pub scales: RangeInclusive<f64>,
 }
 
 impl Reach<'_> {
@@ -150,7 +154,7 @@ impl Pointer {
         }
         self.hover(ui, response, reach, simulation, down);
         if wish.look == Look::Same {
-            wish.look = self.look(ui, response, reach.camera, fingers);
+            wish.look = self.look(ui, response, reach, fingers);
         }
         wish
     }
@@ -225,7 +229,8 @@ impl Pointer {
     }
 
     /// Moves and zooms the view.
-    fn look(&self, ui: &Ui, response: &Response, mut camera: Camera, fingers: Option<Vec2>) -> Look {
+    fn look(&self, ui: &Ui, response: &Response, reach: &Reach<'_>, fingers: Option<Vec2>) -> Look {
+        let mut camera = reach.camera;
         let mut look = Look::Same;
         // Two fingers move the view together, wherever they are.
         let drag = fingers.unwrap_or_else(|| response.drag_delta());
@@ -239,7 +244,7 @@ impl Pointer {
             // A pointer that only rests over the view must not stop it from following the body.
             if factor != 1.0 {
                 let at = pointer - response.rect.center();
-                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)]);
+                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)], reach.scales.clone());
                 look = Look::At(camera);
             }
         }

@@ -2,9 +2,10 @@
 
 use egui::Ui;
 
-use super::{Action, PanelInput, PanelState};
+use super::{Action, PanelInput, PanelState, edges};
 use crate::app::arrow::{DOWN, SMALLEST, largest_force, polar_form, vector};
 use crate::app::field::NumberField;
+use crate::assembly::System;
 use crate::scene::{Load, Scene, limits};
 
 pub(super) fn force_and_gravity(
@@ -35,7 +36,7 @@ pub(super) fn force_and_gravity(
     };
     if let Some(new) = field.show(ui, &mut state.messages, magnitude) {
         state.keep_force_direction(direction);
-        actions.push(Action::Edit("Force", with_force(scene, vector(new, direction))));
+        actions.push(Action::Edit("Force", with_force(scene, input.simulation.system(), vector(new, direction))));
     }
     let field = NumberField {
         label: "Direction",
@@ -47,7 +48,7 @@ pub(super) fn force_and_gravity(
     };
     if let Some(new) = field.show(ui, &mut state.messages, shown_degrees(direction)) {
         state.keep_force_direction(new);
-        actions.push(Action::Edit("Direction", with_force(scene, vector(magnitude, new))));
+        actions.push(Action::Edit("Direction", with_force(scene, input.simulation.system(), vector(magnitude, new))));
     }
     let (magnitude, direction) = polar_form(gravity.unwrap_or_default());
     let direction = direction.or(state.gravity_direction).unwrap_or(DOWN);
@@ -65,7 +66,7 @@ pub(super) fn force_and_gravity(
     }
 }
 
-/// The moment on the right edge, or on whichever edge has one.
+/// The moment on whichever edge has one, else on one that can carry it.
 pub(super) fn moment(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let current = input.scene.loads.iter().find_map(|l| match l {
         Load::Moment { moment, .. } => Some(*moment),
@@ -79,7 +80,7 @@ pub(super) fn moment(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState
     let largest = 10f64.powf(circle.clamp(1e-6, 1e14).log10().ceil());
     let field = NumberField {
         label: "Moment",
-        tooltip: "Moment on the right edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
+        tooltip: "Moment on an edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
         limit: limits::MOMENT,
         slider: -largest..=largest,
         logarithmic: Some(1e-4 * largest),
@@ -93,7 +94,14 @@ pub(super) fn moment(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState
         });
         match first {
             Some(moment) => *moment = new,
-            None => scene.loads.push(Load::moment("right", new)),
+            None => match edges::edge_for_moment(&scene, input.simulation.system()) {
+                Some(edge) => scene.loads.push(Load::moment(&edge, new)),
+                None => {
+                    let message = "expected a straight edge that is not held, there is none";
+                    state.messages.insert("Moment", message.to_owned());
+                    return;
+                }
+            },
         }
         actions.push(Action::Edit("Moment", scene));
     }
@@ -104,8 +112,8 @@ fn shown_degrees(degrees: f64) -> f64 {
     (degrees * 1e9).round() / 1e9
 }
 
-/// The scene with its first force replaced, or with one on the right edge.
-fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
+/// The scene with its first force replaced, or with one on an edge that can carry it.
+fn with_force(scene: &Scene, system: &System, new: [f64; 2]) -> Box<Scene> {
     let mut scene = Box::new(scene.clone());
     let first = scene.loads.iter_mut().find_map(|l| match l {
         Load::Force { force, .. } => Some(force),
@@ -113,7 +121,10 @@ fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
     });
     match first {
         Some(force) => *force = new,
-        None => scene.loads.push(Load::force("right", new)),
+        None => {
+            let edge = edges::edge_for_force(&scene, system).unwrap_or_else(|| "right".to_owned());
+            scene.loads.push(Load::force(edge.as_str(), new));
+        }
     }
     scene
 }

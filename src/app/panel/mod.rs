@@ -12,6 +12,7 @@ use crate::study::Reference;
 use crate::timings::Timings;
 
 mod body;
+mod edges;
 mod loads;
 mod motion;
 mod result;
@@ -86,6 +87,7 @@ pub(super) fn show(
             section(ui, "Load");
             loads::force_and_gravity(ui, input, state, actions);
             loads::moment(ui, input, state, actions);
+            edges::show(ui, input, state, view, actions);
             section(ui, "Result");
             result::show(ui, input);
             section(ui, "Material");
