@@ -107,6 +107,24 @@ fn dragging_the_tip_of_the_arrow_sets_the_force() {
     assert_ne!(lab.camera(), camera, "the view did not follow the body afterwards");
 }
 
+/// What is taken is what was pressed, also where the pointer has moved on before the next frame.
+#[test]
+fn a_press_takes_what_was_under_it_however_late_the_frame() {
+    let mut harness = harness("cantilever");
+    let (camera, pos) = (harness.state().camera(), tip(harness.state()));
+    harness.hover_at(pos);
+    harness.run();
+    let button =
+        Event::PointerButton { pos, button: egui::PointerButton::Primary, pressed: true, modifiers: Modifiers::NONE };
+    harness.input_mut().events.extend([button, Event::PointerMoved(pos + vec2(-60.0, -45.0))]);
+    harness.step();
+    harness.step();
+    assert_eq!(harness.state().camera(), camera, "the view was taken in the place of the tip");
+    assert!(force(harness.state())[0] < 0.0, "{:?}", force(harness.state()));
+    harness.drop_at(pos + vec2(-60.0, -45.0));
+    harness.run();
+}
+
 /// With Shift the direction is a multiple of 15°; dragged onto its foot the arrow is no force, and can be dragged out.
 #[test]
 fn shift_snaps_the_direction_and_a_force_can_be_dragged_away_and_back() {
@@ -285,6 +303,19 @@ fn the_body_says_its_values_and_a_click_keeps_them() {
     let card = harness.get_by_label("Click or Escape closes it").rect().center();
     click(&mut harness, card);
     assert!(harness.state().probed().is_none(), "a click on the card does not close it");
+    // A quick click: pressed and released between two frames.
+    harness.hover_at(pos);
+    harness.run();
+    let button = |pressed| Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.input_mut().events.extend([button(true), button(false)]);
+    harness.run();
+    assert!(harness.state().probed().is_some(), "a quick click is missed");
+    key(&mut harness, Modifiers::NONE, Key::Escape);
     // A dragged body keeps nothing.
     let pos = on_body(harness.state(), at);
     drag(&mut harness, pos, pos + vec2(0.0, 60.0), Modifiers::NONE);

@@ -13,12 +13,12 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-use common::scene;
+use common::{scene, solve_json};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use warpbeam::app::Lab;
-use warpbeam::scene::Source;
+use warpbeam::scene::{Load, Source};
 use warpbeam::simulation::Simulation;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{AtomEnum, ConnectionExt, ImageFormat, MapState};
@@ -37,6 +37,8 @@ struct Desktop {
     server: Child,
     manager: Child,
     name: String,
+    /// Where the programs have their settings: never among those of who runs the tests.
+    config: tempfile::TempDir,
 }
 
 impl Drop for Desktop {
@@ -72,7 +74,8 @@ impl Desktop {
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let name = format!(":{}", number.trim());
         let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
-        let desktop = Self { _turn: turn, server, manager, name };
+        let config = tempfile::tempdir().unwrap();
+        let desktop = Self { _turn: turn, server, manager, name, config };
         // A window that is mapped before there is a manager may never be managed.
         wait_for("the window manager", || desktop.is_managed().then_some(()));
         Some(desktop)
@@ -89,6 +92,7 @@ impl Desktop {
     fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);
         command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        command.env("XDG_CONFIG_HOME", self.config.path());
         command
     }
 
@@ -245,11 +249,12 @@ fn wait_for<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Where the panel has its force slider, from the same panel laid out without a window.
-fn force_slider() -> egui::Rect {
+/// The article's scene at rest, laid out as in the window but without one.
+fn laid_out() -> Harness<'static, Lab> {
     let scene = scene("article");
     let simulation = Simulation::new(&scene).unwrap();
-    let lab = Lab::new(Source { name: "article".into(), assignments: Vec::new() }, scene, simulation);
+    let mut lab = Lab::new(Source { name: "article".into(), assignments: Vec::new() }, scene, simulation);
+    lab.solve();
     let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
         |ui, lab: &mut Lab| {
             lab.ui(ui);
@@ -257,7 +262,12 @@ fn force_slider() -> egui::Rect {
         lab,
     );
     harness.run_steps(3);
-    harness.get_by_role_and_label(Role::Slider, "Force").rect()
+    harness
+}
+
+/// Where the panel has its force slider.
+fn force_slider() -> egui::Rect {
+    laid_out().get_by_role_and_label(Role::Slider, "Force").rect()
 }
 
 fn changed(a: &[u8], b: &[u8]) -> usize {
@@ -388,4 +398,58 @@ fn s_saves_a_screenshot() {
     let different = changed(&bgrx, &shown);
     assert!(different < 1_000, "{different} pixels differ from the window");
     assert_eq!(window.close().0, Some(0));
+}
+
+/// The tip of the arrow is dragged: the force goes where the pointer went, Ctrl+S saves it, `solve` converges to what is
+/// shown, and Ctrl+Z brings back what was before.
+#[test]
+fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, scene("article").to_toml().unwrap()).unwrap();
+    let window = Window::open(&desktop, &["run", path.to_str().unwrap()]);
+    let harness = laid_out();
+    let (tip, corner) = (harness.state().arrow_tips()[0].1, (1270.0, 790.0));
+    window.point(corner.0, corner.1);
+    let before = window.settle();
+    window.point(tip.x, tip.y);
+    desktop.xdotool(&["mousedown", "1"]);
+    // To the left and up: less force, and another direction.
+    let way = egui::vec2(-60.0, -45.0);
+    for part in [0.25, 0.5, 0.75, 1.0] {
+        window.point(tip.x + part * way.x, tip.y + part * way.y);
+    }
+    wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 10_000).then_some(()));
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(corner.0, corner.1);
+    let after = window.settle();
+    let until = |what: &str, key: &str, done: &dyn Fn() -> bool| {
+        let mut asked: Option<Instant> = None;
+        wait_for(what, || {
+            if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+                window.key(key);
+                asked = Some(Instant::now());
+            }
+            done().then_some(())
+        });
+    };
+    let force = || {
+        let saved = warpbeam::Scene::from_toml(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        saved.loads.iter().find_map(|l| if let Load::Force { force, .. } = l { Some(*force) } else { None }).unwrap()
+    };
+    until("the saved scene", "ctrl+s", &|| force() != [0.0, -30_000.0]);
+    let [fx, fy] = force();
+    assert!(fx < 0.0 && fy < 0.0 && fx.hypot(fy) < 30_000.0, "{fx} {fy}");
+    let json = solve_json(&[path.to_str().unwrap()]);
+    assert_eq!(json["status"], "converged", "{json}");
+    // What is saved is what is shown, to a window that opens it anew.
+    let anew = Window::open(&desktop, &["run", path.to_str().unwrap()]);
+    anew.point(corner.0, corner.1);
+    anew.wait_for_picture("the saved scene", &after);
+    assert_eq!(anew.close().0, Some(0));
+    until("the scene as it was", "ctrl+z", &|| changed(&before, &window.image()) < 2_000);
+    let (code, said) = window.close();
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
 }

@@ -23,6 +23,9 @@ pub(super) fn show(ctx: &Context, open: &mut bool) {
         .open(open)
         .collapsible(false)
         .resizable(false)
+        // The list is longer than a small window is high.
+        .vscroll(true)
+        .max_height(ctx.content_rect().height() - 80.0)
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
             egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {

@@ -1,6 +1,6 @@
 //! Keys and what they do.
 
-use egui::{Context, Key, Modifiers};
+use egui::{Context, Event, Key, Modifiers};
 
 use super::action::{Action, Drawer, Toggle};
 use crate::simulation::Field;
@@ -71,7 +71,13 @@ pub(super) fn actions(ctx: &Context) -> Vec<Action> {
         return Vec::new();
     }
     ctx.input(|i| {
-        let is_pressed = |s: &&Shortcut| i.modifiers.matches_exact(s.modifiers) && i.key_pressed(s.key);
+        // The modifiers at the press: they may be up again before the frame that hears of it.
+        let is_pressed = |s: &&Shortcut| {
+            i.events.iter().any(|event| {
+                matches!(event, Event::Key { key, pressed: true, modifiers, .. }
+                    if *key == s.key && modifiers.matches_exact(s.modifiers))
+            })
+        };
         SHORTCUTS.iter().filter(is_pressed).map(|s| (s.act)()).collect()
     })
 }

@@ -304,6 +304,9 @@ impl Lab {
         self.view.drawer = settings.drawer;
         self.view.color_with(settings.color());
         self.settings = settings;
+        if let Some(path) = self.document.path() {
+            self.settings.add_recent(path);
+        }
     }
 
     /// The window that shows it has this size, points.

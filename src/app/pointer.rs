@@ -120,15 +120,20 @@ impl Pointer {
         simulation: &mut Simulation,
         playback: &mut Playback,
     ) -> Wish {
-        let (pressed, down, at, fingers, snap) = ui.input(|i| {
+        let (pressed, origin, down, at, fingers, snap) = ui.input(|i| {
             let pointer = &i.pointer;
             let fingers = i.multi_touch().map(|touch| touch.translation_delta);
-            (pointer.primary_pressed(), pointer.primary_down(), pointer.interact_pos(), fingers, i.modifiers.shift)
+            let (pressed, down) = (pointer.primary_pressed(), pointer.primary_down());
+            (pressed, pointer.press_origin(), down, pointer.interact_pos(), fingers, i.modifiers.shift)
         });
         self.at = at;
         let mut wish = Wish::default();
-        // Two fingers move the view: what the first has taken is let go.
-        if pressed && response.is_pointer_button_down_on() && fingers.is_none() {
+        // A quick click is pressed and released within one frame. Two fingers move the view: what the first has taken is
+        // let go.
+        let is_here = response.is_pointer_button_down_on() || response.clicked();
+        if pressed && is_here && fingers.is_none() {
+            // Since the press the pointer may have moved on.
+            let at = origin.or(at);
             self.held = at.map_or(Held::Nothing, |at| Self::take(response, reach, simulation, playback, at));
         }
         self.drag(response, reach, simulation, playback, snap, &mut wish);
