@@ -913,7 +913,7 @@ impl Lab {
     fn hear_of_files(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         let (dropped, is_back) = ctx.input(|i| {
             let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
-            (dropped, i.events.iter().any(|event| *event == egui::Event::WindowFocused(true)))
+            (dropped, i.events.contains(&egui::Event::WindowFocused(true)))
         });
         actions.extend(dropped.map(Action::Drop));
         self.is_outdated |= is_back && self.document.has_changed();
