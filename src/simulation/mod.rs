@@ -20,12 +20,14 @@ use crate::timings::Timings;
 
 mod field;
 mod motion;
+mod point;
 mod results;
 mod search;
 mod status;
 
 pub use self::motion::Motion;
 pub use field::Field;
+pub use point::PointState;
 use results::supports_work;
 pub use results::{
     Deformation, Energy, ProbeResult, Reaction, SupportReaction, energy, probe_results, reaction, support_reactions,

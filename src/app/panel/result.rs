@@ -8,7 +8,7 @@ use crate::app::palette::Palette;
 use crate::app::verdict::{Errors, rho, sentence, stability};
 use crate::method::rho_words;
 use crate::simulation::{Motion, Simulation, energy};
-use crate::words::{count, engineering, engineering_pair, percent};
+use crate::words::{count, engineering, engineering_pair, percent, three_digits};
 
 /// Room for what a row is, points.
 const NAME_WIDTH: f32 = 84.0;
@@ -85,7 +85,7 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
 type Row<'a> = dyn FnMut(&str, String, &str) + 'a;
 
 fn time(duration: std::time::Duration) -> String {
-    engineering(format!("{:.2e}", duration.as_secs_f64()).parse().unwrap_or(0.0), "s")
+    engineering(three_digits(duration.as_secs_f64()), "s")
 }
 
 fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {

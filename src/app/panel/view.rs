@@ -97,6 +97,9 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
 pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for (name, tip, action) in [
+            ("Open…", "Open a scene file; dropping one on the window does too (Ctrl+O)", Action::OpenFile),
+            ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
+            ("Save as…", "Save the scene to another file (Ctrl+Shift+S)", Action::SaveAs),
             ("Screenshot", "Save this picture as a PNG file here (S)", Action::Screenshot),
             ("Record", "Record the scene from its start as a GIF here; again: stop (V)", Action::Record),
             ("Copy scene", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
