@@ -11,10 +11,12 @@ use crate::scene::ElementKind;
 mod beam;
 mod gmsh;
 mod locate;
+mod recovery;
 mod refine;
 
 pub use gmsh::GmshError;
 pub use locate::MaterialPoint;
+pub use recovery::Recovery;
 
 /// A mesh that cannot be used. Elements are numbered from 0.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -16,6 +16,7 @@ use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::scene::{Analysis, Invalid, Material, MethodKind, Scene};
 use crate::solver::{Factor, SolverError};
 use crate::state::{State, StateError, is_finite};
+use crate::stress::{MeshError, NodalStress};
 use crate::timings::Timings;
 
 mod field;
@@ -465,6 +466,23 @@ impl Simulation {
                 auto: motion.auto_report(&self.body.scene),
             }),
         }
+    }
+
+    /// Stress and strain at every node, recovered from the current state.
+    #[must_use]
+    pub fn nodal_stress(&self) -> NodalStress {
+        NodalStress::of(&self.body.problem, &self.body.state, self.kinematics())
+    }
+
+    /// The estimate of the mesh's own error in the current state; see [`MeshError`].
+    #[must_use]
+    pub fn mesh_error(&self, nodal: &NodalStress) -> MeshError {
+        MeshError::of(&self.body.problem, &self.body.state, nodal)
+    }
+
+    /// How the current state is seen.
+    fn kinematics(&self) -> Kinematics {
+        if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
     /// A field's value at every quadrature point; see [`Field::values`].
