@@ -27,7 +27,10 @@ mod status;
 
 pub use self::motion::Motion;
 pub use field::Field;
-pub use results::{Deformation, Energy, ProbeResult, Reaction, energy, probe_results, reaction};
+pub use results::{
+    Deformation, Energy, LargestStress, ProbeResult, ProbeStress, Reaction, StressResult, energy, probe_results,
+    reaction,
+};
 pub use status::Status;
 
 /// Why a scene cannot be simulated.
@@ -487,7 +490,14 @@ impl Simulation {
 
     /// A field's value at every quadrature point; see [`Field::values`].
     pub fn field(&self, field: Field, values: &mut Vec<Option<f64>>) {
-        field.values(&self.body.problem, &self.body.state, values);
+        field.values(&self.body.problem, &self.body.state, self.kinematics(), values);
+    }
+
+    /// Stress where people look for it: the largest, that of the probes, and how far the mesh is to be trusted.
+    #[must_use]
+    pub fn stress_result(&self) -> StressResult {
+        let nodal = self.nodal_stress();
+        StressResult::of(&self.body.problem, &nodal, &self.mesh_error(&nodal))
     }
 
     /// Displacement of a probe, m, the mean over its edge; `None` where there is no such probe.

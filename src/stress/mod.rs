@@ -127,7 +127,9 @@ pub fn strain_warning(max_strain: f64) -> Option<String> {
     let percent = 100.0 * max_strain;
     (percent.is_finite() && max_strain > LAW_HOLDS).then(|| {
         let most = 100.0 * LAW_HOLDS;
-        format!("strains reach {percent:.0} %: beyond {most} % the linear law between stress and strain is no material's")
+        format!(
+            "strains reach {percent:.0} %: beyond {most} % the linear law between stress and strain is no material's"
+        )
     })
 }
 
@@ -189,8 +191,11 @@ impl NodalStress {
         self.nodes.clear();
         self.nodes.extend(nodal.iter().map(|&[xx, yy, xy, c, s]| {
             let length = c.hypot(s);
-            let rotation =
-                if length > 0.0 && length.is_finite() { Rotation { c: c / length, s: s / length } } else { Rotation::IDENTITY };
+            let rotation = if length > 0.0 && length.is_finite() {
+                Rotation { c: c / length, s: s / length }
+            } else {
+                Rotation::IDENTITY
+            };
             Local { strain: Matrix2::new(xx, xy, xy, yy), rotation }
         }));
     }
