@@ -265,8 +265,10 @@ fn csv(simulation: &Simulation) -> String {
     for name in ["strain", "stress"] {
         let _ = write!(text, ",{name}_xx,{name}_yy,{name}_zz,{name}_xy");
     }
-    text.push_str(",von_mises,file_node\n");
+    text.push_str(",von_mises");
     let mesh = simulation.system().mesh();
+    let has_file = mesh.is_from_file();
+    text.push_str(if has_file { ",file_node\n" } else { "\n" });
     let nodal = simulation.nodal_stress();
     let nodes = mesh.nodes().iter().zip(simulation.displacement());
     for (node, ((rest, u), (local, stress))) in (0..).zip(nodes.zip(nodal.nodes().iter().zip(nodal.cauchy()))) {
@@ -280,8 +282,11 @@ fn csv(simulation: &Simulation) -> String {
             let value = value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string());
             let _ = write!(text, ",{value}");
         }
-        let tag = mesh.tag(node).map_or_else(String::new, |tag| tag.to_string());
-        let _ = writeln!(text, ",{tag}");
+        if has_file {
+            let tag = mesh.node_name(node).map_or_else(String::new, |tag| tag.to_string());
+            let _ = write!(text, ",{tag}");
+        }
+        text.push('\n');
     }
     text
 }

@@ -78,6 +78,8 @@ pub(super) struct ViewOptions {
     pub field: Field,
     /// Fixed ends of the colour map, or `None` for those of the current values.
     pub fixed_range: Option<[f64; 2]>,
+    /// Values as the elements have them, not recovered at the nodes.
+    pub raw: bool,
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
@@ -93,6 +95,7 @@ impl Default for ViewOptions {
         Self {
             field: Field::default(),
             fixed_range: None,
+            raw: false,
             wireframe: true,
             rest_outline: true,
             ghost: true,

@@ -15,6 +15,7 @@ use super::overlay::{self, Overlay};
 use super::panel::{self, PanelInput, PanelState, status_words};
 use super::playback::Playback;
 use super::pointer::{self, Look, Reach};
+use super::quality::Quality;
 use super::recorder::Recorder;
 use super::{help, keys, plot};
 use crate::assembly::Mass;
@@ -23,6 +24,7 @@ use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
+use crate::stress::{NodalStress, RecoveryScratch};
 use crate::study::{LoadCurve, Reference, Study};
 use crate::timings::Timings;
 
@@ -74,6 +76,7 @@ pub struct Lab {
     /// Of a body in motion: all that it has swept, m.
     swept: Option<[Vector2<f64>; 2]>,
     recorder: Option<Recorder>,
+    quality: Quality,
     /// Iterations a displayed frame.
     iterations: u32,
     /// Time of the last iterations made for one displayed frame.
@@ -94,8 +97,12 @@ enum OpenError {
 struct Shape {
     nodes: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
-    at_points: Vec<Option<f64>>,
-    values: Vec<Option<f64>>,
+    nodal: Option<NodalStress>,
+    scratch: RecoveryScratch,
+    /// At quadrature points or nodes.
+    known: Vec<Option<f64>>,
+    /// At the corners of what is drawn.
+    values: Vec<[Option<f64>; 3]>,
     range: [f64; 2],
     /// What the range is of.
     field: Option<Field>,
@@ -132,6 +139,7 @@ impl Lab {
             playback: Playback::default(),
             swept: None,
             recorder: None,
+            quality: Quality::default(),
             iterations: 1,
             timings: Timings::default(),
         };
@@ -276,6 +284,7 @@ impl Lab {
             return;
         }
         self.simulation.certify();
+        self.quality.follow(&self.simulation);
         self.truth.settle(&self.scene);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.settle(&self.scene);
@@ -334,9 +343,15 @@ impl Lab {
         shape.nodes.extend(rest.iter().zip(self.simulation.displacement()).map(|(x, u)| x + u));
         let nodes = &shape.nodes;
         self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
-        self.simulation.field(self.view.field, &mut shape.at_points);
-        self.drawing.values(&shape.at_points, &mut shape.values);
-        let range = panel::range_of(&shape.at_points);
+        let field = self.view.field;
+        if self.view.raw || field.is_of_elements() {
+            self.simulation.field(field, &mut shape.known);
+            self.drawing.values(&shape.known, &mut shape.values);
+        } else {
+            self.simulation.smooth_field(field, (&mut shape.nodal, &mut shape.scratch), &mut shape.known);
+            self.drawing.nodal_values(&shape.known, field.period(), &mut shape.values);
+        }
+        let range = panel::range_of(&shape.known);
         // Colours that jump from frame to frame say nothing of a motion: its range only grows.
         let before = self.swept.map(|_| shape.range).filter(|_| shape.field == Some(self.view.field));
         let grown = before.map_or(range, |[low, high]| [low.min(range[0]), high.max(range[1])]);
@@ -366,6 +381,7 @@ impl Lab {
         if self.view.panel {
             let input = PanelInput {
                 truth: self.truth.get(),
+                quality: &self.quality,
                 scene: &self.scene,
                 scene_name: self.source.name.to_str().unwrap_or_default(),
                 simulation: &self.simulation,
@@ -404,6 +420,7 @@ impl Lab {
             return;
         }
         self.simulation.certify();
+        self.quality.follow(&self.simulation);
         self.truth.ask(&self.scene, ctx);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.ask(&self.scene, ctx);

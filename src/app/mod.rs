@@ -25,6 +25,7 @@ mod panel;
 mod playback;
 mod plot;
 mod pointer;
+mod quality;
 mod record;
 mod recorder;
 mod shot;

@@ -295,17 +295,17 @@ impl Mesh {
         self.nodes[node as usize]
     }
 
-    /// The number of a node in the file that the mesh was read from; `None` where the file has no such node.
+    /// Whether its nodes have numbers of a file.
     #[must_use]
-    pub fn tag(&self, node: u32) -> Option<u64> {
-        self.tags.get(node as usize).copied().flatten()
+    pub fn is_from_file(&self) -> bool {
+        !self.tags.is_empty()
     }
 
     /// What a node is called towards people: by its file, or where there is none by its number from 0. `None` for a node
     /// that was put between those of a file.
     #[must_use]
     pub fn node_name(&self, node: u32) -> Option<u64> {
-        if self.tags.is_empty() { Some(u64::from(node)) } else { self.tag(node) }
+        if self.is_from_file() { self.tags.get(node as usize).copied().flatten() } else { Some(u64::from(node)) }
     }
 
     /// What every element is.

@@ -12,8 +12,8 @@ pub struct Frame<'a> {
     pub positions: &'a [Vector2<f64>],
     /// Corners of the triangles.
     pub triangles: &'a [[u32; 3]],
-    /// A value a triangle, if it has one.
-    pub values: &'a [Option<f64>],
+    /// A value at every corner of every triangle, if it has one; between them it is linear.
+    pub values: &'a [[Option<f64>; 3]],
     /// The colour of triangles without, gamma space.
     pub absent_color: [u8; 3],
     /// The values at the two ends of the colour map.
@@ -50,7 +50,14 @@ impl Viewport {
 struct Vertex {
     position: [f32; 2],
     color: [u8; 4],
+    /// Where its value lies in the colour map, 0 to 1; negative where its colour is its own.
+    value: f32,
 }
+
+/// The value of a vertex that has a colour of its own.
+const COLORED: f32 = -1.0;
+/// Colours that the shader has of the colour map.
+const MAP_COLORS: usize = 64;
 
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -90,23 +97,38 @@ impl BodyRenderer {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
+        let colors: Vec<[f32; 4]> = (0..MAP_COLORS)
+            .map(|i| colormap::color(i as f64 / (MAP_COLORS - 1) as f64).map(|c| f32::from(c) / 255.0))
+            .map(|[r, g, b]| [r, g, b, 1.0])
+            .collect();
+        let map = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("colour map"),
+            size: size_of_val(colors.as_slice()) as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        gpu.queue.write_buffer(&map, 0, bytemuck::cast_slice(&colors));
+        let uniform = |binding, visibility| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("camera"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
+            entries: &[uniform(0, wgpu::ShaderStages::VERTEX), uniform(1, wgpu::ShaderStages::FRAGMENT)],
         });
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("camera"),
             layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: camera.as_entire_binding() }],
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: camera.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: map.as_entire_binding() },
+            ],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("body"),
@@ -124,7 +146,7 @@ impl BodyRenderer {
                     buffers: &[Some(wgpu::VertexBufferLayout {
                         array_stride: size_of::<Vertex>() as u64,
                         step_mode: wgpu::VertexStepMode::Vertex,
-                        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Unorm8x4],
+                        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Unorm8x4, 2 => Float32],
                     })],
                 },
                 primitive: wgpu::PrimitiveState { topology, ..Default::default() },
@@ -240,15 +262,23 @@ impl BodyRenderer {
         let [r, g, b] = frame.background;
         let [x, y] = view.map(|side| (0.5 * side) as f32);
         let corners = [[-x, -y], [x, -y], [x, y], [-x, -y], [x, y], [-x, y]];
-        self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255] }));
-        for (triangle, &value) in frame.triangles.iter().zip(frame.values) {
-            let color = |value| colormap::color(colormap::position(value, frame.range));
-            let [r, g, b] = value.map_or(frame.absent_color, color);
-            self.scratch.extend(triangle.map(|node| Vertex { position: position(node), color: [r, g, b, 255] }));
+        self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255], value: COLORED }));
+        let [r, g, b] = frame.absent_color;
+        for (triangle, values) in frame.triangles.iter().zip(frame.values) {
+            // A triangle without a value at one of its corners has none.
+            let known = values.iter().all(Option::is_some);
+            self.scratch.extend(triangle.iter().zip(values).map(|(&node, value)| {
+                let at = value.filter(|_| known).map(|value| colormap::position(value, frame.range) as f32);
+                Vertex { position: position(node), color: [r, g, b, 255], value: at.unwrap_or(COLORED) }
+            }));
         }
         let triangle_vertices = self.scratch.len() as u32;
         for line in frame.lines {
-            self.scratch.extend(line.map(|node| Vertex { position: position(node), color: frame.line_color }));
+            self.scratch.extend(line.map(|node| Vertex {
+                position: position(node),
+                color: frame.line_color,
+                value: COLORED,
+            }));
         }
         triangle_vertices
     }

@@ -16,7 +16,7 @@ use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::scene::{Analysis, Invalid, Material, MethodKind, Scene};
 use crate::solver::{Factor, SolverError};
 use crate::state::{State, StateError, is_finite};
-use crate::stress::{MeshError, NodalStress};
+use crate::stress::{MeshError, NodalStress, RecoveryScratch};
 use crate::timings::Timings;
 
 mod field;
@@ -491,6 +491,23 @@ impl Simulation {
     /// A field's value at every quadrature point; see [`Field::values`].
     pub fn field(&self, field: Field, values: &mut Vec<Option<f64>>) {
         field.values(&self.body.problem, &self.body.state, self.kinematics(), values);
+    }
+
+    /// A field's values as people expect them, recovered at the nodes; of a field of elements, those of
+    /// [`Self::field`]. `nodal` and `scratch` are room to work in, kept from state to state.
+    pub fn smooth_field(
+        &self,
+        field: Field,
+        (nodal, scratch): (&mut Option<NodalStress>, &mut RecoveryScratch),
+        values: &mut Vec<Option<f64>>,
+    ) {
+        if field.is_of_elements() {
+            return self.field(field, values);
+        }
+        let Body { problem, state, .. } = &self.body;
+        let nodal = nodal.get_or_insert_with(|| NodalStress::empty(*problem.material()));
+        nodal.follow(problem, state, self.kinematics(), scratch);
+        field.nodal_values(nodal, values);
     }
 
     /// Stress where people look for it: the largest, that of the probes, and how far the mesh is to be trusted.

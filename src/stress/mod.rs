@@ -169,9 +169,15 @@ impl NodalStress {
     /// Of a state, as its method sees it.
     #[must_use]
     pub fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
-        let mut result = Self { material: *problem.material(), kinematics, nodes: Vec::new() };
+        let mut result = Self::empty(*problem.material());
         result.follow(problem, state, kinematics, &mut RecoveryScratch::default());
         result
+    }
+
+    /// Of no node yet.
+    #[must_use]
+    pub(crate) fn empty(material: Material) -> Self {
+        Self { material, kinematics: Kinematics::Corotated, nodes: Vec::new() }
     }
 
     /// Becomes that of another state, without allocating where the mesh is the same.

@@ -5,6 +5,7 @@ use egui::{Button, ComboBox, RichText, ScrollArea, Ui};
 use super::action::{Action, ViewOptions};
 use super::field::{Messages, NumberField};
 use super::playback::Playback;
+use super::quality::Quality;
 use crate::scene::{Analysis, Scene, registry};
 use crate::simulation::Simulation;
 use crate::study::Reference;
@@ -32,6 +33,8 @@ pub(super) struct PanelInput<'a> {
     pub timings: &'a Timings,
     /// What errors are measured against, once it is known.
     pub truth: Option<&'a Reference>,
+    /// How far the result is to be trusted.
+    pub quality: &'a Quality,
     pub adapter: &'a str,
 }
 

@@ -78,6 +78,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>) {
         probe_row(&mut row, simulation);
         let (error, truth) = error_words(input).unwrap_or_else(|| (UNKNOWN.to_owned(), "a truth".to_owned()));
         row("Error", error, &format!("Distance of the first probe from {truth}, over its displacement"));
+        quality_rows(&mut row, input);
         let (factor, steps) = simulation.load_stepping();
         let percent = format::short(100.0 * factor);
         row("Load steps", format!("{steps}, at {percent} % of the load"), "Parts in which the load is put on");
@@ -123,6 +124,26 @@ fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
             "Displacement of the probe",
         );
     }
+}
+
+/// What the mesh does wrong, and how far the material is strained.
+fn quality_rows(row: &mut Row<'_>, input: &PanelInput<'_>) {
+    let known = *input.simulation.status() == Status::Converged;
+    let quality = input.quality;
+    let error = quality.mesh_error_percent.filter(|_| known);
+    let words = error.map_or_else(|| UNKNOWN.to_owned(), |error| format!("{} % (estimate)", format::short(error)));
+    let tip = "Of the mesh alone, in the energy norm: the elements' stresses against those recovered at the nodes";
+    row("Mesh error", words, tip);
+    let percent = format!("{} %", format::short(100.0 * quality.max_strain));
+    let warning = quality.warning().filter(|_| known);
+    let words = match (known, &warning) {
+        (false, _) => UNKNOWN.to_owned(),
+        (true, None) => percent,
+        (true, Some(_)) => format!("{percent}: too large"),
+    };
+    let tip =
+        "The largest principal strain".to_owned() + &warning.map_or_else(String::new, |words| format!("; {words}"));
+    row("Strain", words, &tip);
 }
 
 fn frame_row(row: &mut Row<'_>, input: &PanelInput<'_>, what: &str) {
