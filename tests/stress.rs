@@ -70,6 +70,17 @@ fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -
             }
         }
     }
+    // What the polygon and the rule miss of the balance, spread evenly: supports carry nothing then.
+    let loaded: Vec<usize> = (0..forces.len()).filter(|&n| forces[n].norm() > 0.0).collect();
+    let count = loaded.len() as f64;
+    let centre = loaded.iter().map(|&n| mesh.nodes()[n]).sum::<Vector2<f64>>() / count;
+    let total = loaded.iter().map(|&n| forces[n]).sum::<Vector2<f64>>() / count;
+    let arms: Vec<Vector2<f64>> = loaded.iter().map(|&n| mesh.nodes()[n] - centre).collect();
+    let moment: f64 = loaded.iter().zip(&arms).map(|(&n, arm)| arm.perp(&forces[n])).sum();
+    let inertia: f64 = arms.iter().map(|arm| arm.norm_squared()).sum();
+    for (&n, arm) in loaded.iter().zip(&arms) {
+        forces[n] -= total + Vector2::new(-arm.y, arm.x) * (moment / inertia);
+    }
     let mesh = mesh.moved(|x| turn.apply(x)).unwrap();
     let mut scene = Scene::beam(1.0, 1.0).with_element(kind).with_material(Material::new(YOUNG, 0.3));
     let [a, b]: [[f64; 2]; 2] = [[4.0, 0.0], [0.0, 4.0]].map(|x| turn.apply(x.into()).into());
