@@ -15,7 +15,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector2};
 
-use crate::scene::{Analysis, Axis, Load, Place, Plane, Scene};
+use crate::scene::{Analysis, Axis, Load, Place, Plane, Scene, Support};
 
 /// A clamped beam and its loads. Any consistent units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -321,10 +321,10 @@ impl BeamTruth {
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         const SHEAR_AREA: f64 = 5.0 / 6.0;
-        if scene.analysis != Analysis::Static {
+        if scene.analysis != Analysis::Static || scene.supports.iter().any(Support::moves) {
             return None;
         }
-        let beam = scene.beam.as_ref()?;
+        let beam = scene.beam.as_ref().filter(|beam| beam.rise == 0.0)?;
         let m = &scene.material;
         let young = match m.plane {
             Plane::Stress => m.young,

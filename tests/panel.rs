@@ -510,6 +510,37 @@ fn at_rest_nothing_is_redrawn() {
     assert!(delay > std::time::Duration::from_secs(3600), "{delay:?}");
 }
 
+/// The slider of a support that moves drags the body with it; the window says what it takes, and keeps the slider at 0.
+#[test]
+fn a_support_is_dragged_and_its_reaction_is_shown() {
+    let mut harness = harness("snap");
+    type_into(&mut harness, "Move y", "-3 mm");
+    assert_eq!(harness.state().scene().supports[2].displacement, [0.0, -0.003]);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    assert!(harness.query_by_label("(0, -80.53) N").is_some());
+    let slider = harness.get_by_role_and_label(Role::Slider, "Move y").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    harness.hover_at(at(0.4));
+    harness.drag_at(at(0.4));
+    harness.run();
+    harness.hover_at(at(0.3));
+    harness.run();
+    assert_eq!(harness.get_by_role_and_label(Role::Slider, "Move y").rect(), slider, "the slider moves away");
+    harness.drop_at(at(0.3));
+    harness.run();
+    let lab = harness.state();
+    let way = lab.scene().supports[2].displacement[1];
+    assert!((-0.012..-0.004).contains(&way), "{way}");
+    assert!((tip(lab)[1] - way).abs() < 1e-4, "{:?} {way}", tip(lab));
+    type_into(&mut harness, "Move y", "0");
+    assert!(tip(harness.state())[1].abs() < 1e-9);
+    type_into(&mut harness, "Move y", "-1 mm");
+    assert!((tip(harness.state())[1] + 0.001).abs() < 1e-5);
+    // Scenes whose supports stay have no such slider.
+    let harness = harness_of("cantilever");
+    assert!(harness.query_by_label("Move y").is_none());
+}
+
 /// What the window says of a result: certificate, ρ in words, the error against the exact beam, the load curve.
 #[test]
 fn results_are_certified_and_compared_with_the_truth() {

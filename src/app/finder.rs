@@ -16,6 +16,8 @@ pub(super) struct Finder<T> {
     find: fn(&Scene) -> Option<T>,
     /// Of the present scene: not known yet, or what was found.
     found: Option<Option<T>>,
+    /// What was found of the scene before.
+    before: Option<T>,
     /// What the thread will say, and whether it is of the present scene. One thread at a time: edits do not pile up.
     running: Option<(Receiver<Option<T>>, bool)>,
 }
@@ -23,12 +25,12 @@ pub(super) struct Finder<T> {
 impl<T: Send + 'static> Finder<T> {
     /// Nothing known yet.
     pub(super) fn new(find: fn(&Scene) -> Option<T>) -> Self {
-        Self { find, found: None, running: None }
+        Self { find, found: None, before: None, running: None }
     }
 
     /// Forgets what belonged to another scene.
     pub(super) fn forget(&mut self) {
-        self.found = None;
+        self.before = self.found.take().unwrap_or_else(|| self.before.take());
         if let Some((_, current)) = &mut self.running {
             *current = false;
         }
@@ -73,6 +75,11 @@ impl<T: Send + 'static> Finder<T> {
     /// What was found.
     pub(super) fn get(&self) -> Option<&T> {
         self.found.as_ref().and_then(Option::as_ref)
+    }
+
+    /// What was found; while nothing is known yet, what was found of the scene before.
+    pub(super) fn latest(&self) -> Option<&T> {
+        self.found.as_ref().map_or(self.before.as_ref(), Option::as_ref)
     }
 
     /// Whether nothing is known yet.

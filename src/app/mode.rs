@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::action::Action;
-use super::lab::Lab;
+use super::lab::{Lab, Request};
 use crate::scene::{Analysis, Scene};
 
 /// What the window is used for at present.
@@ -29,7 +29,7 @@ pub(super) struct ModeEntry {
     /// Shows what it has beside body and panel.
     pub show: fn(&mut Lab, &mut Ui, &mut Vec<Action>),
     /// Shows what is in the place of the body.
-    pub view: fn(&mut Lab, &mut Ui, &mut Vec<Action>),
+    pub view: fn(&mut Lab, &mut Ui, &mut Vec<Action>, &mut Vec<Request>),
 }
 
 /// Every mode there is.

@@ -1,23 +1,40 @@
-//! The load–deflection plot: linear theory, the exact beam, every method's point, and where linear theory leaves.
+//! The load–deflection plot. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory
+//! leaves. Of any other scene: its load path, what is unstable dashed.
 
-use egui::Ui;
+use egui::{Align2, Ui};
 use egui_plot::{
     Corner, GridInput, GridMark, HoverPosition, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine,
 };
 
+use super::overlay::boxed_text;
 use super::palette::Palette;
-use crate::scene::MethodKind;
+use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
-use crate::study::LoadCurve;
-use crate::words::{engineering, ticks};
+use crate::study::path_chart::{Ordinate, Piece, drawn};
+use crate::study::{LoadCurve, LoadPath};
+use crate::words::{engineering, three_digits, ticks};
+
+/// What is known of a scene's load and deflection.
+#[derive(Debug)]
+pub(super) enum Curve {
+    /// Of a cantilever.
+    Beam(LoadCurve),
+    /// Of any scene at rest; of the scene with it.
+    Path(Box<(LoadPath, Scene)>),
+}
+
+impl Curve {
+    pub(super) fn of(scene: &Scene) -> Option<Self> {
+        let path = || Some(Self::Path(Box::new((LoadPath::of(scene)?, scene.clone()))));
+        LoadCurve::new(scene).map(Self::Beam).or_else(path)
+    }
+}
 
 /// A plot that stands still, with round ticks and values in engineering units.
 pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
-    /// Grid lines so far apart, points, are drawn in full, and so are their numbers.
-    const CLEAR: f32 = 40.0;
     /// A value between ticks, to three digits.
     fn value(value: f64, unit: &str) -> String {
-        engineering(format!("{value:.2e}").parse().unwrap_or(value), unit)
+        engineering(three_digits(value), unit)
     }
     let ((x_name, x_unit), (y_name, y_unit)) = (x, y);
     Plot::new(id.to_owned())
@@ -34,34 +51,74 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
             HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)
-        .grid_spacing(egui::Rangef::new(8.0, CLEAR))
+        .grid_spacing(egui::Rangef::new(NEAREST, CLEAR))
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
         .allow_boxed_zoom(false)
 }
 
-/// Marks 1, 2 or 5 · 10ⁿ apart.
+/// Grid lines nearer to each other than this, points, are not drawn.
+const NEAREST: f32 = 8.0;
+/// Those so far apart are drawn in full, and so are their numbers.
+const CLEAR: f32 = 40.0;
+
+/// Marks 1, 2 or 5 · 10ⁿ apart, as many as have room for their numbers.
 fn round_marks(input: GridInput) -> Vec<GridMark> {
-    const MOST: u32 = 9;
+    const MOST: f64 = 9.0;
     let (low, high) = input.bounds;
-    let ticks = ticks(low, high, MOST);
+    let room = (high - low) / input.base_step_size * f64::from(NEAREST / CLEAR);
+    let ticks = ticks(low, high, room.clamp(2.0, MOST) as u32);
     let step_size = ticks.windows(2).next().map_or(high - low, |pair| pair[1] - pair[0]);
     ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
-/// Shows the plot, or says why there is none: not yet, or not at all.
-pub(super) fn show(ui: &mut Ui, curve: Option<&LoadCurve>, looked_for: bool) {
-    let Some(curve) = curve else {
-        ui.centered_and_justified(|ui| {
-            ui.weak(if looked_for {
-                "No load curve: it needs a beam clamped left, loaded on its right edge or by its weight."
-            } else {
-                "Looking for the load curve."
+/// Shows the plot, that of the scene before while a new one is looked for; or says why there is none: not yet, or not at
+/// all.
+pub(super) fn show(ui: &mut Ui, curve: Option<&Curve>, looked_for: bool) {
+    let at = ui.available_rect_before_wrap().center_top() + egui::vec2(0.0, 10.0);
+    match curve {
+        Some(Curve::Beam(curve)) => beam(ui, curve),
+        Some(Curve::Path(of)) => path(ui, &of.0, &of.1),
+        None => {
+            ui.centered_and_justified(|ui| {
+                ui.weak(if looked_for {
+                    "No load curve: linear theory knows one straight line only."
+                } else {
+                    "The load curve comes when the body has come to rest."
+                });
             });
+        }
+    }
+    if curve.is_some() && !looked_for {
+        let words = "As it was before the last change; the new one comes when the body has come to rest.";
+        boxed_text(ui.painter(), at, Align2::CENTER_TOP, words, ui.visuals(), ui.visuals().weak_text_color(), 520.0);
+    }
+}
+
+fn path(ui: &mut Ui, path: &LoadPath, scene: &Scene) {
+    let palette = Palette::new(ui.visuals());
+    let drawn = drawn(path, scene, &Ordinate::Usual);
+    let [stable, unstable] = [MethodKind::Newton, MethodKind::Warped].map(|method| palette.method(method));
+    // Where the curve is not: a load's begins low, that of a support that moves falls again.
+    let corner = if path.driven.is_some() { Corner::RightTop } else { Corner::LeftTop };
+    still(&palette, "load path", (&drawn.x_label, ""), (&drawn.y_label, ""))
+        .legend(Legend::default().position(corner).follow_insertion_order(true))
+        .show(ui, |plot| {
+            for (points, piece) in drawn.pieces(path) {
+                let (name, color, style) = match piece {
+                    Piece::Stable => ("stable", stable, LineStyle::Solid),
+                    Piece::Unstable => ("unstable under force control", unstable, LineStyle::dashed_loose()),
+                    Piece::Jump => ("it jumps", unstable, LineStyle::dotted_dense()),
+                };
+                plot.line(Line::new(name, PlotPoints::from(points)).color(color).width(2.0).style(style));
+            }
+            let at: Vec<[f64; 2]> = drawn.points.last().map(|p| p.0).into_iter().collect();
+            plot.points(Points::new("the scene", at).color(palette.text).radius(4.0));
         });
-        return;
-    };
+}
+
+fn beam(ui: &mut Ui, curve: &LoadCurve) {
     let palette = Palette::new(ui.visuals());
     let linear = palette.method(MethodKind::Linear);
     let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {

@@ -10,6 +10,7 @@ use super::panel;
 use crate::render::Frame;
 use crate::render::colormap::ColorMap;
 use crate::simulation::{Field, Simulation};
+use crate::stress::{NodalStress, RecoveryScratch};
 
 /// What is drawn of a body at present.
 #[derive(Debug, Default)]
@@ -18,8 +19,13 @@ pub(super) struct Shape {
     pub nodes: Vec<Vector2<f64>>,
     /// Where the drawn points are, m.
     pub points: Vec<Vector2<f64>>,
-    at_points: Vec<Option<f64>>,
-    values: Vec<Option<f64>>,
+    /// Of fields that are recovered at the nodes.
+    pub nodal: Option<NodalStress>,
+    scratch: RecoveryScratch,
+    /// At quadrature points or nodes.
+    pub known: Vec<Option<f64>>,
+    /// At the corners of what is drawn.
+    values: Vec<[Option<f64>; 3]>,
     /// The field's values at the two ends of the colour map.
     pub range: [f64; 2],
     /// What the range is of.
@@ -39,9 +45,14 @@ impl Shape {
         self.nodes.extend(rest.iter().zip(simulation.displacement()).map(|(x, u)| x + u));
         let nodes = &self.nodes;
         drawing.points(&|n| nodes[n as usize], &mut self.points);
-        simulation.field(view.field, &mut self.at_points);
-        drawing.values(&self.at_points, &mut self.values);
-        let [mut low, mut high] = panel::range_of(&self.at_points);
+        if view.is_smooth() {
+            simulation.smooth_field(view.field, (&mut self.nodal, &mut self.scratch), &mut self.known);
+            drawing.nodal_values(&self.known, view.field.period(), &mut self.values);
+        } else {
+            simulation.field(view.field, &mut self.known);
+            drawing.values(&self.known, &mut self.values);
+        }
+        let [mut low, mut high] = panel::range_of(&self.known);
         if palette::has_sign(view.field) {
             let reach = high.abs().max(low.abs());
             (low, high) = (-reach, reach);

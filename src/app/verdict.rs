@@ -116,6 +116,9 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
         add(if stable { "stable" } else { "unstable" }.to_owned());
     }
     add(count(simulation.iterations(), "iteration"));
+    if let Some(jump) = input.jump.filter(|_| simulation.status().is_success()) {
+        add(jump.to_string());
+    }
     (words, stability(simulation) == Some(false))
 }
 

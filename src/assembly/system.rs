@@ -1,6 +1,6 @@
 //! What is found once for a mesh and its supports, and shared by all who solve on it.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -9,7 +9,7 @@ use super::edge::no_such_edge;
 use super::supports::{Hold, check_held, fixed_unknowns};
 use super::{Edge, Pattern};
 use crate::element::Elements;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Recovery};
 use crate::rotation::Rotation;
 use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
 use crate::solver::Symbolic;
@@ -56,6 +56,8 @@ struct Body {
     elements: Box<dyn Elements>,
     edges: Vec<Edge>,
     nodal_areas: Vec<f64>,
+    /// Made when it is first asked for.
+    recovery: OnceLock<Recovery>,
     size: f64,
 }
 
@@ -75,6 +77,7 @@ impl Body {
             elements: (entry.loops)(mesh.nodes(), mesh.connectivity()),
             edges: Edge::of(&mesh),
             nodal_areas,
+            recovery: OnceLock::new(),
             size: (high - low).norm(),
             mesh,
         }
@@ -149,7 +152,9 @@ impl System {
             Origin::Beam(_) | Origin::File(_) => scene.validate()?,
         }
         let couples = || self.moment_edges(scene).iter().all(|edge| self.coupled.contains(edge));
-        if scene.supports == self.supports && couples() {
+        let same_supports = scene.supports.len() == self.supports.len()
+            && scene.supports.iter().zip(&self.supports).all(|(a, b)| a.fixes_as(b));
+        if same_supports && couples() {
             check_held(self.hold, scene.analysis)?;
             return Ok(self.clone());
         }
@@ -216,6 +221,12 @@ impl System {
         &self.body.nodal_areas
     }
 
+    /// From quadrature points to nodes: made when it is first asked for, and shared.
+    #[must_use]
+    pub fn recovery(&self) -> &Recovery {
+        self.body.recovery.get_or_init(|| Recovery::new(&self.body.mesh))
+    }
+
     /// Size of the body at rest: the diagonal of the box around it, m.
     #[must_use]
     pub fn size(&self) -> f64 {
@@ -259,11 +270,17 @@ impl System {
     /// Sets rotations and turns of edges to those of the displacement. An edge is taken to have turned to the nearest
     /// angle from where it was, so that full turns are kept.
     pub fn follow(&self, state: &mut State, kinematics: Kinematics) {
-        let State { displacement: u, rotations, turns, .. } = state;
+        let State { displacement: u, rotations, .. } = state;
         match kinematics {
             Kinematics::Corotated => self.elements().rotations(u, rotations),
             Kinematics::Linear => rotations.fill(Rotation::IDENTITY),
         }
+        self.turn_edges(state, kinematics);
+    }
+
+    /// Sets turns of edges to those of the displacement.
+    pub(super) fn turn_edges(&self, state: &mut State, kinematics: Kinematics) {
+        let State { displacement: u, turns, .. } = state;
         for (edge, turn) in self.edges().iter().zip(turns).filter(|(edge, _)| edge.is_straight()) {
             *turn = match kinematics {
                 Kinematics::Corotated => edge.turn(u, *turn),

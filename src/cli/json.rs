@@ -6,14 +6,25 @@ use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
 use super::commands::Spent;
-use crate::scene::Scene;
-use crate::simulation::{MotionResult, ProbeResult, Solution};
-use crate::study::{ProbeTruth, Reference};
+use crate::mesh::Mesh;
+use crate::scene::{Place, Scene, Support};
+use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Solution, StressResult, SupportReaction};
+use crate::stress::{PlaneTensor, strain_warning};
+use crate::study::{Jump, ProbeTruth, Reference};
 
 /// A result.
-pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>, spent: &Spent) -> String {
+pub(super) fn solution(
+    scene: &Scene,
+    mesh: &Mesh,
+    (solution, stress): (&Solution, &StressResult),
+    jump: Option<Option<Jump>>,
+    truth: Option<&Reference>,
+    spent: &Spent,
+) -> String {
     let truths = truth.map_or(&[][..], Reference::probes);
-    let probes: Vec<Value> = solution.probes.iter().enumerate().map(|(i, p)| probe(p, truths.get(i))).collect();
+    let probes: Vec<Value> =
+        solution.probes.iter().enumerate().map(|(i, p)| probe(p, stress.probes.get(i), truths.get(i))).collect();
+    let supports: Vec<Value> = scene.supports.iter().zip(&solution.supports).map(|(s, r)| support(s, r)).collect();
     let certificate = solution.certificate.unwrap_or_default();
     let deformation = &solution.deformation;
     let parts = spent.parts().map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
@@ -28,6 +39,8 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         "status": solution.status.id(),
         "reason": solution.status.failure(),
         "stable": certificate.stable,
+        "jumped": jump.map(|jump| jump.is_some()),
+        "jumped_at": jump.flatten().map(|jump| number(jump.factor)),
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
         "residual": number(solution.residual),
@@ -35,15 +48,26 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         "max_rotation_deg": number(deformation.max_rotation_deg),
         "max_strain": number(deformation.max_strain),
         "inverted_elements": deformation.inverted_elements,
+        "max_von_mises": stress.largest.map(|largest| json!({
+            "value": number(largest.von_mises),
+            "stress": "cauchy",
+            "node": mesh.node_name(largest.node),
+            "at": pair(largest.at),
+        })),
+        "mesh_error_percent": stress.mesh_error_percent.map(number),
+        "mesh_error_of": "estimate: energy norm",
+        "warnings": strain_warning(deformation.max_strain).into_iter().collect::<Vec<_>>(),
         "probes": probes,
         "energy": {
             "elastic": number(solution.energy.elastic),
             "external": number(solution.energy.external),
+            "supports": number(solution.energy.supports),
             // A body at rest has neither.
             "kinetic": solution.motion.map(|m| number(m.ledger.kinetic)),
             "dissipated": solution.motion.map(|m| number(m.ledger.dissipated)),
         },
         "reaction": { "force": pair(solution.reaction.force), "moment": number(solution.reaction.moment) },
+        "supports": supports,
         "time_us": time_us,
     });
     // Only where it decided: everyone else gets the documented object and nothing more.
@@ -87,15 +111,39 @@ fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
     energy["hands"] = number(ledger.hands);
 }
 
-fn probe(result: &ProbeResult, truth: Option<&ProbeTruth>) -> Value {
+fn tensor(tensor: &PlaneTensor) -> Value {
+    let [xx, yy, zz, xy] = tensor.components().map(number);
+    json!({ "xx": xx, "yy": yy, "zz": zz, "xy": xy })
+}
+
+fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, truth: Option<&ProbeTruth>) -> Value {
+    let cauchy = stress.and_then(|s| s.cauchy);
     json!({
         "name": result.name,
         "x": pair(result.x),
         "u": pair(result.u),
+        "rotation_deg": stress.map(|s| number(s.rotation_deg)),
+        "strain": stress.map(|s| tensor(&s.strain)),
+        "stress": cauchy.map(|s| tensor(&s)),
+        "von_mises": cauchy.map(|s| number(s.von_mises())),
         "truth_u": truth.map(|t| pair(t.displacement)),
         "truth_source": truth.map(|t| t.source.to_string()),
         "error_percent": truth.and_then(|t| t.error_percent(result)).map(number),
     })
+}
+
+/// A support and its reaction; the moment is about the middle of its edge.
+fn support(support: &Support, reaction: &SupportReaction) -> Value {
+    let mut object = Map::new();
+    match &support.place {
+        Place::Edge(edge) => object.insert("edge".to_owned(), json!(edge)),
+        Place::At(at) => object.insert("at".to_owned(), json!(at)),
+    };
+    object.insert("displacement".to_owned(), pair(support.displacement.into()));
+    object.insert("turn".to_owned(), number(support.turn));
+    object.insert("force".to_owned(), pair(reaction.force));
+    object.insert("moment".to_owned(), number(reaction.moment));
+    Value::Object(object)
 }
 
 fn pair(v: Vector2<f64>) -> Value {

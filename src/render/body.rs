@@ -13,8 +13,8 @@ pub struct Frame<'a> {
     pub positions: &'a [Vector2<f64>],
     /// Corners of the triangles.
     pub triangles: &'a [[u32; 3]],
-    /// A value a triangle, if it has one.
-    pub values: &'a [Option<f64>],
+    /// A value at every corner of every triangle, if it has one; between them it is linear.
+    pub values: &'a [[Option<f64>; 3]],
     /// The colour of triangles without, gamma space.
     pub absent_color: [u8; 3],
     /// The values at the two ends of the colour map.
@@ -68,7 +68,14 @@ pub struct View<'a> {
 struct Vertex {
     position: [f32; 2],
     color: [u8; 4],
+    /// Where its value lies in the colour map, 0 to 1; negative where its colour is its own.
+    value: f32,
 }
+
+/// The value of a vertex that has a colour of its own.
+const COLORED: f32 = -1.0;
+/// Colours that the shader has of the colour map.
+const MAP_COLORS: usize = 64;
 
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -85,7 +92,7 @@ struct Eye {
 }
 
 impl Eye {
-    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Self {
+    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, map: &wgpu::Buffer) -> Self {
         let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("camera"),
             size: size_of::<CameraUniform>() as u64,
@@ -95,7 +102,10 @@ impl Eye {
         let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("camera"),
             layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: map.as_entire_binding() },
+            ],
         });
         Self { uniform, bind_group }
     }
@@ -107,6 +117,9 @@ pub struct BodyRenderer {
     triangles: wgpu::RenderPipeline,
     lines: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
+    map: wgpu::Buffer,
+    /// What is in there.
+    uploaded_map: Option<ColorMap>,
     /// One a view: made when they are needed first.
     eyes: Vec<Eye>,
     vertices: wgpu::Buffer,
@@ -127,18 +140,25 @@ impl BodyRenderer {
             label: Some("body"),
             source: wgpu::ShaderSource::Wgsl(include_str!("../../shaders/mesh.wgsl").into()),
         });
+        let map = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("colour map"),
+            size: size_of::<[[f32; 4]; MAP_COLORS]>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let uniform = |binding, visibility| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("camera"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
+            entries: &[uniform(0, wgpu::ShaderStages::VERTEX), uniform(1, wgpu::ShaderStages::FRAGMENT)],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("body"),
@@ -156,7 +176,7 @@ impl BodyRenderer {
                     buffers: &[Some(wgpu::VertexBufferLayout {
                         array_stride: size_of::<Vertex>() as u64,
                         step_mode: wgpu::VertexStepMode::Vertex,
-                        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Unorm8x4],
+                        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Unorm8x4, 2 => Float32],
                     })],
                 },
                 primitive: wgpu::PrimitiveState { topology, ..Default::default() },
@@ -180,6 +200,8 @@ impl BodyRenderer {
             triangles: pipeline(wgpu::PrimitiveTopology::TriangleList),
             lines: pipeline(wgpu::PrimitiveTopology::LineList),
             layout,
+            map,
+            uploaded_map: None,
             eyes: Vec::new(),
             vertices: Self::vertex_buffer(gpu, 1024),
             scratch: Vec::new(),
@@ -204,7 +226,7 @@ impl BodyRenderer {
         })
     }
 
-    /// Draws the views, which do not overlap, with this many pixels a point, into a target of this size (pixels), all of
+    /// Draws the views, which do not overlap and have the same colour map, with this many pixels a point, into a target of this size (pixels), all of
     /// which it fills.
     pub fn draw(
         &mut self,
@@ -232,7 +254,7 @@ impl BodyRenderer {
             let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side)) as f32);
             let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
             if self.eyes.len() == drawn.len() {
-                self.eyes.push(Eye::new(gpu, &self.layout));
+                self.eyes.push(Eye::new(gpu, &self.layout, &self.map));
             }
             gpu.queue.write_buffer(&self.eyes[drawn.len()].uniform, 0, bytemuck::bytes_of(&uniform));
             drawn.push((viewport, first..lines, lines..self.scratch.len() as u32));
@@ -242,6 +264,17 @@ impl BodyRenderer {
             self.vertices = Self::vertex_buffer(gpu, (bytes.len() as u64).next_power_of_two());
         }
         gpu.queue.write_buffer(&self.vertices, 0, bytes);
+
+        // All views have the same colours.
+        if let Some(map) = views.first().map(|view| view.frame.map).filter(|map| self.uploaded_map != Some(*map)) {
+            let color = |i: usize| map.color(i as f64 / (MAP_COLORS - 1) as f64).map(|c| f32::from(c) / 255.0);
+            let colors: [[f32; 4]; MAP_COLORS] = std::array::from_fn(|i| {
+                let [r, g, b] = color(i);
+                [r, g, b, 1.0]
+            });
+            gpu.queue.write_buffer(&self.map, 0, bytemuck::cast_slice(&colors));
+            self.uploaded_map = Some(map);
+        }
 
         let surround = views.first().map_or([0; 3], |view| view.frame.surround);
         let [r, g, b] = surround.map(|c| f64::from(c) / 255.0);
@@ -282,11 +315,15 @@ impl BodyRenderer {
         let [r, g, b] = frame.background;
         let [x, y] = view.map(|side| (0.5 * side) as f32);
         let corners = [[-x, -y], [x, -y], [x, y], [-x, -y], [x, y], [-x, y]];
-        self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255] }));
-        for (triangle, &value) in frame.triangles.iter().zip(frame.values) {
-            let color = |value| frame.map.color(colormap::position(value, frame.range));
-            let [r, g, b] = value.map_or(frame.absent_color, color);
-            self.scratch.extend(triangle.map(|node| Vertex { position: position(node), color: [r, g, b, 255] }));
+        self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255], value: COLORED }));
+        let [r, g, b] = frame.absent_color;
+        for (triangle, values) in frame.triangles.iter().zip(frame.values) {
+            // A triangle without a value at one of its corners has none.
+            let known = values.iter().all(Option::is_some);
+            self.scratch.extend(triangle.iter().zip(values).map(|(&node, value)| {
+                let at = value.filter(|_| known).map(|value| colormap::position(value, frame.range) as f32);
+                Vertex { position: position(node), color: [r, g, b, 255], value: at.unwrap_or(COLORED) }
+            }));
         }
         let lines = self.scratch.len() as u32;
         let at = |node: u32| frame.positions.get(node as usize).copied().unwrap_or_default();
@@ -299,7 +336,7 @@ impl BodyRenderer {
             let strength = line_strength(height * camera.scale);
             if strength > 0.0 {
                 let color = [r, g, b, (f64::from(opacity) * strength) as u8];
-                self.scratch.extend(line.map(|node| Vertex { position: position(node), color }));
+                self.scratch.extend(line.map(|node| Vertex { position: position(node), color, value: COLORED }));
             }
         }
         lines

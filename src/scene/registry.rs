@@ -31,6 +31,8 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
     "cook",
     "bracket",
     "clip",
+    "snap",
+    "jump",
     "jelly",
     "swing",
     "flick",

@@ -14,12 +14,12 @@ use self::pane::{Doing, Equations, Turn};
 use self::setting::PANES;
 use self::trace::Trace;
 use super::action::{Action, ViewOptions};
-use super::field::round_to_slider;
+use super::eye::Eye;
 use super::finder::LISTEN;
 use super::overlay::{self, Overlay};
 use super::palette::{BODY, HEADLINE, Palette, SMALL};
 use super::playback::Playback;
-use super::pointer::{self, Look};
+use super::pointer::{Look, Reach, Wish};
 use super::stage::viewport;
 use super::toolbar::{Icon, choice, icon_button};
 use super::verdict::{Errors, error_color, sentence};
@@ -28,7 +28,7 @@ use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::{Reference, Setting};
-use crate::words::{count, engineering, percent, prefix};
+use crate::words::{count, engineering, percent, prefix, three_digits};
 
 mod pane;
 mod setting;
@@ -63,6 +63,10 @@ pub(super) struct CompareInput<'a> {
     pub truth: Option<&'a Reference>,
     pub view: &'a ViewOptions,
     pub running: bool,
+    /// Direction of a force's arrow without force, degrees.
+    pub direction: f64,
+    /// Whether the view takes its time on the way to where it looks.
+    pub eases: bool,
     /// What the budget has chosen.
     pub chosen: Option<Setting>,
 }
@@ -74,11 +78,8 @@ pub(super) struct Compare {
     trace: Trace,
     /// Whether the load curve is shown; `None`: where there is room.
     shows_trace: Option<bool>,
-    /// `None`: shows all bodies.
-    camera: Option<Camera>,
-    fitted: Option<Camera>,
-    /// What the fitted view was made for: its size, points.
-    fitted_size: [f64; 2],
+    /// Where all panes look; `None` before the first look.
+    eye: Option<Eye>,
     /// Nothing has moved: bodies at rest have no past.
     still: Playback,
 }
@@ -89,9 +90,7 @@ impl Default for Compare {
             panes: Vec::new(),
             trace: Trace::default(),
             shows_trace: None,
-            camera: None,
-            fitted: None,
-            fitted_size: [0.0; 2],
+            eye: None,
             still: Playback::default(),
         };
         compare.set(&METHODS_PRESET.map(PaneSetting::of_method));
@@ -122,13 +121,12 @@ impl Compare {
 
     /// The camera of all panes.
     pub(super) fn camera(&self) -> Camera {
-        let nothing = Camera { center: Vector2::zeros(), scale: 1.0 };
-        self.camera.or(self.fitted).unwrap_or(nothing)
+        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, Eye::camera)
     }
 
     /// Shows all bodies again.
     pub(super) fn fit(&mut self) {
-        (self.camera, self.fitted) = (None, None);
+        self.eye.iter_mut().for_each(Eye::fit);
     }
 
     /// All start over at rest.
@@ -196,6 +194,7 @@ impl Compare {
         if !holds || !moves {
             self.trace.ask(input.scene, ctx);
         }
+        self.trace.record_truth(input.truth);
         let busy = |pane: &Pane| !pane.is_settled() && !pane.is_away() && !pane.waits();
         if is_new || input.running && self.panes.iter().any(busy) {
             ctx.request_repaint();
@@ -246,7 +245,7 @@ impl Compare {
                 "The mesh of this file can have one element only",
             ),
             (
-                "budget".to_owned(),
+                "present | budget".to_owned(),
                 chosen.to_vec(),
                 input.chosen.is_some(),
                 "The present setting beside the fastest that meets the limits of Budget",
@@ -277,8 +276,8 @@ impl Compare {
         });
     }
 
-    /// The panes.
-    pub(super) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) {
+    /// The panes; returns what is asked for of their load.
+    pub(super) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) -> Wish {
         self.advance(ui.ctx(), input);
         for pane in &mut self.panes {
             pane.update_shape(input.view, ui.visuals());
@@ -292,8 +291,8 @@ impl Compare {
             // As pixels are cut: what is drawn and what is painted over it have the same middle.
             pane.place = Some(place.round_ui());
         }
-        self.refit(input);
-        let mut change = None;
+        self.look(ui, input);
+        let (mut change, mut wish) = (None, Wish::default());
         for (number, cell) in cells.iter().enumerate() {
             let Some(place) = self.panes.get(number).and_then(Pane::place) else { continue };
             let header = Rect::from_min_max(cell.min, place.right_top());
@@ -302,7 +301,10 @@ impl Compare {
                 ui.set_clip_rect(header.intersect(ui.clip_rect()));
                 self.header(ui, number, input, &mut change);
             });
-            self.body(ui, number, place, input);
+            let own = self.body(ui, number, place, input);
+            if own.force.is_some() || own.restore.is_some() {
+                wish = own;
+            }
         }
         self.key(ui, key, input.view);
         match change {
@@ -320,55 +322,53 @@ impl Compare {
             _ => {}
         }
         ui.advance_cursor_after_rect(whole);
+        wish
     }
 
     /// One range of colours for all: that of the equilibria.
     fn share_colors(&mut self, view: &ViewOptions) {
-        let is_good = |pane: &Pane| !matches!(pane.doing(), Doing::Rests(end) if end.status.failure().is_some());
-        let any = self.panes.iter().any(|pane| pane.range.is_some() && is_good(pane));
-        let counted = self.panes.iter().filter(|pane| !any || is_good(pane)).filter_map(|pane| pane.range);
+        let any = self.panes.iter().any(|pane| pane.range.is_some() && !pane.has_failed());
+        let counted = self.panes.iter().filter(|pane| !any || !pane.has_failed()).filter_map(|pane| pane.range);
         let range = counted.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default();
         let range = view.fixed_range.unwrap_or(range);
         self.panes.iter_mut().for_each(|pane| pane.shape.range = range);
     }
 
-    /// Fits the view to all bodies and the exact one, while nobody has moved it and nothing moves.
-    fn refit(&mut self, input: &CompareInput<'_>) {
-        let Some(size) = self
-            .panes
-            .iter()
-            .filter_map(Pane::place)
-            .map(|p| [p.width(), p.height()].map(f64::from))
-            .reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])])
-        else {
-            return;
-        };
-        if self.fitted.is_some() && self.is_iterating() && size == self.fitted_size {
-            return;
-        }
+    /// Looks at all bodies and the exact one, while nobody has moved the view; never after what has not converged.
+    fn look(&mut self, ui: &Ui, input: &CompareInput<'_>) {
+        let sizes =
+            self.panes.iter().filter_map(Pane::place).map(|place| [place.width(), place.height()].map(f64::from));
+        let Some(size) = sizes.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])]) else { return };
         let (low, high) = input.system.mesh().bounds();
-        let mut bounds = [low, high];
-        let grow = |[low, high]: [Vector2<f64>; 2], p: &Vector2<f64>| [low.inf(p), high.sup(p)];
-        let truth = input.truth.filter(|_| input.view.exact);
-        bounds = truth.into_iter().flat_map(|truth| &truth.outline).flatten().fold(bounds, grow);
-        // Theories that are far off, and iterations that are lost, must not shrink the others to dots.
-        const LARGEST: f64 = 1.5;
-        let trusted = |pane: &&Pane| {
-            let linear = pane.scene().is_some_and(|scene| scene.solver.method == MethodKind::Linear);
-            !linear && matches!(pane.doing(), Doing::Rests(end) if end.status.is_success())
-        };
-        for pane in self.panes.iter().filter(trusted) {
-            bounds = pane.shape.points.iter().fold(bounds, grow);
-        }
-        let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
-        for pane in self.panes.iter().filter(|pane| !trusted(pane)) {
-            let with = pane.shape.points.iter().fold(bounds, grow);
-            if size_of(with) < LARGEST * size_of(bounds) {
+        let rest = [low, high];
+        let iterates = self.is_iterating();
+        let eye = self.eye.get_or_insert_with(|| Eye::new(rest));
+        if !self.panes.iter().any(|pane| pane.pointer.holds()) {
+            let grow = |[low, high]: [Vector2<f64>; 2], p: &Vector2<f64>| [low.inf(p), high.sup(p)];
+            let truth = input.truth.filter(|_| input.view.exact);
+            let mut bounds = truth.into_iter().flat_map(|truth| &truth.outline).flatten().fold(rest, grow);
+            let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
+            let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
+                self.panes.iter().filter(|pane| pane.is_sound()).partition(|pane| is_linear(pane));
+            bounds = others.iter().flat_map(|pane| &pane.shape.points).fold(bounds, grow);
+            // Linear theory may be far off: it must not shrink the others to dots.
+            const LARGEST: f64 = 1.5;
+            let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
+            let with = linear.iter().flat_map(|pane| &pane.shape.points).fold(bounds, grow);
+            let known = !others.is_empty() || truth.is_some();
+            if !known || size_of(with) < LARGEST * size_of(bounds) {
                 bounds = with;
             }
+            if !iterates || eye.whole() == rest {
+                eye.set_body(rest);
+                eye.follow(bounds);
+            }
         }
-        self.fitted = Some(Camera::fit(bounds[0], bounds[1], size, FIT_MARGINS));
-        self.fitted_size = size;
+        let [low, high] = eye.whole();
+        let dt = f64::from(ui.input(|i| i.stable_dt));
+        if eye.aim(Camera::fit(low, high, size, FIT_MARGINS), input.eases.then_some(dt)) {
+            ui.ctx().request_repaint();
+        }
     }
 
     /// The pickers of a pane, and what it has found.
@@ -404,7 +404,8 @@ impl Compare {
             }
             if close {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let button = ui.add(egui::Button::new("×").frame(false).min_size(vec2(24.0, 24.0)));
+                    let button = ui
+                        .add(egui::Button::new(RichText::new("×").size(18.0)).frame(false).min_size(vec2(24.0, 24.0)));
                     let words = format!("Close pane {}", number + 1);
                     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));
                     if button.on_hover_text(words).clicked() {
@@ -470,15 +471,28 @@ impl Compare {
     }
 
     /// The body of a pane, over what its pass has drawn.
-    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) {
+    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) -> Wish {
         let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
-        match pointer::look(ui, &response, self.camera(), false) {
+        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Wish::default() };
+        let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
+        let arrows = pane.arrows(place, camera, input.direction);
+        let reach = Reach {
+            camera,
+            positions: &pane.shape.nodes,
+            outline: &pane.drawing.boundary,
+            arrows: &arrows,
+            scales: eye.scales([place.width(), place.height()].map(f64::from)),
+        };
+        let wish = pane.pointer.follow(ui, &response, &reach, None);
+        match wish.look {
             Look::Same => {}
-            Look::At(camera) => self.camera = Some(camera),
-            Look::Fit => self.fit(),
+            Look::At(camera) => {
+                eye.look(camera);
+                ui.ctx().request_repaint();
+            }
+            Look::Fit => eye.fit(),
         }
-        let camera = self.camera();
-        let Some(pane) = self.panes.get(number) else { return };
+        let Some(pane) = self.panes.get(number) else { return wish };
         let palette = Palette::new(ui.visuals());
         let painter = ui.painter_at(place);
         if let (Some(system), Some(scene)) = (pane.system(), pane.scene()) {
@@ -493,7 +507,10 @@ impl Compare {
                 exact: input.truth.filter(|_| input.view.exact).map_or(&[], |truth| &truth.outline),
                 errors: Errors::default(),
                 time: 0.0,
+                direction: input.direction,
+                hot: pane.pointer.hot_arrow(),
                 hand: None,
+                reactions: &[],
                 playback: &self.still,
                 color_range: pane.shape.range,
                 warning: None,
@@ -506,7 +523,11 @@ impl Compare {
         if pane.is_outdated() {
             painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.6));
             painter.text(place.center(), Align2::CENTER_CENTER, "solving…", FontId::proportional(BODY), palette.text);
+        } else if pane.has_failed() {
+            // What is no equilibrium is no result.
+            painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.55));
         }
+        wish
     }
 
     /// What lines and colours mean, for all panes.
@@ -539,7 +560,7 @@ impl Compare {
         let bar = if rect.width() < 560.0 { 70.0 } else { 130.0 };
         let unit = view.field.unit();
         let (power, symbol) = prefix(&range, unit);
-        let [low, high] = range.map(|v| engineering(round_to_slider(v / 10f64.powi(power)), ""));
+        let [low, high] = range.map(|v| engineering(three_digits(v / 10f64.powi(power)), ""));
         let put = |right: f32, words: String| {
             painter.text(pos2(right, middle), Align2::RIGHT_CENTER, words, font.clone(), palette.text).left() - 8.0
         };

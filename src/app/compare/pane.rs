@@ -10,9 +10,13 @@ use egui::Rect;
 
 use super::setting::PaneSetting;
 use crate::app::action::ViewOptions;
+use crate::app::arrow::{Arrow, Forces};
 use crate::app::drawing::Drawing;
+use crate::app::overlay::Projection;
+use crate::app::pointer::Pointer;
 use crate::app::shape::Shape;
 use crate::assembly::System;
+use crate::render::Camera;
 use crate::scene::{Beam, ElementKind, MeshFile, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status, probe_results};
 use crate::study::Reference;
@@ -46,6 +50,7 @@ pub struct Pane {
     /// Where the body is drawn.
     pub(super) place: Option<Rect>,
     pub(super) error: Option<f64>,
+    pub(super) pointer: Pointer,
 }
 
 /// How a solve of a pane from rest has ended.
@@ -221,6 +226,23 @@ impl Pane {
     /// Whether it is solved beside the window.
     pub(super) fn is_away(&self) -> bool {
         matches!(self.body, Body::Away(_))
+    }
+
+    /// Whether its solve from rest has found no equilibrium.
+    pub(super) fn has_failed(&self) -> bool {
+        self.end.as_ref().is_some_and(|end| end.status.failure().is_some())
+    }
+
+    /// Whether what is drawn of it is an answer to its load.
+    pub(super) fn is_sound(&self) -> bool {
+        self.end.as_ref().map_or_else(|| self.answer().is_some_and(|(_, good)| good), |_| !self.has_failed())
+    }
+
+    /// The arrows of its forces, as last drawn.
+    pub(super) fn arrows(&self, place: Rect, camera: Camera, direction: f64) -> Vec<Arrow> {
+        let (Some(scene), Some(system)) = (&self.wanted, &self.system) else { return Vec::new() };
+        let forces = Forces { scene, system, positions: &self.shape.nodes, time: 0.0, direction };
+        forces.arrows(&Projection { camera, rect: place })
     }
 
     /// Whether it waits for the pointer to let go.

@@ -7,14 +7,13 @@ use super::pane::{Doing, Pane};
 use super::setting::PaneSetting;
 use crate::app::action::Action;
 use crate::app::budget::{marker, question};
-use crate::app::field::round_to_slider;
 use crate::app::finder::Finder;
 use crate::app::palette::{BODY, Palette, SMALL};
 use crate::app::plot::still;
 use crate::scene::limits::{self, Limit};
 use crate::scene::{Load, MethodKind, Place, Scene};
-use crate::study::LoadCurve;
-use crate::words::engineering;
+use crate::study::{LoadCurve, Reference};
+use crate::words::{engineering, three_digits};
 
 /// Dots of a setting that are kept.
 const MOST_DOTS: usize = 500;
@@ -91,6 +90,8 @@ pub(super) struct Trace {
     exact: Finder<Vec<[f64; 2]>>,
     /// The exact curve that was found last.
     line: Vec<[f64; 2]>,
+    /// What is true of the loads that were there: of a scene without such a curve.
+    truths: Vec<[f64; 2]>,
     /// The load at the right edge.
     reach: f64,
 }
@@ -104,6 +105,7 @@ impl Default for Trace {
             series: Vec::new(),
             exact: Finder::new(exact_line),
             line: Vec::new(),
+            truths: Vec::new(),
             reach: 0.0,
         }
     }
@@ -177,6 +179,24 @@ impl Trace {
         axis.magnitude > end[0] || axis.magnitude > 0.0 && COARSE * axis.magnitude < end[0]
     }
 
+    /// Notes what is true of the present load, where no exact curve is known.
+    pub(super) fn record_truth(&mut self, truth: Option<&Reference>) {
+        let (Some(axis), Some(truth), true) = (self.axis, truth, self.line.is_empty()) else { return };
+        let dot = [axis.magnitude, truth.first().displacement.norm()];
+        self.truths.retain(|other| (other[0] - dot[0]).abs() > SAME_LOAD * dot[0]);
+        self.truths.push(dot);
+        if self.truths.len() > MOST_DOTS {
+            self.truths.remove(0);
+        }
+    }
+
+    /// The exact deflection under a load, where that is known.
+    fn exact_at(&self, load: f64) -> Option<f64> {
+        let piece = self.line.windows(2).find(|w| (w[0][0]..=w[1][0]).contains(&load));
+        let between = piece.map(|w| w[0][1] + (load - w[0][0]) / (w[1][0] - w[0][0]) * (w[1][1] - w[0][1]));
+        between.or_else(|| self.truths.iter().find(|dot| dot[0] == load).map(|dot| dot[1]))
+    }
+
     /// Notes what a pane has answered to the present load. Says whether that is new.
     pub(super) fn record(&mut self, scene: &Scene, pane: &Pane) -> bool {
         let (Some(axis), Some((probe, good))) = (self.axis, pane.answer()) else { return false };
@@ -242,20 +262,26 @@ impl Trace {
             dots.map(|dot| dot.deflection).fold(0.0, f64::max)
         };
         // Linear theory leaves the picture instead of stretching it.
-        let known = line.iter().map(|p| p[1]).fold(good(false), f64::max);
+        let truths: Vec<[f64; 2]> = self.truths.iter().filter(seen).copied().collect();
+        let known = line.iter().chain(&truths).map(|p| p[1]).fold(good(false), f64::max);
         let top = 1.2 * if known > 0.0 { known } else { good(true) };
         let top = if top > 0.0 { top } else { 1.0 };
         let unit = axis.limit.unit;
-        let probe = scene.probes.first().map_or("displacement", |probe| probe.name.as_str());
-        let plot = still(&palette, "trace", (axis.name, unit), (&format!("moves: {probe}"), "m"));
+        let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
+        let plot = still(&palette, "trace", (axis.name, unit), (&format!("{probe} moves"), "m"));
         let response = plot.show(ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [reach, top]));
             let now = VLine::new("now", axis.magnitude).color(palette.load.gamma_multiply(0.7)).width(1.0);
             plot.vline(now.allow_hover(false));
-            if !line.is_empty() {
+            let line_is_unknown = line.is_empty();
+            if !line_is_unknown {
                 plot.line(Line::new("exact", PlotPoints::from(line)).color(palette.exact).width(2.0));
             }
-            for &setting in &settings {
+            if line_is_unknown {
+                plot.points(Points::new("exact", truths).color(palette.exact).radius(5.0).shape(MarkerShape::Plus));
+            }
+            // Dots in the same place lie in each other.
+            for (setting, smaller) in settings.iter().copied().zip([0.0, 1.0, 2.0, 3.0]) {
                 let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
                 let (color, shape) = (palette.method(method), marker(element).0);
                 let dots = self.dots_of(setting);
@@ -265,8 +291,12 @@ impl Trace {
                     places.filter(|p| p[1] <= top && p[0] <= reach).collect()
                 };
                 let name = setting.to_string();
-                plot.points(Points::new(name.clone(), drawn(true, false)).color(color).radius(2.8).shape(shape));
-                plot.points(Points::new(name.clone(), drawn(true, true)).color(color).radius(5.0).shape(shape));
+                plot.points(
+                    Points::new(name.clone(), drawn(true, false)).color(color).radius(3.8 - 0.7 * smaller).shape(shape),
+                );
+                plot.points(
+                    Points::new(name.clone(), drawn(true, true)).color(color).radius(7.0 - 1.5 * smaller).shape(shape),
+                );
                 let failed = [drawn(false, false), drawn(false, true)].concat();
                 let failed = Points::new(format!("{name} does not converge"), failed);
                 plot.points(failed.color(color).radius(4.0).shape(MarkerShape::Cross));
@@ -287,7 +317,7 @@ impl Trace {
                 let off = |l: f64| (l - load(at.x)).abs();
                 off(*a).total_cmp(&off(*b))
             });
-            let wanted = dot.unwrap_or_else(|| round_to_slider(load(at.x))).clamp(0.0, axis.limit.max.min(reach));
+            let wanted = dot.unwrap_or_else(|| three_digits(load(at.x))).clamp(0.0, axis.limit.max.min(reach));
             if wanted != axis.magnitude {
                 let mut scene = Box::new(scene.clone());
                 axis.set(&mut scene, direction, wanted);
@@ -300,24 +330,20 @@ impl Trace {
     fn names(&self, ui: &mut Ui, axis: Axis, scene: &Scene, panes: &[Pane]) {
         let palette = Palette::new(ui.visuals());
         ui.spacing_mut().item_spacing.y = 2.0;
-        let load = engineering(round_to_slider(axis.magnitude), axis.limit.unit);
+        let load = engineering(three_digits(axis.magnitude), axis.limit.unit);
         let head = format!("{} {load}", axis.name);
         ui.add_space(2.0);
         ui.label(egui::RichText::new(head).color(palette.load)).on_hover_text("Press in the plot to set it");
-        if !self.line.is_empty() {
-            let at = self.line.windows(2).find(|w| (w[0][0]..=w[1][0]).contains(&axis.magnitude)).map(|w| {
-                let t = (axis.magnitude - w[0][0]) / (w[1][0] - w[0][0]);
-                w[0][1] + t * (w[1][1] - w[0][1])
-            });
-            let value = at.map_or_else(String::new, |u| engineering(round_to_slider(u), "m"));
-            row(ui, &palette, palette.exact, None, "exact", &value, false);
+        if !self.line.is_empty() || !self.truths.is_empty() {
+            let value = self.exact_at(axis.magnitude).map(|u| engineering(three_digits(u), "m"));
+            row(ui, &palette, palette.exact, None, "exact", &value.unwrap_or_default(), false);
         }
         for pane in panes {
             let setting = pane.setting.of(scene);
             let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
             let (value, bad) = match (pane.answer(), pane.doing()) {
                 (_, Doing::Refused(_)) => ("no solution".to_owned(), true),
-                (Some((probe, true)), _) => (engineering(round_to_slider(probe.u.norm()), "m"), false),
+                (Some((probe, true)), _) => (engineering(three_digits(probe.u.norm()), "m"), false),
                 (Some((_, false)), _) => ("does not converge".to_owned(), true),
                 (None, _) => ("iterates".to_owned(), false),
             };

@@ -2,13 +2,13 @@
 
 use egui::{Grid, RichText, Ui};
 
-use super::PanelInput;
+use super::{PanelInput, supports};
 use crate::app::headline::UNKNOWN;
 use crate::app::palette::Palette;
 use crate::app::verdict::{Errors, rho, sentence, stability};
 use crate::method::rho_words;
-use crate::simulation::{Motion, Simulation, energy, reaction};
-use crate::words::{count, engineering, engineering_pair, percent};
+use crate::simulation::{Motion, Simulation, Status, energy};
+use crate::words::{count, engineering, engineering_pair, percent, three_digits};
 
 /// Room for what a row is, points.
 const NAME_WIDTH: f32 = 84.0;
@@ -56,6 +56,7 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
         |(error, truth)| format!("{} of {}", percent(error), engineering(truth.first().displacement.norm(), "m")),
     );
     row("Error", words, &format!("Distance of the first probe from {truth}, over its displacement"));
+    quality_rows(row, input);
     let (factor, steps) = simulation.load_stepping();
     row("Load steps", format!("{steps}, at {:.3} % of the load", 100.0 * factor), "Parts in which the load is put on");
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
@@ -68,8 +69,7 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
     if simulation.is_at_rest() {
         let (problem, state) = (simulation.problem(), simulation.state());
         row("Energy", engineering(energy(problem, state, factor).elastic, "J"), "Stored in the body");
-        let reaction = reaction(problem, state, simulation.forces());
-        row("Reaction", engineering_pair(reaction.force.into(), "N"), "Force of the supports on the body");
+        supports::reaction_rows(row, simulation);
     }
     if let Some(auto) = simulation.auto_report() {
         let [solves, factors] = [count(auto.solves, "back substitution"), count(auto.factorizations, "factorization")];
@@ -86,7 +86,7 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
 type Row<'a> = dyn FnMut(&str, String, &str) + 'a;
 
 fn time(duration: std::time::Duration) -> String {
-    engineering(format!("{:.2e}", duration.as_secs_f64()).parse().unwrap_or(0.0), "s")
+    engineering(three_digits(duration.as_secs_f64()), "s")
 }
 
 fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
@@ -94,6 +94,26 @@ fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
         let u = probe.mean(simulation.displacement());
         row(&format!("{} x, y", probe.name), engineering_pair(u.into(), "m"), "Displacement of the probe");
     }
+}
+
+/// What the mesh does wrong, and how far the material is strained.
+fn quality_rows(row: &mut Row<'_>, input: &PanelInput<'_>) {
+    let known = *input.simulation.status() == Status::Converged;
+    let quality = input.quality;
+    let error = quality.mesh_error_percent.filter(|_| known);
+    let words = error.map_or_else(|| UNKNOWN.to_owned(), |error| format!("{} (estimate)", percent(error)));
+    let tip = "Of the mesh alone, in the energy norm: the elements' stresses against those recovered at the nodes";
+    row("Mesh error", words, tip);
+    let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
+    let warning = quality.warning().filter(|_| known);
+    let words = match (known, &warning) {
+        (false, _) => UNKNOWN.to_owned(),
+        (true, None) => strain,
+        (true, Some(_)) => format!("{strain}: too large"),
+    };
+    let tip =
+        "The largest principal strain".to_owned() + &warning.map_or_else(String::new, |words| format!("; {words}"));
+    row("Strain", words, &tip);
 }
 
 fn frame_row(row: &mut Row<'_>, input: &PanelInput<'_>, what: &str) {
@@ -144,8 +164,8 @@ fn stages(ui: &mut Ui, input: &PanelInput<'_>) {
     let times = input.timings;
     let secondary = Palette::new(ui.visuals()).secondary;
     let stages = [
-        ("rotate", times.rotate, "Element maps and polar decompositions"),
-        ("assemble", times.assemble, "Stiffness of the turned elements, forces, residual"),
+        ("rotate", times.rotate, "Rotations found apart, at the end of time steps"),
+        ("assemble", times.assemble, "One sweep: rotations, stiffness of the turned elements, forces and the residual"),
         ("factorize", times.factorize, "Sparse Cholesky"),
         ("solve", times.solve, "Forward and back substitution"),
     ];
