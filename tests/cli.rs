@@ -550,6 +550,9 @@ fn unreadable_files_and_wrong_usage_get_one_clear_message() {
         (&["melt"], "melt"),
         (&["shot", "article", "-o", "x.png", "--size", "10x10"], "64 to 8192"),
         (&["shot", "article", "-o", "x.png", "--size", "big"], "WIDTHxHEIGHT"),
+        (&["shot", "article", "-o", "x.png", "--compare", "warped"], "expected 2 to 4 panes"),
+        (&["shot", "article", "-o", "x.png", "--compare", "t3,t5"], "got \u{201c}t5\u{201d}"),
+        (&["shot", "swing", "-o", "x.png", "--compare", "t3,t6"], "expected a scene with analysis = \"static\""),
         (&["shot", "article", "-o", "/no/such/folder/x.png"], "/no/such/folder/x.png"),
         (&["solve", "article", "--out", "/no/such/folder/x.csv"], "/no/such/folder/x.csv"),
     ];

@@ -377,9 +377,20 @@ fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
             assert!(harness.state().view_rect().right() > size[0] - 20.0, "the sheet is over the body");
         }
         let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
-        for name in
-            ["Pause", "Run", "Step", "Reset", "Explore", "Budget", "Help", "Theme", "Panel", "Load curve", "why?"]
-        {
+        for name in [
+            "Pause",
+            "Run",
+            "Step",
+            "Reset",
+            "Explore",
+            "Compare",
+            "Budget",
+            "Help",
+            "Theme",
+            "Panel",
+            "Load curve",
+            "why?",
+        ] {
             let node = harness.query_by_label(name);
             assert!(node.is_some() || ["Pause"].contains(&name), "{size:?}: no {name}");
             assert!(node.is_none_or(|n| window.contains_rect(n.rect())), "{size:?}: {name} is clipped");

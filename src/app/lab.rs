@@ -48,8 +48,7 @@ pub const PANEL_WIDTH: f32 = 284.0;
 /// A window narrower than this, points, has no place for the panel: it lies over the body, and can be put away.
 const NARROW: f32 = 900.0;
 
-/// Heights of the bars along the top and the bottom, points.
-const TOOLBAR_HEIGHT: f32 = 36.0;
+/// Height of the bar along the bottom, points.
 const HEADLINE_HEIGHT: f32 = 42.0;
 
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
@@ -485,6 +484,10 @@ impl Lab {
             simulation: &self.simulation,
             linear: self.linear.as_ref(),
             running: self.running,
+            ended: match self.view.mode {
+                Mode::Compare => !self.compare.is_iterating(),
+                _ => self.simulation.is_at_rest() && !self.playback.companions_move(),
+            },
             playback: &self.playback,
             iterations: self.iterations,
             timings: &self.timings,
@@ -538,7 +541,10 @@ impl Lab {
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let errors = verdict::errors(&self.input());
         let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
-        let top = Panel::top("toolbar").exact_size(TOOLBAR_HEIGHT).resizable(false).frame(bar(ui));
+        let top = Panel::top("toolbar")
+            .exact_size(toolbar::height(ui.ctx().content_rect().width()))
+            .resizable(false)
+            .frame(bar(ui));
         top.show(ui, |ui| toolbar::show(ui, &self.input(), &self.view, actions));
         // Compared panes have each their own.
         if self.view.mode != Mode::Compare {
@@ -997,15 +1003,18 @@ impl Lab {
                 }
             }
             // What has come to its end has nothing to pause.
-            Action::ToggleRun if self.running && !self.iterates() => {}
+            Action::ToggleRun if self.running && self.input().ended => {}
             Action::ToggleRun => self.running ^= true,
+            Action::Step if self.view.mode == Mode::Compare => {
+                self.running = false;
+                self.compare.step();
+            }
             Action::Step => {
                 self.running = false;
                 if !self.moves() && self.simulation.is_at_rest() {
                     self.reset();
                 }
                 self.iterate(1);
-                self.compare.step();
             }
             Action::Reset => self.reset(),
             Action::Mark => {

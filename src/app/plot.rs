@@ -40,8 +40,8 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
     Plot::new(id.to_owned())
         .x_axis_label(x_name.to_owned())
         .y_axis_label(y_name.to_owned())
-        .x_grid_spacer(round_marks)
-        .y_grid_spacer(round_marks)
+        .x_grid_spacer(|input| round_marks(input, APART[0]))
+        .y_grid_spacer(|input| round_marks(input, APART[1]))
         .x_axis_formatter(move |mark, _| engineering(mark.value, x_unit))
         .y_axis_formatter(move |mark, _| engineering(mark.value, y_unit))
         .label_formatter(move |at| match at {
@@ -51,7 +51,7 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
             HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)
-        .grid_spacing(egui::Rangef::new(NEAREST, CLEAR))
+        .grid_spacing(egui::Rangef::new(NEAREST, APART[1]))
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
@@ -60,14 +60,14 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
 
 /// Grid lines nearer to each other than this, points, are not drawn.
 const NEAREST: f32 = 8.0;
-/// Those so far apart are drawn in full, and so are their numbers.
-const CLEAR: f32 = 40.0;
+/// Numbers so far apart, points, have room: beside each other, and over each other.
+const APART: [f32; 2] = [40.0, 26.0];
 
 /// Marks 1, 2 or 5 · 10ⁿ apart, as many as have room for their numbers.
-fn round_marks(input: GridInput) -> Vec<GridMark> {
+fn round_marks(input: GridInput, apart: f32) -> Vec<GridMark> {
     const MOST: f64 = 9.0;
     let (low, high) = input.bounds;
-    let room = (high - low) / input.base_step_size * f64::from(NEAREST / CLEAR);
+    let room = (high - low) / input.base_step_size * f64::from(NEAREST / apart);
     let ticks = ticks(low, high, room.clamp(2.0, MOST) as u32);
     let step_size = ticks.windows(2).next().map_or(high - low, |pair| pair[1] - pair[0]);
     ticks.into_iter().map(|value| GridMark { value, step_size }).collect()

@@ -23,37 +23,66 @@ static ABOUTS: LazyLock<Vec<(&'static str, String)>> = LazyLock::new(|| {
 /// Below this width, points, buttons show no words.
 const WORDS: f32 = 900.0;
 
+/// Below this width, points, modes have a row of their own.
+const ONE_ROW: f32 = 780.0;
+
+/// The height of the bar in a window of this width, points.
+pub(super) fn height(width: f32) -> f32 {
+    if width >= ONE_ROW { 36.0 } else { 68.0 }
+}
+
 /// Shows the bar.
 pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, actions: &mut Vec<Action>) {
     let wide = ui.available_width() >= WORDS;
-    ui.horizontal_centered(|ui| {
+    let one_row = height(ui.ctx().content_rect().width()) < 40.0;
+    let mut tools = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         scene_picker(ui, input, wide, actions);
         divide(ui);
         run(ui, input, wide, actions);
         divide(ui);
         history(ui, input, actions);
-        divide(ui);
-        for entry in MODES {
-            let chosen = view.mode == entry.mode;
-            let button = ui.add_enabled((entry.serves)(input.scene), Button::selectable(chosen, entry.name));
-            let button = button.on_hover_text(entry.about).on_disabled_hover_text(entry.unless);
-            if button.clicked() && !chosen {
-                actions.push(Action::Toggle(Toggle::Mode(entry.mode)));
-            }
+        if one_row {
+            divide(ui);
+            modes(ui, input, view, actions);
         }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let mut button = |icon: Icon, name: &str, chosen: bool, tip: &str, action: Action| {
-                let response = ui.add(|ui: &mut Ui| icon_button(ui, icon, name, None, chosen));
-                if response.on_hover_text(tip).clicked() {
-                    actions.push(action);
-                }
-            };
-            button(Icon::Help, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
-            button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
-            let tip = "Show or hide the controls (P)";
-            button(Icon::Panel, "Panel", view.shows_panel(), tip, Action::Toggle(Toggle::Panel));
-        });
+        window_tools(ui, view, actions);
+    };
+    if one_row {
+        ui.horizontal_centered(tools);
+        return;
+    }
+    ui.add_space(6.0);
+    ui.horizontal(&mut tools);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        modes(ui, input, view, actions);
+    });
+}
+
+fn modes(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, actions: &mut Vec<Action>) {
+    for entry in MODES {
+        let chosen = view.mode == entry.mode;
+        let button = ui.add_enabled((entry.serves)(input.scene), Button::selectable(chosen, entry.name));
+        let button = button.on_hover_text(entry.about).on_disabled_hover_text(entry.unless);
+        if button.clicked() && !chosen {
+            actions.push(Action::Toggle(Toggle::Mode(entry.mode)));
+        }
+    }
+}
+
+fn window_tools(ui: &mut Ui, view: &ViewOptions, actions: &mut Vec<Action>) {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let mut button = |icon: Icon, name: &str, chosen: bool, tip: &str, action: Action| {
+            let response = ui.add(|ui: &mut Ui| icon_button(ui, icon, name, None, chosen));
+            if response.on_hover_text(tip).clicked() {
+                actions.push(action);
+            }
+        };
+        button(Icon::Help, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
+        button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
+        let tip = "Show or hide the controls (P)";
+        button(Icon::Panel, "Panel", view.shows_panel(), tip, Action::Toggle(Toggle::Panel));
     });
 }
 
@@ -147,7 +176,7 @@ fn paint(painter: &Painter, icon: Icon, center: Pos2, color: egui::Color32) {
 fn run(ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action>) {
     let simulation = input.simulation;
     let moves = simulation.motion().is_some();
-    let ended = simulation.is_at_rest() && !input.playback.companions_move();
+    let ended = input.ended;
     let mut button = |icon: Icon, name: &str, tip: &str, enabled: bool, action: Action| {
         let word = wide.then_some(name);
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, false));

@@ -52,8 +52,8 @@ const TRACE_HEIGHT: f32 = 190.0;
 const TRACE_SHARE: f32 = 0.28;
 /// In a window lower than this, points, the load curve is only shown where it is asked for.
 const LOW: f32 = 560.0;
-/// Points kept free around the bodies when the view is fitted: room for supports and the load's arrow.
-const FIT_MARGINS: Margins = Margins { sides: 40.0, top: 34.0, bottom: 62.0 };
+/// In one lower than this, too, where the panes have two rows.
+const LOW_FOR_TWO_ROWS: f32 = 680.0;
 
 /// What the comparison is of, and how it is looked at.
 pub(super) struct CompareInput<'a> {
@@ -211,7 +211,10 @@ impl Compare {
     /// The presets over the panes, and the load curve under them.
     pub(super) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>, actions: &mut Vec<Action>) {
         let height = ui.ctx().content_rect().height();
-        let shows_trace = self.shows_trace.unwrap_or(height >= LOW || !input.view.bars && height >= 380.0);
+        let panel = if input.view.bars && input.view.panel && !input.view.narrow { super::PANEL_WIDTH } else { 0.0 };
+        let one_row = first_row(self.panes.len(), ui.ctx().content_rect().width() - panel) == self.panes.len();
+        let low = if one_row { LOW } else { LOW_FOR_TWO_ROWS };
+        let shows_trace = self.shows_trace.unwrap_or(height >= low);
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
         if input.view.bars {
             Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| self.presets(ui, input, shows_trace));
@@ -342,6 +345,7 @@ impl Compare {
         let (low, high) = input.system.mesh().bounds();
         let rest = [low, high];
         let iterates = self.is_iterating();
+        let margins = self.margins(input, size);
         let eye = self.eye.get_or_insert_with(|| Eye::new(rest));
         if !self.panes.iter().any(|pane| pane.pointer.holds()) {
             let grow = |[low, high]: [Vector2<f64>; 2], p: &Vector2<f64>| [low.inf(p), high.sup(p)];
@@ -366,9 +370,23 @@ impl Compare {
         }
         let [low, high] = eye.whole();
         let dt = f64::from(ui.input(|i| i.stable_dt));
-        if eye.aim(Camera::fit(low, high, size, FIT_MARGINS), input.eases.then_some(dt)) {
+        if eye.aim(Camera::fit(low, high, size, margins), input.eases.then_some(dt)) {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// Points kept free around the bodies when the view is fitted: room for supports, the loads' arrows and their words.
+    fn margins(&self, input: &CompareInput<'_>, [_, height]: [f64; 2]) -> Margins {
+        /// Of the height so much may go to arrows; in panes lower than this, points, the bodies need it.
+        const SHARE: f64 = 0.25;
+        const LOW: f64 = 160.0;
+        let arrows = self.panes.first().map(|pane| pane.arrows(Rect::ZERO, self.camera(), input.direction));
+        let longest = |along: fn(egui::Vec2) -> f32| {
+            let ways = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.way)));
+            ways.fold(0.0, f64::max).min(if height < LOW { 0.0 } else { SHARE * height })
+        };
+        let (top, bottom) = ((0.08 * height).min(30.0), (0.16 * height).min(44.0));
+        Margins { sides: 40.0, top: top + longest(|way| -way.y), bottom: bottom + longest(|way| way.y) }
     }
 
     /// The pickers of a pane, and what it has found.
@@ -574,10 +592,15 @@ impl Compare {
     }
 }
 
+/// How many of so many panes are beside each other in the first row.
+fn first_row(panes: usize, width: f32) -> usize {
+    let one_row = panes <= 2 || panes == 3 && (width - 2.0 * GAP) / 3.0 >= NARROWEST;
+    if one_row { panes } else { panes.div_ceil(2) }
+}
+
 /// The places of so many panes: beside each other, or in two rows.
 fn cells(rect: Rect, panes: usize) -> Vec<Rect> {
-    let one_row = panes <= 2 || panes == 3 && (rect.width() - 2.0 * GAP) / 3.0 >= NARROWEST;
-    let first = if one_row { panes } else { panes.div_ceil(2) };
+    let first = first_row(panes, rect.width());
     let rows = [first, panes - first];
     let count = if rows[1] > 0 { 2.0 } else { 1.0 };
     let height = ((rect.height() - GAP * (count - 1.0)) / count).floor();

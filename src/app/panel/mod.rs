@@ -38,6 +38,8 @@ pub(super) struct PanelInput<'a> {
     /// The same scene under linear theory.
     pub linear: Option<&'a Simulation>,
     pub running: bool,
+    /// Whether what is shown has come to its end.
+    pub ended: bool,
     pub playback: &'a Playback,
     /// Iterations a displayed frame.
     pub iterations: u32,

@@ -1,0 +1,362 @@
+//! The mode Compare, driven as a person would, and its pictures.
+//!
+//! `UPDATE_GOLDEN=1 cargo test --test compare -- golden` draws the golden pictures anew; look at them before committing.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use common::pictures::{difference, distance, pixel, read_png};
+use common::{scene, scene_with, stderr, warpbeam};
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use warpbeam::app::{Lab, Pane, PaneSetting, parse_panes, picture};
+use warpbeam::render::Gpu;
+use warpbeam::scene::{ElementKind, Load, MethodKind, Scene, Source};
+use warpbeam::simulation::{Simulation, Status};
+use warpbeam::study::Reference;
+use warpbeam::words::{count, percent};
+
+fn lab_of(id: &str, scene: Scene) -> Lab {
+    let simulation = Simulation::new(&scene).unwrap();
+    Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation)
+}
+
+fn harness_of(id: &str, scene: Scene) -> Harness<'static, Lab> {
+    Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            lab.ui(ui);
+        },
+        lab_of(id, scene),
+    )
+}
+
+/// Draws frames until something holds.
+fn wait(harness: &mut Harness<'_, Lab>, what: &str, holds: impl Fn(&Lab) -> bool) {
+    let start = Instant::now();
+    while !holds(harness.state()) {
+        assert!(start.elapsed() < Duration::from_secs(120), "waiting for {what}");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+    harness.step();
+    harness.step();
+}
+
+fn have_ended(lab: &Lab) -> bool {
+    !lab.panes().is_empty() && lab.panes().iter().all(|pane| pane.end().is_some())
+}
+
+fn are_judged(lab: &Lab) -> bool {
+    let judged = |pane: &Pane| pane.error_percent().is_some() || pane.end().is_some_and(|e| !e.status.is_success());
+    have_ended(lab) && lab.panes().iter().all(judged)
+}
+
+/// Everything that is said.
+fn labels(harness: &Harness<'_, Lab>) -> Vec<String> {
+    let nodes = harness.get_all_by(|_| true).map(|node| node.accesskit_node());
+    nodes.flat_map(|node| [node.label(), node.value()]).flatten().collect()
+}
+
+fn compared(id: &str, panes: &str) -> Harness<'static, Lab> {
+    let mut harness = harness_of(id, scene(id));
+    harness.state_mut().show_comparison(&parse_panes(panes).unwrap());
+    wait(&mut harness, "the panes", are_judged);
+    harness
+}
+
+fn load(scene: &Scene) -> f64 {
+    scene
+        .loads
+        .iter()
+        .find_map(|l| if let Load::Force { force, .. } = l { Some(force[0].hypot(force[1])) } else { None })
+        .unwrap()
+}
+
+/// Error and iterations of every pane are those of a simulation of its own, and its header says so.
+fn panes_agree_with_solves(harness: &Harness<'_, Lab>) {
+    let lab = harness.state();
+    let truth = Reference::of(lab.scene()).unwrap();
+    for (number, pane) in lab.panes().iter().enumerate() {
+        let scene = pane.setting().apply(lab.scene());
+        let mut alone = Simulation::new(&scene).unwrap();
+        alone.solve();
+        let end = pane.end().unwrap();
+        assert_eq!((&end.status, end.iterations), (alone.status(), alone.iterations()), "{}", pane.setting());
+        assert!(end.seconds > 0.0);
+        if !alone.status().is_success() {
+            continue;
+        }
+        let error = truth.first().error_percent(&alone.solution().probes[0]).unwrap();
+        assert!((pane.error_percent().unwrap() - error).abs() < 1e-6, "{}: {error}", pane.setting());
+        let said = labels(harness).into_iter().find(|l| l.starts_with(&format!("Pane {}: ", number + 1))).unwrap();
+        assert!(said.contains(&format!("error {}", percent(error))), "{said}");
+        assert!(said.contains(&count(alone.iterations(), "iteration")), "{said}");
+        assert!(said.contains(&pane.setting().of(lab.scene()).to_string()), "{said}");
+    }
+}
+
+#[test]
+fn presets_make_panes_that_say_what_solves_of_their_own_say() {
+    let mut harness = harness_of("article", scene("article"));
+    harness.run();
+    harness.key_press(Key::K);
+    harness.step();
+    wait(&mut harness, "the panes", are_judged);
+    let methods = |lab: &Lab| lab.panes().iter().map(|pane| pane.setting().method).collect::<Vec<_>>();
+    let expected = [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton].map(Some);
+    assert_eq!(methods(harness.state()), expected);
+    panes_agree_with_solves(&harness);
+    // Its own 30 kN is too much for the fixed point of better elements.
+    harness.get_by_label("t3 | t6 | q4").click();
+    harness.step();
+    wait(&mut harness, "the panes", are_judged);
+    let elements: Vec<_> = harness.state().panes().iter().map(|pane| pane.setting().element).collect();
+    assert_eq!(elements, [ElementKind::T3, ElementKind::T6, ElementKind::Q4].map(Some));
+    panes_agree_with_solves(&harness);
+    // Panes follow the panel in what is not their own.
+    let newton = scene_with("article", &["solver.method=\"newton\""]);
+    harness.state_mut().set_scene(newton).unwrap();
+    harness.step();
+    wait(&mut harness, "the panes", are_judged);
+    assert!(harness.state().panes().iter().all(|p| p.scene().unwrap().solver.method == MethodKind::Newton));
+    panes_agree_with_solves(&harness);
+    // A pane is closed; two are the fewest.
+    harness.get_by_label("Close pane 2").click();
+    harness.step();
+    harness.step();
+    assert_eq!(harness.state().panes().len(), 2);
+    assert!(harness.query_by_label("Close pane 1").is_none());
+}
+
+/// Large meshes are solved beside the window, and stopped solves stop where they are told to.
+#[test]
+fn large_panes_and_stopped_ones_agree_with_solves_too() {
+    let mut harness = compared("cantilever", "newton:t3:100x21,warped:4,warped");
+    let lab = harness.state();
+    panes_agree_with_solves_of(lab, 0);
+    panes_agree_with_solves_of(lab, 2);
+    let stopped = lab.panes()[1].end().unwrap();
+    assert_eq!((&stopped.status, stopped.iterations), (&Status::Running, 4));
+    // A load that changes meanwhile is the one that is answered.
+    for force in [-2000.0, -1500.0] {
+        let changed = scene_with("cantilever", &[&format!("load.0.force=[0,{force}]")]);
+        harness.state_mut().set_scene(changed).unwrap();
+        harness.step();
+        harness.step();
+    }
+    wait(&mut harness, "the panes", are_judged);
+    assert!(harness.state().panes().iter().all(|pane| load(pane.scene().unwrap()) == 1500.0));
+    panes_agree_with_solves_of(harness.state(), 0);
+}
+
+fn panes_agree_with_solves_of(lab: &Lab, number: usize) {
+    let pane = &lab.panes()[number];
+    let mut alone = Simulation::new(&pane.setting().apply(lab.scene())).unwrap();
+    alone.solve();
+    let end = pane.end().unwrap();
+    assert_eq!((&end.status, end.iterations), (alone.status(), alone.iterations()), "{}", pane.setting());
+    assert!((end.probes[0].u - alone.solution().probes[0].u).norm() < 1e-12);
+}
+
+#[test]
+fn what_does_not_converge_is_named() {
+    let harness = compared("article", "warped:t3,warped:t6,newton:t6");
+    let labels = labels(&harness);
+    let failed = labels.iter().find(|label| label.starts_with("Pane 2: warped t6 5×1: ")).unwrap();
+    assert!(failed.contains("Does not converge: "), "{failed}");
+    assert!(labels.contains(&"warped t6 5×1: does not converge".to_owned()), "{labels:?}");
+    assert!(!labels.iter().any(|label| label.starts_with("newton") && label.contains("does not converge")));
+    let traced = harness.state().traced();
+    assert!(traced.iter().all(|(setting, _)| setting.to_string() != "warped t6 5×1"), "{traced:?}");
+    assert_eq!(traced.len(), 2, "{traced:?}");
+}
+
+/// Dots stay, and the curve is there, while everything iterates under a load that is dragged; an edit costs an iteration.
+#[test]
+fn the_trace_keeps_its_dots_while_panes_iterate() {
+    let mut harness = compared("article", "linear,warped,newton");
+    let before = harness.state().traced();
+    assert_eq!(before.len(), 3, "{before:?}");
+    for (i, newtons) in [26e3, 24e3, 22e3].into_iter().enumerate() {
+        harness.hover_at(egui::pos2(1100.0, 600.0 + 5.0 * i as f32));
+        let dragged = scene_with("article", &[&format!("load.0.force=[0,-{newtons}]")]);
+        harness.state_mut().set_scene(dragged).unwrap();
+        harness.step();
+        let iterations: Vec<_> = harness.state().panes().iter().map(|p| p.simulation().unwrap().iterations()).collect();
+        assert!(iterations.iter().all(|&n| n <= 1), "{iterations:?} iterations in a frame");
+        assert!(harness.state().panes().iter().any(|pane| pane.end().is_none()), "nothing iterates");
+        let traced = harness.state().traced();
+        assert!(before.iter().all(|dot| traced.contains(dot)), "dots went: {traced:?}");
+        assert!(harness.query_by_role_and_label(Role::Image, "Load curve").is_some(), "the curve is gone");
+    }
+    wait(&mut harness, "the panes", are_judged);
+    let traced = harness.state().traced();
+    // Linear theory has answered on the way too.
+    assert!(traced.len() >= 6 && before.iter().all(|dot| traced.contains(dot)), "{traced:?}");
+    let last: Vec<_> = traced.iter().filter(|(_, dot)| dot[0] == 22e3).collect();
+    assert_eq!(last.len(), 3, "{traced:?}");
+    for (setting, [_, deflection]) in last {
+        let mut alone = Simulation::new(&setting.apply(harness.state().scene())).unwrap();
+        alone.solve();
+        assert!((deflection - alone.solution().probes[0].u.norm()).abs() < 1e-6 * deflection);
+    }
+    // Another direction is another curve.
+    harness.state_mut().set_scene(scene_with("article", &["load.0.force=[100,-2e4]"])).unwrap();
+    harness.step();
+    assert!(harness.state().traced().iter().all(|(_, dot)| dot[0] != 22e3));
+}
+
+#[test]
+fn a_press_in_the_load_curve_sets_the_load() {
+    let mut harness = compared("article", "linear,newton");
+    let area = harness.get_by_role_and_label(Role::Image, "Load curve").rect();
+    let press = |harness: &mut Harness<'_, Lab>, share: f32| {
+        let at = egui::pos2(area.left() + share * area.width(), area.center().y);
+        harness.hover_at(at);
+        harness.step();
+        harness.drag_at(at);
+        harness.step();
+        harness.drop_at(at);
+        harness.step();
+        wait(harness, "the panes", are_judged);
+    };
+    press(&mut harness, 0.4);
+    let set = load(harness.state().scene());
+    assert!((set - 0.4 * 1.25 * 30e3).abs() < 400.0, "{set} N");
+    // Near a dot the dot is meant: the load is the one it was.
+    press(&mut harness, 0.8 + 2.0 / area.width());
+    assert_eq!(load(harness.state().scene()), 30e3);
+    let traced = harness.state().traced();
+    assert_eq!(traced.len(), 4, "{traced:?}");
+}
+
+/// One camera: a pan in one pane moves the body in all of them, to where it is drawn.
+#[test]
+fn panning_one_pane_pans_all() {
+    let mut harness = compared("article", "linear,warped,newton,newton:t6");
+    let before = harness.state().camera();
+    let place = harness.state().panes()[1].place().unwrap();
+    let from = place.left_bottom() + egui::vec2(20.0, -20.0);
+    harness.hover_at(from);
+    harness.step();
+    harness.drag_at(from);
+    harness.step();
+    harness.hover_at(from + egui::vec2(15.0, -9.0));
+    harness.step();
+    harness.drop_at(from + egui::vec2(15.0, -9.0));
+    harness.run();
+    let after = harness.state().camera();
+    let moved = (after.center - before.center) * before.scale;
+    assert!((moved.x + 15.0).abs() < 0.1 && (moved.y + 9.0).abs() < 0.1, "{before:?} {after:?}");
+    assert_eq!(after.scale, before.scale);
+
+    let Ok(gpu) = Gpu::headless() else { return };
+    let drawn = picture(&gpu, harness.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
+    let lab = harness.state();
+    let background = lab.frame().background;
+    for pane in lab.panes() {
+        let place = pane.place().unwrap();
+        let simulation = pane.simulation().unwrap();
+        let mesh = simulation.system().mesh();
+        let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize];
+        let mut seen = 0;
+        for nodes in mesh.elements() {
+            let middle = (at(nodes[0]) + at(nodes[1]) + at(nodes[2])) / 3.0;
+            let [x, y] = lab.camera().to_view(middle);
+            let pixel = pixel(&drawn, (place.center().x + x as f32) as u32, (place.center().y + y as f32) as u32);
+            seen += u32::from(distance(pixel, background) > 8);
+        }
+        assert_eq!(seen as usize, mesh.element_count(), "{}: the body is elsewhere", pane.setting());
+    }
+    harness.key_press(Key::F);
+    harness.run();
+    assert_eq!(harness.state().camera(), before);
+}
+
+/// Everything is there, named, and inside the window, down to 640×480.
+#[test]
+fn compare_fits_small_windows() {
+    let mut harness = compared("article", "linear,warped,newton,newton:t6");
+    for size in [[1280.0, 800.0], [800.0, 600.0], [640.0, 480.0]] {
+        harness.set_size(size.into());
+        harness.run();
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        for number in 1..=4 {
+            for what in ["method", "element", "mesh"] {
+                let name = format!("Pane {number} {what}");
+                let rect = harness.get_by_role_and_label(Role::ComboBox, &name).rect();
+                assert!(window.contains_rect(rect), "{size:?}: {name} at {rect:?}");
+            }
+            let rect = harness.get_by_label(&format!("Close pane {number}")).rect();
+            assert!(window.contains_rect(rect), "{size:?}: {rect:?}");
+            let place = harness.state().panes()[number - 1].place().unwrap();
+            assert!(
+                window.contains_rect(place) && place.width() > 200.0 && place.height() > 60.0,
+                "{size:?}: {place:?}"
+            );
+        }
+        let names = ["Explore", "Compare", "Budget", "linear | warped | newton", "t3 | t6 | q4", "+ Pane", "Panel"];
+        let rects: Vec<_> = names.iter().map(|name| harness.get_by_label(name).rect()).collect();
+        for (i, rect) in rects.iter().enumerate() {
+            assert!(window.contains_rect(*rect), "{size:?}: {} at {rect:?}", names[i]);
+            assert!(rects[..i].iter().all(|other| !other.intersects(*rect)), "{size:?}: {} is covered", names[i]);
+        }
+    }
+}
+
+/// A pane's own picker changes that pane alone.
+#[test]
+fn pickers_change_their_pane_alone() {
+    let mut harness = compared("article", "linear,newton");
+    harness.get_by_role_and_label(Role::ComboBox, "Pane 2 mesh").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "20×4").click();
+    harness.step();
+    wait(&mut harness, "the panes", are_judged);
+    let settings: Vec<PaneSetting> = harness.state().panes().iter().map(|pane| *pane.setting()).collect();
+    assert_eq!(settings, parse_panes("linear,newton:20x4").unwrap());
+    assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, [5, 1]);
+    panes_agree_with_solves(&harness);
+}
+
+/// A motion is not compared, and that is said.
+#[test]
+fn motions_are_not_compared() {
+    let mut harness = harness_of("swing", scene("swing"));
+    harness.step();
+    harness.key_press(Key::K);
+    harness.step();
+    harness.step();
+    assert!(harness.state().panes().iter().all(|pane| pane.place().is_none()));
+    assert!(harness.get_by_label("Compare").accesskit_node().is_disabled());
+}
+
+fn golden(name: &str, theme: &str, args: &[&str]) {
+    const TOLERANCE: f64 = 2e-3;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shot.png");
+    let to = path.to_str().unwrap();
+    let output = warpbeam(&[&["shot", "article", "-o", to, "--no-panel", "--theme", theme], args].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let golden = PathBuf::from(format!("tests/golden/compare-{name}-{theme}.png"));
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::copy(&path, &golden).unwrap();
+    }
+    let difference = difference(&read_png(&path), &read_png(&golden));
+    assert!(difference < TOLERANCE, "{name}: {:.2} % of the pixels differ", 100.0 * difference);
+}
+
+#[test]
+fn golden_pictures() {
+    for theme in ["dark", "light"] {
+        golden("methods", theme, &["--compare", "linear,warped,newton", "--size", "960x600"]);
+        let elements = ["--compare", "warped:t3,warped:t6,newton:q4,newton:t3:20x4", "--size", "800x700"];
+        golden("elements", theme, &elements);
+    }
+}
