@@ -9,7 +9,7 @@ use warpbeam::element::{ELEMENTS, ElementType, RulePoint, Tangent};
 use warpbeam::mesh::{MaterialPoint, Mesh};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::Rotation;
-use warpbeam::simulation::{Field, Simulation};
+use warpbeam::simulation::{Deformation, Field, Simulation};
 use warpbeam::solver::Factor;
 use warpbeam::{Axis, ElementKind, Load, Material, Plane, Scene, State, Status};
 
@@ -29,6 +29,9 @@ const TESTS: &[Test<ElementKind>] = &[
     ("material_points_are_found_in_curved_elements", material_points_are_found_in_curved_elements),
     ("patch_test", patch_test),
     ("uniform_traction_gives_uniform_strain", uniform_traction_gives_uniform_strain),
+    ("fields_of_a_uniform_stretch", fields_of_a_uniform_stretch),
+    ("the_strains_at_points_hold_the_energy", the_strains_at_points_hold_the_energy),
+    ("areas_and_inversions_are_those_of_the_map", areas_and_inversions_are_those_of_the_map),
     ("rigid_motions_give_no_force_and_no_energy", rigid_motions_give_no_force_and_no_energy),
     ("the_force_is_the_gradient_of_the_energy", the_force_is_the_gradient_of_the_energy),
     ("the_tangent_is_the_derivative_of_the_force", the_tangent_is_the_derivative_of_the_force),
@@ -346,6 +349,101 @@ fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
             assert!((u - expected).norm() < 1e-12, "{}: {u} {expected}", method.id);
         }
     }
+}
+
+/// Every field of a body that is stretched uniformly and turned, in closed form: the strain is S − I, and the von Mises
+/// stress that of the deviator in space, with what plane strain adds across the plane.
+fn fields_of_a_uniform_stretch(kind: ElementKind) {
+    let degrees = -70.0f64;
+    let turn = Rotation::from_angle(degrees.to_radians());
+    let (xx, xy, yy) = (-0.04, 0.013, 0.02);
+    let strain = Matrix2::new(xx, xy, xy, yy);
+    for plane in [Plane::Stress, Plane::Strain] {
+        let problem = problem(&irregular_scene(plane), kind);
+        let state = state(&problem, |x| turn.apply(x + strain * x) + Vector2::new(2.0, -1.0));
+        // E = 100, ν = 0.3.
+        let (young, poisson) = (100.0, 0.3);
+        let shear = young / (2.0 * (1.0 + poisson));
+        let pressure_part = match plane {
+            Plane::Stress => young * poisson / (1.0 - poisson * poisson),
+            Plane::Strain => young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
+        } * (xx + yy);
+        let (sx, sy, t) = (pressure_part + 2.0 * shear * xx, pressure_part + 2.0 * shear * yy, 2.0 * shear * xy);
+        let z = if plane == Plane::Strain { poisson * (sx + sy) } else { 0.0 };
+        let mean = (sx + sy + z) / 3.0;
+        let deviator = (sx - mean).powi(2) + (sy - mean).powi(2) + (z - mean).powi(2) + 2.0 * t * t;
+        let largest = strain.symmetric_eigenvalues().amax();
+        for (field, expected) in [
+            (Field::VonMises, (1.5 * deviator).sqrt()),
+            (Field::EnergyDensity, 0.5 * (sx * xx + sy * yy) + t * xy),
+            (Field::LargestStrain, largest),
+            (Field::RotationAngle, degrees),
+        ] {
+            let mut values = Vec::new();
+            field.values(&problem, &state, &mut values);
+            assert_eq!(values.len(), problem.system().elements().point_count());
+            for value in values {
+                let value = value.unwrap();
+                assert!((value - expected).abs() < 1e-11 * expected.abs(), "{plane:?} {field:?}: {value} {expected}");
+            }
+        }
+        let deformation = Deformation::of(&problem, &state);
+        assert!((deformation.max_rotation_deg - degrees.abs()).abs() < 1e-9, "{deformation:?}");
+        assert!((deformation.max_strain - largest).abs() < 1e-12, "{deformation:?}");
+        assert_eq!(deformation.inverted_elements, 0);
+    }
+}
+
+/// The energy of the strains that are shown is the elastic energy: ∫ ψ over the quadrature points, what an element's own
+/// modes add to the strain included.
+fn the_strains_at_points_hold_the_energy(kind: ElementKind) {
+    for plane in [Plane::Stress, Plane::Strain] {
+        let problem = problem(&irregular_scene(plane), kind);
+        let (elements, moduli) = (problem.system().elements(), problem.material().membrane());
+        for place in [bent, |x: Vector2<f64>| Vector2::new(x.x + 0.2 * x.x * x.y, x.y - 0.1 * x.x * x.x)] {
+            let state = state(&problem, place);
+            let (mut sum, mut next) = (0.0, 0);
+            elements.visit_strains(moduli, state.displacement(), state.rotations(), &mut |q, _, strain| {
+                assert_eq!(q, next);
+                next += 1;
+                sum += elements.point_area(q) * moduli.energy_density(strain);
+            });
+            assert_eq!(next, elements.point_count());
+            let energy = problem.elastic_energy(&state);
+            assert!((sum - energy).abs() < 1e-12 * energy, "{plane:?}: {sum} {energy}");
+        }
+    }
+}
+
+/// Areas over those at rest, and elements that are turned inside out, by the Jacobians of the shape functions.
+fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
+    let problem = problem(&irregular_scene(Plane::Stress), kind);
+    let (entry, mesh) = (kind.entry(), problem.system().mesh());
+    let places: [fn(Vector2<f64>) -> Vector2<f64>; 4] = [
+        |x| x,
+        bent,
+        |x| Vector2::new(x.x * x.x * 0.4, x.y + 0.3 * x.x),
+        // A fold: part of the body is turned inside out.
+        |x| Vector2::new((2.0 * x.x).sin(), x.y + 0.2 * x.x * x.y),
+    ];
+    let mut inversions = Vec::new();
+    for place in places {
+        let state = state(&problem, place);
+        let (mut least, mut inverted) = (f64::INFINITY, 0);
+        for own in mesh.elements() {
+            let rest: Vec<_> = own.iter().map(|&n| mesh.nodes()[n as usize]).collect();
+            let now: Vec<_> = own.iter().zip(&rest).map(|(&n, x)| x + state.displacement()[n as usize]).collect();
+            let area = |nodes: &[Vector2<f64>], at| entry.jacobian(nodes, at).determinant();
+            let ratios: Vec<_> = entry.points.iter().map(|p| area(&now, p.at) / area(&rest, p.at)).collect();
+            inverted += usize::from(ratios.iter().any(|ratio| *ratio <= 0.0));
+            least = ratios.into_iter().fold(least, f64::min);
+        }
+        let found = problem.system().elements().smallest_area_ratio(state.displacement());
+        assert!((found - least).abs() < 1e-12, "{found} {least}");
+        assert_eq!(Deformation::of(&problem, &state).inverted_elements, inverted);
+        inversions.push(inverted);
+    }
+    assert!(inversions[..2] == [0, 0] && inversions[3] > 1 && inversions[3] < mesh.element_count(), "{inversions:?}");
 }
 
 fn rigid_motions_give_no_force_and_no_energy(kind: ElementKind) {
