@@ -553,3 +553,92 @@ fn auto_says_what_it_did() {
 fn auto_is_finite_everywhere() {
     is_finite_everywhere(MethodKind::Auto);
 }
+
+/// A body is at rest once nothing has moved for half a second and ten steps, and no pulse is to come.
+#[test]
+fn a_body_at_rest_is_said_to_be() {
+    for h in [1.0 / 60.0, 0.125] {
+        let mut scene = beam(4, 10.0).moving(EULER, h).force("right", [0.0, 1.0]).pulse(1.5, 0.5);
+        scene.dynamics.damping.mass = 8.0;
+        scene.dynamics.duration = 1e3;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert!(!simulation.is_at_rest());
+        let (mut still, mut rested) = (0_u32, 0_u32);
+        for _ in 0..(12.0 / h) as u32 {
+            simulation.step();
+            let fastest = simulation.state().velocity().iter().map(|v| v.norm()).fold(0.0, f64::max);
+            still = if fastest < 1e-6 * simulation.system().size() { still + 1 } else { 0 };
+            let expected = still >= 10 && f64::from(still) * h >= 0.5 && simulation.state().time() >= 2.0;
+            assert_eq!(simulation.is_at_rest(), expected, "h = {h} at {} s", simulation.state().time());
+            rested += u32::from(expected);
+        }
+        assert!(rested > 5, "it comes to rest, {fastest} m/s", fastest = simulation.state().velocity()[0].norm());
+        assert_eq!(simulation.problem().loads().last_pulse_end(), Some(2.0));
+    }
+    // A search is at rest at its end, and a motion that was given up.
+    let mut search = Simulation::new(&scene("cantilever")).unwrap();
+    assert!(!search.is_at_rest() && search.problem().loads().last_pulse_end().is_none());
+    search.solve();
+    assert!(search.is_at_rest());
+    let mut exploding = Simulation::new(&with("swing", SYMPLECTIC, 0.01, 1, 1e3)).unwrap();
+    while !matches!(exploding.status(), Status::Stopped(_)) {
+        assert!(!exploding.is_at_rest());
+        exploding.step();
+    }
+    assert!(exploding.is_at_rest());
+}
+
+/// Pulses of forces and moments: the last one's end.
+#[test]
+fn the_last_pulse_ends_when_its_load_does() {
+    let scene = beam(4, 10.0).force("right", [0.0, 1.0]).pulse(0.2, 0.3).moment("right", 1.0).pulse(0.1, 0.6);
+    let end = Simulation::new(&scene).unwrap().problem().loads().last_pulse_end().unwrap();
+    assert!((end - 0.7).abs() < 1e-12, "{end}");
+}
+
+/// A ledger that is kept goes on; one that is taken up again begins where the body is.
+#[test]
+fn a_ledger_taken_up_again_begins_anew() {
+    let mut simulation = Simulation::new(&scene("swing")).unwrap();
+    let ledger = |simulation: &Simulation| *simulation.motion().unwrap().ledger();
+    (0..10).for_each(|_| drop(simulation.step().clone()));
+    let kept = ledger(&simulation);
+    simulation.keep_ledger(true);
+    assert_eq!(ledger(&simulation), kept);
+    simulation.keep_ledger(false);
+    (0..10).for_each(|_| drop(simulation.step().clone()));
+    assert_eq!(ledger(&simulation), kept, "nothing is booked");
+    simulation.keep_ledger(true);
+    let anew = ledger(&simulation);
+    assert_eq!((anew.start, anew.throughput), (anew.total(), 0.0));
+    assert_ne!(anew.total(), kept.total());
+    (0..10).for_each(|_| drop(simulation.step().clone()));
+    let after = ledger(&simulation);
+    assert!(after.throughput > 0.0 && after.imbalance().abs() < 1e-11 * after.throughput, "{after:?}");
+}
+
+/// The critical step is that of the scene as it stands, whatever of it was edited.
+#[test]
+fn the_critical_step_follows_edits() {
+    let mut scene = with("swing", SYMPLECTIC, 1e-5, 1, 1e3);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let mut critical = vec![simulation.motion().unwrap().critical_step().unwrap()];
+    let edits: [fn(&mut Scene); 4] = [
+        |scene| scene.material.density *= 4.0,
+        |scene| scene.material.young *= 9.0,
+        |scene| scene.dynamics.damping.stiffness = 1e-3,
+        |scene| scene.scale_loads(2.0),
+    ];
+    for edit in edits {
+        edit(&mut scene);
+        simulation.change_scene(&scene).unwrap();
+        let fresh = Simulation::new(&scene).unwrap().motion().unwrap().critical_step();
+        assert_eq!(simulation.motion().unwrap().critical_step(), fresh);
+        critical.push(fresh.unwrap());
+    }
+    assert!((critical[1] / critical[0] - 2.0).abs() < 1e-9 && (critical[2] / critical[1] - 1.0 / 3.0).abs() < 1e-9);
+    assert!(critical[3] < 0.9 * critical[2] && critical[4] == critical[3], "{critical:?}");
+    scene.dynamics.integrator = TR_BDF2;
+    simulation.change_scene(&scene).unwrap();
+    assert_eq!(simulation.motion().unwrap().critical_step(), None);
+}

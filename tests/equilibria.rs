@@ -5,7 +5,8 @@ mod common;
 
 use common::{cantilever, cantilever_table, scene, scene_with, solved};
 use nalgebra::Vector2;
-use warpbeam::{ElementKind, Load, Mesh, MethodKind, Scene, Simulation, Status};
+use warpbeam::method::rho_words;
+use warpbeam::{Axis, ElementKind, Load, Mesh, MethodKind, Scene, Simulation, Status};
 
 fn tip(simulation: &Simulation) -> Vector2<f64> {
     simulation.solution().probes[0].x
@@ -265,4 +266,52 @@ fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
     let exact = moment(3.0 * share, 400);
     let [a, b] = [&stopped, &exact].map(|s| s.probe("tip").unwrap());
     assert!((a - b).norm() < 1e-3 * b.norm(), "{a} {b}");
+}
+
+/// The warped iteration's steps shrink by ρ in the end, the less the larger the load; Newton's method has no such ratio.
+#[test]
+fn steps_shrink_by_rho() {
+    let mut before = 0.0;
+    for factor in [0.6, 0.8, 1.0] {
+        let mut scene = scene("cantilever").with_method(MethodKind::Warped);
+        scene.scale_loads(factor);
+        (scene.solver.tolerance, scene.solver.max_iterations) = (1e-11, 2000);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(simulation.step_ratio(), None, "two steps have a ratio");
+        assert_eq!(*simulation.solve(), Status::Converged);
+        let (ratio, rho) = (simulation.step_ratio().unwrap(), simulation.certify().fixed_point_rho.unwrap());
+        assert!((ratio / rho - 1.0).abs() < 0.01, "{factor}: {ratio} {rho}");
+        assert!(ratio > before && ratio < 1.0);
+        before = ratio;
+        let says = rho_words(rho);
+        assert!(says.contains("converges near") && says.contains(&format!("{rho:.3}")), "{says}");
+    }
+    let mut newton = Simulation::new(&scene("cantilever").with_method(MethodKind::Newton)).unwrap();
+    newton.solve();
+    assert_eq!(newton.step_ratio(), None);
+    let mut auto = Simulation::new(&scene("cantilever").with_method(MethodKind::Auto)).unwrap();
+    auto.solve();
+    assert!(auto.iterations() > 2 && auto.step_ratio().is_some_and(|ratio| ratio > 0.0 && ratio < 0.5));
+    for (rho, words) in [(1.0, "cannot converge here: ρ = 1.000"), (999.0, "ρ = 999.000"), (1e3, "ρ = 1.0e3")] {
+        assert!(rho_words(rho).contains(words), "{}", rho_words(rho));
+    }
+}
+
+/// What supports fix, node by node.
+#[test]
+fn supports_fix_what_they_say() {
+    let scene = Scene::beam(4.0, 1.0).with_cells(4, 2).clamp("left").support([4.0, -0.5], &[Axis::Y]);
+    let simulation = Simulation::new(&scene.support([4.0, 0.5], &[Axis::X])).unwrap();
+    let (mesh, pattern) = (simulation.system().mesh(), simulation.system().pattern());
+    for (node, x) in (0..).zip(mesh.nodes()) {
+        let expected = match (x.x, x.y) {
+            (0.0, _) => [true, true],
+            (4.0, -0.5) => [false, true],
+            (4.0, 0.5) => [true, false],
+            _ => [false, false],
+        };
+        assert_eq!(pattern.fixed(node), expected, "at {x}");
+        assert_eq!([0, 1].map(|axis| pattern.mask()[node as usize][axis] == 0.0), expected);
+    }
+    assert_eq!(pattern.fixed(mesh.nodes().len() as u32), [true, true], "no node moves where there is none");
 }

@@ -254,3 +254,29 @@ fn a_body_goes_along_with_a_steady_pointer() {
         }
     }
 }
+
+/// A body in a hand gets a support: the hand keeps its hold, and its spring stands where it belongs in the new matrix,
+/// so that steps converge as before.
+#[test]
+fn a_hand_keeps_its_hold_when_a_support_comes() {
+    let mut scene = Scene::beam(2.0, 0.5).with_cells(8, 2).with_material(Material::new(1e5, 0.3));
+    scene.material.density = 100.0;
+    let mut scene = scene.moving(IntegratorKind::EnergyMomentum, 1.0 / 60.0);
+    (scene.dynamics.iterations, scene.dynamics.duration) = (0, 1e3);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let place = Vector2::new(1.6, 0.1);
+    assert!(simulation.grab(simulation.system().mesh().locate(place).unwrap()));
+    scene = scene.clamp("left");
+    simulation.change_scene(&scene).unwrap();
+    let held = simulation.hand().unwrap().0.position(simulation.displacement());
+    assert!((held - place).norm() < 1e-12);
+    for step in 1..=30 {
+        simulation.pull_to(place + Vector2::new(0.0, 0.01 * f64::from(step))).unwrap();
+        simulation.step();
+    }
+    let counts = simulation.motion().unwrap().counts();
+    assert!(counts.halvings == 0 && counts.solves <= 7 * counts.steps, "{counts:?}");
+    let (hand, force) = simulation.hand().unwrap();
+    let lifted = hand.position(simulation.displacement()) - place;
+    assert!(lifted.y > 0.15 && force.norm() > 0.0, "{lifted}");
+}
