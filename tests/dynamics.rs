@@ -9,7 +9,7 @@ use common::motion::{beam, drift, first_mode, momentum, run, with};
 use common::{ids_of, scene, solve_json, stdout, warpbeam};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::assembly::Mass;
-use warpbeam::dynamics::{MotionDecision, MotionReport, lowest_frequency};
+use warpbeam::dynamics::{MotionDecision, MotionReport, StopReason, lowest_frequency};
 use warpbeam::element::{DiscreteGradient, warped_strain};
 use warpbeam::material::Lame;
 use warpbeam::rotation::{Rotation, polar_or};
@@ -641,4 +641,125 @@ fn the_critical_step_follows_edits() {
     scene.dynamics.integrator = TR_BDF2;
     simulation.change_scene(&scene).unwrap();
     assert_eq!(simulation.motion().unwrap().critical_step(), None);
+}
+
+/// What pulses and a hand put in is force times way, by the trapezoidal rule over steps that are short.
+#[test]
+fn works_are_forces_times_ways() {
+    for (kind, close) in [(EULER, 1e-9), (TR_BDF2, 2e-3), (ENERGY_MOMENTUM, 2e-3)] {
+        let h = 1.0 / 480.0;
+        let mut scene = beam(6, 10.0).moving(kind, h).force("right", [3.0, 20.0]).pulse(0.05, 0.4);
+        scene.dynamics.duration = 1e3;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let middle = simulation.system().mesh().locate(Vector2::new(0.6, 0.01)).unwrap();
+        let (mut pulses, mut hands) = (0.0, 0.0);
+        let pulse = |time: f64| {
+            let part = (time - 0.05) / 0.4;
+            Vector2::new(3.0, 20.0) * if (0.0..1.0).contains(&part) { (part * TAU / 2.0).sin().powi(2) } else { 0.0 }
+        };
+        for step in 0..240 {
+            if step == 60 {
+                assert!(simulation.grab(middle));
+            }
+            if step >= 60 {
+                let t = f64::from(step - 60) * h;
+                simulation.pull_to(Vector2::new(0.6 - 0.1 * t, 0.01 + 0.2 * (8.0 * t).sin())).unwrap();
+            }
+            let hand = |simulation: &Simulation| {
+                let (hand, force) = simulation.hand()?;
+                Some((hand.position(simulation.displacement()), force))
+            };
+            let before = (simulation.probe("tip").unwrap(), simulation.state().time(), hand(&simulation));
+            simulation.step();
+            let after = (simulation.probe("tip").unwrap(), simulation.state().time(), hand(&simulation));
+            pulses += 0.5 * (pulse(before.1) + pulse(after.1)).dot(&(after.0 - before.0));
+            if let (Some((x0, f0)), Some((x1, f1))) = (before.2, after.2) {
+                hands += 0.5 * (f0 + f1).dot(&(x1 - x0));
+            }
+        }
+        let ledger = *simulation.motion().unwrap().ledger();
+        assert!(pulses.abs() > 0.1 && hands.abs() > 0.1, "{pulses} {hands}");
+        assert!((ledger.pulses - pulses).abs() < close * pulses.abs(), "{}: {} {pulses}", kind.id(), ledger.pulses);
+        assert!((ledger.hands - hands).abs() < 10.0 * close * hands.abs(), "{}: {} {hands}", kind.id(), ledger.hands);
+    }
+}
+
+/// What damping takes is booked as damping: of a first mode under mass damping a, 1 − exp(−a t) of its energy.
+#[test]
+fn damping_is_booked_as_damping() {
+    for kind in [TR_BDF2, ENERGY_MOMENTUM, SYMPLECTIC] {
+        for (mass, stiffness) in [(0.5, 0.0), (0.0, 2e-3)] {
+            let mut scene = beam(6, 10.0).moving(kind, if kind == SYMPLECTIC { 1e-4 } else { 1.0 / 480.0 });
+            (scene.dynamics.damping.mass, scene.dynamics.damping.stiffness) = (mass, stiffness);
+            scene.dynamics.duration = 1e3;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.start_from(&first_mode(&simulation)).unwrap();
+            while simulation.state().time() < 1.0 {
+                simulation.step();
+            }
+            let ledger = *simulation.motion().unwrap().ledger();
+            let taken = ledger.start - ledger.total();
+            assert!(taken > 1e-2 * ledger.start, "{ledger:?}");
+            assert!((ledger.dissipated / taken - 1.0).abs() < 0.02, "{} {mass}: {ledger:?}", kind.id());
+            assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{ledger:?}");
+        }
+    }
+}
+
+/// Coming to linear theory and leaving it changes what the energy of a state is: the books say so.
+#[test]
+fn a_change_of_theory_is_booked() {
+    let mut scene = with("swing", TR_BDF2, 1.0 / 60.0, 1, 4.0).with_method(MethodKind::Auto);
+    scene.scale_loads(4e-3);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let (mut changes, mut linear) = (0, simulation.is_linear());
+    while *simulation.status() == Status::Running {
+        simulation.step();
+        changes += u32::from(simulation.is_linear() != linear);
+        linear = simulation.is_linear();
+        let ledger = *simulation.motion().unwrap().ledger();
+        assert!(ledger.imbalance().abs() < 1e-10 * ledger.throughput, "{changes} changes: {ledger:?}");
+    }
+    assert!(changes >= 2, "{changes} changes, {:?}", report(&simulation));
+}
+
+/// A free body starts with the velocity and the spin of its scene, about its own centre, and is given up far away.
+#[test]
+fn a_body_starts_as_its_scene_says() {
+    let mut scene = Scene::beam(2.0, 1.0).with_cells(6, 3).moving(TR_BDF2, 0.5).probe("end", "right");
+    (scene.start.velocity, scene.start.spin, scene.dynamics.duration) = ([3.0, -1.5], 0.7, 1e6);
+    scene.solver.method = MethodKind::Linear;
+    let simulation = Simulation::new(&scene).unwrap();
+    let centre = Vector2::new(1.0, 0.0);
+    for (x, v) in simulation.system().mesh().nodes().iter().zip(simulation.state().velocity()) {
+        let arm = x - centre;
+        let expected = Vector2::new(3.0 - 0.7 * arm.y, -1.5 + 0.7 * arm.x);
+        assert!((v - expected).norm() < 1e-12, "at {x}: {v} {expected}");
+    }
+    let mass = 2.0 * scene.material.area_density();
+    let start = momentum(&simulation);
+    assert!((start.linear - Vector2::new(3.0, -1.5) * mass).norm() < 1e-9 * mass);
+    // About the origin: c × m v, and the spin's own, ω m (L² + H²)/12.
+    let expected = mass * (centre.perp(&Vector2::new(3.0, -1.5)) + 0.7 * 5.0 / 12.0);
+    assert!((start.angular - expected).abs() < 1e-9 * mass, "{} {expected}", start.angular);
+    // Nothing holds it: it goes on for ever, until its strains have lost their digits.
+    let mut thrown = scene.clone();
+    (thrown.start.velocity, thrown.start.spin) = ([0.0, 9e3], 0.0);
+    thrown.dynamics.time_step = 10.0;
+    let mut simulation = Simulation::new(&thrown).unwrap();
+    let limit = 1e6 * simulation.system().size();
+    while *simulation.status() == Status::Running {
+        let gone = simulation.probe("end").unwrap().norm();
+        assert!(gone <= limit, "{gone} m of {limit}");
+        simulation.step();
+    }
+    assert!(matches!(simulation.status(), Status::Stopped(StopReason::RanAway(_))), "{:?}", simulation.status());
+    assert!(simulation.probe("end").unwrap().norm() > limit);
+    // What a step leaves unsolved is nothing where it iterates, and little where it solves once.
+    let left = |iterations: u32| {
+        let mut scene = with("swing", TR_BDF2, 1.0 / 60.0, iterations, 1.0);
+        scene.solver.tolerance = 1e-9;
+        run(&scene).residual()
+    };
+    assert!(left(0) <= 1e-9 && (1e-8..0.1).contains(&left(1)), "{:e} {:e}", left(0), left(1));
 }

@@ -313,5 +313,12 @@ fn supports_fix_what_they_say() {
         assert_eq!(pattern.fixed(node), expected, "at {x}");
         assert_eq!([0, 1].map(|axis| pattern.mask()[node as usize][axis] == 0.0), expected);
     }
+    // A nodal vector times one over the free unknowns: what is fixed counts nothing.
+    let nodal: Vec<_> = mesh.nodes().iter().map(|x| Vector2::new(1.0 + x.x, 2.0 - 3.0 * x.y)).collect();
+    let free: Vec<f64> = (0..simulation.system().dofs()).map(|i| (i as f64 + 1.0).sqrt()).collect();
+    let mut spread = vec![Vector2::zeros(); nodal.len()];
+    pattern.add_free(&free, 1.0, &mut spread);
+    let product: f64 = nodal.iter().zip(&spread).map(|(a, b)| a.dot(b)).sum();
+    assert!((pattern.dot(&nodal, &free) / product - 1.0).abs() < 1e-12 && product > 1.0);
     assert_eq!(pattern.fixed(mesh.nodes().len() as u32), [true, true], "no node moves where there is none");
 }

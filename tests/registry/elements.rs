@@ -32,6 +32,7 @@ const TESTS: &[Test<ElementKind>] = &[
     ("fields_of_a_uniform_stretch", fields_of_a_uniform_stretch),
     ("the_strains_at_points_hold_the_energy", the_strains_at_points_hold_the_energy),
     ("areas_and_inversions_are_those_of_the_map", areas_and_inversions_are_those_of_the_map),
+    ("points_are_seen_with_the_rotation_around_them", points_are_seen_with_the_rotation_around_them),
     ("rigid_motions_give_no_force_and_no_energy", rigid_motions_give_no_force_and_no_energy),
     ("the_force_is_the_gradient_of_the_energy", the_force_is_the_gradient_of_the_energy),
     ("the_tangent_is_the_derivative_of_the_force", the_tangent_is_the_derivative_of_the_force),
@@ -444,6 +445,31 @@ fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
         inversions.push(inverted);
     }
     assert!(inversions[..2] == [0, 0] && inversions[3] > 1 && inversions[3] < mesh.element_count(), "{inversions:?}");
+}
+
+/// Of a body that turns by more than two radians from end to end, every quadrature point is seen with a rotation that is
+/// about its own.
+fn points_are_seen_with_the_rotation_around_them(kind: ElementKind) {
+    let scene = Scene::beam(16.0, 1.0).with_cells(16, 1).with_element(kind).clamp("left");
+    let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
+    let radius = 6.0;
+    let roll = |x: Vector2<f64>| {
+        Rotation::from_angle(x.x / radius).apply(Vector2::new(0.0, x.y - radius)) + Vector2::new(0.0, radius)
+    };
+    let state = state(&problem, roll);
+    let elements = problem.system().elements();
+    assert_eq!(elements.point_count(), elements.points_per_element() * problem.system().mesh().element_count());
+    assert_eq!(elements.points_per_element(), kind.entry().points.len());
+    let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+    let moduli = problem.material().membrane();
+    elements.visit_strains(moduli, state.displacement(), state.rotations(), &mut |q, h, _| {
+        let own = warpbeam::rotation::polar(&(Matrix2::identity() + h)).unwrap();
+        let seen = state.rotations()[elements.rotation_of(q)];
+        let off = (own.c * seen.s - own.s * seen.c).atan2(own.c * seen.c + own.s * seen.s);
+        assert!(off.abs() < 0.12, "point {q}: {own:?} {seen:?}");
+        (first, last) = (first.min(own.angle()), last.max(own.angle()));
+    });
+    assert!(last - first > 2.0, "{first} to {last}");
 }
 
 fn rigid_motions_give_no_force_and_no_energy(kind: ElementKind) {
