@@ -558,7 +558,8 @@ fn auto_is_finite_everywhere() {
 #[test]
 fn a_body_at_rest_is_said_to_be() {
     for h in [1.0 / 60.0, 0.125] {
-        let mut scene = beam(4, 10.0).moving(EULER, h).force("right", [0.0, 1.0]).pulse(1.5, 0.5);
+        let mut scene = Scene::beam(3.0, 0.3).with_cells(4, 1).clamp("left").moving(EULER, h);
+        scene = scene.with_material(Material::new(1e8, 0.3)).force("right", [0.0, 10.0]).pulse(1.5, 0.5);
         scene.dynamics.damping.mass = 8.0;
         scene.dynamics.duration = 1e3;
         let mut simulation = Simulation::new(&scene).unwrap();
@@ -572,7 +573,7 @@ fn a_body_at_rest_is_said_to_be() {
             assert_eq!(simulation.is_at_rest(), expected, "h = {h} at {} s", simulation.state().time());
             rested += u32::from(expected);
         }
-        assert!(rested > 5, "it comes to rest, {fastest} m/s", fastest = simulation.state().velocity()[0].norm());
+        assert!(rested > 5, "it comes to rest");
         assert_eq!(simulation.problem().loads().last_pulse_end(), Some(2.0));
     }
     // A search is at rest at its end, and a motion that was given up.
@@ -649,13 +650,15 @@ fn works_are_forces_times_ways() {
     for (kind, close) in [(EULER, 1e-9), (TR_BDF2, 2e-3), (ENERGY_MOMENTUM, 2e-3)] {
         let h = 1.0 / 480.0;
         let mut scene = beam(6, 10.0).moving(kind, h).force("right", [3.0, 20.0]).pulse(0.05, 0.4);
+        scene = scene.moment("right", 6.0).pulse(0.05, 0.4);
         scene.dynamics.duration = 1e3;
         let mut simulation = Simulation::new(&scene).unwrap();
         let middle = simulation.system().mesh().locate(Vector2::new(0.6, 0.01)).unwrap();
         let (mut pulses, mut hands) = (0.0, 0.0);
+        let right = simulation.system().edges().iter().position(|edge| edge.name() == "right").unwrap();
         let pulse = |time: f64| {
             let part = (time - 0.05) / 0.4;
-            Vector2::new(3.0, 20.0) * if (0.0..1.0).contains(&part) { (part * TAU / 2.0).sin().powi(2) } else { 0.0 }
+            if (0.0..1.0).contains(&part) { (part * TAU / 2.0).sin().powi(2) } else { 0.0 }
         };
         for step in 0..240 {
             if step == 60 {
@@ -669,10 +672,14 @@ fn works_are_forces_times_ways() {
                 let (hand, force) = simulation.hand()?;
                 Some((hand.position(simulation.displacement()), force))
             };
-            let before = (simulation.probe("tip").unwrap(), simulation.state().time(), hand(&simulation));
+            let along = |simulation: &Simulation| {
+                let tip = simulation.probe("tip").unwrap();
+                Vector2::new(3.0, 20.0).dot(&tip) + 6.0 * simulation.state().turns()[right]
+            };
+            let before = (along(&simulation), simulation.state().time(), hand(&simulation));
             simulation.step();
-            let after = (simulation.probe("tip").unwrap(), simulation.state().time(), hand(&simulation));
-            pulses += 0.5 * (pulse(before.1) + pulse(after.1)).dot(&(after.0 - before.0));
+            let after = (along(&simulation), simulation.state().time(), hand(&simulation));
+            pulses += 0.5 * (pulse(before.1) + pulse(after.1)) * (after.0 - before.0);
             if let (Some((x0, f0)), Some((x1, f1))) = (before.2, after.2) {
                 hands += 0.5 * (f0 + f1).dot(&(x1 - x0));
             }
@@ -762,4 +769,57 @@ fn a_body_starts_as_its_scene_says() {
         run(&scene).residual()
     };
     assert!(left(0) <= 1e-9 && (1e-8..0.1).contains(&left(1)), "{:e} {:e}", left(0), left(1));
+}
+
+/// An edit is a new beginning: a body goes on from an edit as one does that starts there, whatever was kept before.
+#[test]
+fn an_edited_motion_goes_on_as_a_new_one_would() {
+    for method in [MethodKind::Linear, MethodKind::Newton, MethodKind::Auto] {
+        for kind in [EULER, TR_BDF2, ENERGY_MOMENTUM] {
+            let mut scene = with("swing", kind, 1.0 / 60.0, 1, 1e3).with_method(method);
+            scene.scale_loads(0.1);
+            scene.solver.max_error_percent = 0.1;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            (0..20).for_each(|_| drop(simulation.step().clone()));
+            // Where it stands still for an instant: at rest nothing but place is left of what was.
+            let u = simulation.displacement().to_vec();
+            let mut edited = scene.clone();
+            edited.material = Material { density: 500.0, ..Material::new(4e6, 0.2) };
+            edited.dynamics.damping.mass = 0.5;
+            simulation.change_scene(&edited).unwrap();
+            let before = *simulation.motion().unwrap().ledger();
+            assert!(before.edits != 0.0 && before.throughput >= before.edits.abs(), "{before:?}");
+            simulation.start_from(&u).unwrap();
+            let mut new = Simulation::new(&edited).unwrap();
+            new.start_from(&u).unwrap();
+            for step in 0..20 {
+                simulation.step();
+                new.step();
+                let off = (simulation.probe("tip").unwrap() - new.probe("tip").unwrap()).norm();
+                assert!(off < 1e-12, "{} {method:?} in step {step}: {off}", kind.id());
+            }
+        }
+    }
+    // And without a new start, where nothing is approximate.
+    for method in [MethodKind::Linear, MethodKind::Newton] {
+        let mut scene = with("swing", EULER, 1.0 / 60.0, 0, 1e3).with_method(method);
+        scene.scale_loads(0.1);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        (0..20).for_each(|_| drop(simulation.step().clone()));
+        let ledger = *simulation.motion().unwrap().ledger();
+        scene.material = Material::new(4e6, 0.2);
+        simulation.change_scene(&scene).unwrap();
+        let edited = *simulation.motion().unwrap().ledger();
+        let change = edited.total() - ledger.total();
+        assert!((edited.edits - change).abs() < 1e-12 * change.abs() && change != 0.0, "{ledger:?} {edited:?}");
+        assert!((edited.throughput - ledger.throughput - change.abs()).abs() < 1e-9 * edited.throughput);
+        let mut new = Simulation::new(&scene).unwrap();
+        new.restore(simulation.state()).unwrap();
+        for _ in 0..20 {
+            simulation.step();
+            new.step();
+        }
+        let off = (simulation.probe("tip").unwrap() - new.probe("tip").unwrap()).norm();
+        assert!(off < 1e-7, "{method:?}: {off}");
+    }
 }

@@ -9,7 +9,7 @@ use warpbeam::assembly::{Forces, Matrix, Problem, System};
 use warpbeam::element::{QuadraturePoint, Tangent, side_weights, warped_strain};
 use warpbeam::material::Lame;
 use warpbeam::mesh::Mesh;
-use warpbeam::rotation::polar;
+use warpbeam::rotation::{Rotation, polar};
 use warpbeam::truth::error_percent;
 use warpbeam::{ElementKind, Load, Material, MethodKind, Plane, Scene, Simulation, Status};
 
@@ -345,6 +345,20 @@ fn a_traction_is_shared_out_along_a_side() {
     let length = 0.5 * (1.0 + 16.0 * b * b).sqrt() + (4.0 * b).asinh() / (8.0 * b);
     assert!((arc.iter().sum::<f64>() - length).abs() < 1e-5, "{arc:?} {length}");
     assert!((arc[0] - arc[2]).abs() < 1e-14 && arc[1] > arc[0] && arc[0] > 0.0, "{arc:?}");
+}
+
+/// A turn is no strain: to the square of the rounding, small as it may be.
+#[test]
+fn a_small_turn_strains_nothing() {
+    for angle in [1e-9_f64, 1e-6, 1e-4] {
+        let (s, half) = (angle.sin(), (0.5 * angle).sin());
+        let h = Matrix2::new(-2.0 * half * half, -s, s, -2.0 * half * half);
+        let strain = warped_strain(Rotation::from_angle(angle), &h);
+        assert!(strain.amax() < 1e-15 * angle * angle, "{angle}: {strain:e}");
+    }
+    // With the loads' own tangent belongs what is all of G, and nothing else.
+    let exact = [Tangent::EXACT, Tangent::GEOMETRIC, Tangent::WARPED, Tangent::DEFINITE].map(|t| t.is_exact());
+    assert_eq!(exact, [true, true, false, false]);
 }
 
 /// Few cells are enough, and few solves; percent of the tip's displacement, against the scene's own truth.

@@ -322,3 +322,26 @@ fn supports_fix_what_they_say() {
     assert!((pattern.dot(&nodal, &free) / product - 1.0).abs() < 1e-12 && product > 1.0);
     assert_eq!(pattern.fixed(mesh.nodes().len() as u32), [true, true], "no node moves where there is none");
 }
+
+/// Whether supports hold a body depends on neither its size nor its place.
+#[test]
+fn a_clamp_is_a_clamp_at_any_size_and_place() {
+    for size in [1e-4, 1.0, 1e4] {
+        let scene = Scene::beam(10.0 * size, size).clamp("left").force("right", [0.0, -1.0]);
+        let simulation = Simulation::new(&scene);
+        assert!(simulation.is_ok(), "{size} m: {:?}", simulation.err());
+        // Along its middle line a body can still turn, wherever that is.
+        let hinged = Scene::beam(10.0 * size, size).with_cells(4, 2).support([0.0, 0.0], &[Axis::X, Axis::Y]);
+        assert!(Simulation::new(&hinged).is_err());
+        let two = hinged.support([10.0 * size, 0.0], &[Axis::X]);
+        assert!(Simulation::new(&two).is_err(), "two bars in line");
+        assert!(Simulation::new(&two.support([10.0 * size, 0.0], &[Axis::Y])).is_ok());
+    }
+    let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).with_method(MethodKind::Linear);
+    let near = solved(&scene);
+    let far = near.system().mesh().moved(|x| x + Vector2::new(1e6, -3e6)).unwrap();
+    let mut far = Simulation::with_mesh(&scene, far).unwrap();
+    assert_eq!(*far.solve(), Status::Converged);
+    let off = near.displacement().iter().zip(far.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(off < 1e-6 * near.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max), "{off}");
+}

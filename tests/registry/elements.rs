@@ -645,6 +645,13 @@ fn damping_is_the_stiffness_at_rest_and_blind_to_turning(kind: ElementKind) {
         force(&middle, StrainRate::Difference(&[(1.0, b), (-1.0, a)]))
     };
     assert!(between(u, &turned).iter().all(|f| f.norm() < 1e-11));
+    // Green's strain is quadratic in x: its difference is its rate half way, whatever the time between.
+    let halves: Vec<_> = rest.iter().zip(u).map(|(a, b)| (a + b) * 0.5).collect();
+    let quick: Vec<_> = u.iter().map(|u| u * 4.0).collect();
+    let by_rate = force(&halves, StrainRate::Velocity(&quick));
+    let by_difference = force(&halves, StrainRate::Difference(&[(4.0, u), (-1.0, &rest), (-3.0, &rest)]));
+    let size = by_rate.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    assert!(by_rate.iter().zip(&by_difference).all(|(a, b)| (a - b).norm() < 1e-12 * size));
     let work = |a: &[Vector2<f64>], b: &[Vector2<f64>]| -> f64 {
         between(a, b).iter().zip(a.iter().zip(b)).map(|(f, (a, b))| f.dot(&(b - a))).sum()
     };
