@@ -743,6 +743,7 @@ fn a_body_starts_as_its_scene_says() {
         let expected = Vector2::new(3.0 - 0.7 * arm.y, -1.5 + 0.7 * arm.x);
         assert!((v - expected).norm() < 1e-12, "at {x}: {v} {expected}");
     }
+    assert!(simulation.is_linear() && !Simulation::new(&with("swing", EULER, 0.01, 1, 1.0)).unwrap().is_linear());
     let mass = 2.0 * scene.material.area_density();
     let start = momentum(&simulation);
     assert!((start.linear - Vector2::new(3.0, -1.5) * mass).norm() < 1e-9 * mass);

@@ -5,7 +5,8 @@ mod common;
 
 use common::{cantilever, cantilever_table, scene, scene_with, solved};
 use nalgebra::Vector2;
-use warpbeam::method::rho_words;
+use warpbeam::assembly::{Forces, Kinematics};
+use warpbeam::method::{Decision, Reason, rho_words};
 use warpbeam::{Axis, ElementKind, Load, Mesh, MethodKind, Scene, Simulation, Status};
 
 fn tip(simulation: &Simulation) -> Vector2<f64> {
@@ -344,4 +345,109 @@ fn a_clamp_is_a_clamp_at_any_size_and_place() {
     assert_eq!(*far.solve(), Status::Converged);
     let off = near.displacement().iter().zip(far.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(off < 1e-6 * near.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max), "{off}");
+}
+
+/// A reset, before, at and after the end, leads back to the start of the scene, and forgets what was found out.
+#[test]
+fn a_reset_goes_back_to_the_start() {
+    for id in ["cantilever", "swing", "spin"] {
+        for method in [MethodKind::Newton, MethodKind::Auto] {
+            let mut scene = scene(id).with_method(method);
+            if id != "cantilever" {
+                scene.dynamics.duration = 0.2;
+            }
+            let fresh = Simulation::new(&scene).unwrap();
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.solve();
+            let place = |s: &Simulation| (s.displacement().to_vec(), s.state().velocity().to_vec(), s.state().time());
+            assert!(place(&simulation) != place(&fresh));
+            if id == "cantilever" {
+                assert!(simulation.residual() <= scene.solver.tolerance.max(1e-3), "{:e}", simulation.residual());
+                assert_eq!(simulation.certificate(), None, "nobody has asked");
+                let certificate = simulation.certify();
+                assert_eq!((certificate.stable, simulation.certificate()), (Some(true), Some(certificate)));
+            }
+            simulation.reset();
+            assert!(place(&simulation) == place(&fresh), "{id} {method:?}");
+            assert_eq!((simulation.status(), simulation.iterations()), (fresh.status(), 0));
+            assert_eq!(simulation.certificate(), None);
+            assert!(id != "cantilever" || simulation.residual() == fresh.residual());
+        }
+    }
+}
+
+/// Supports balance the moment of the loads too, about any point, with the lever arms of the bent body.
+#[test]
+fn reactions_balance_moments() {
+    let scene = Scene::beam(10.0, 1.0)
+        .clamp("left")
+        .force("right", [300.0, -900.0])
+        .gravity([0.0, -0.05])
+        .probe("tip", "right");
+    let simulation = solved(&scene.with_method(MethodKind::Newton));
+    let system = simulation.system();
+    let places = system.mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+    let external = simulation.forces().external();
+    let (mut force, mut moment) = (Vector2::zeros(), 0.0);
+    for (x, f) in places.zip(external) {
+        force += f;
+        moment += x.perp(f);
+    }
+    let reaction = simulation.solution().reaction;
+    assert!((reaction.force + force).norm() < 1e-6 * force.norm(), "{reaction:?} {force}");
+    assert!((reaction.moment + moment).abs() < 1e-6 * moment.abs(), "{reaction:?} {moment}");
+    assert!(tip(&simulation).norm() > 1.0, "it is bent, so that lever arms differ");
+}
+
+/// Where nothing else leads there `auto` puts the load on in steps, as Newton's method does, and ends where that ends; out
+/// of iterations it leaves an equilibrium of less load.
+#[test]
+fn auto_takes_load_steps_where_it_must() {
+    for (id, factor) in [("cantilever", 30.0), ("elastica", 30.0)] {
+        let mut scene = scene(id);
+        scene.scale_loads(factor);
+        let newton = solved(&scene.clone().with_method(MethodKind::Newton));
+        let auto = solved(&scene.with_method(MethodKind::Auto));
+        assert_eq!(auto.auto_report().unwrap().decision, Decision::LoadSteps, "{id}");
+        assert_eq!(auto.load_stepping(), newton.load_stepping(), "{id}");
+        assert!(auto.load_stepping().1 > 1);
+        assert!((tip(&auto) - tip(&newton)).norm() < 1e-6 * tip(&newton).norm(), "{id}");
+    }
+    for method in [MethodKind::Newton, MethodKind::Auto] {
+        let mut scene = scene("roll-up").with_method(method);
+        scene.scale_loads(30.0);
+        scene.solver.max_iterations = 60;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert!(matches!(simulation.solve(), Status::NotConverged(Reason::IterationLimit(60))));
+        let (reached, steps) = simulation.load_stepping();
+        assert!(reached > 0.0 && reached < 1.0 && steps > 3, "{method:?}: {reached} in {steps} steps");
+        let (problem, state) = (simulation.problem(), simulation.state());
+        let mut forces = Forces::new(state.displacement().len());
+        problem.linearize(state, &mut forces, None);
+        let residual = problem.balance(state, Kinematics::Corotated, reached, &mut forces);
+        assert!(residual < 2e-3, "{method:?}: {residual}");
+    }
+}
+
+/// Why the warped iteration ends: it converges, goes no further than rounding lets it, stalls, or runs away.
+#[test]
+fn the_warped_iteration_says_why_it_ends() {
+    let end = |factor: f64, tolerance: f64| {
+        let mut scene = scene("cantilever").with_method(MethodKind::Warped);
+        scene.scale_loads(factor);
+        scene.solver.tolerance = tolerance;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        (simulation.solve().clone(), simulation.iterations(), simulation.residual())
+    };
+    let (status, _, residual) = end(1.0, 1e-8);
+    assert_eq!(status, Status::Converged);
+    assert!(residual <= 1e-8);
+    let (status, iterations, residual) = end(0.5, 1e-14);
+    assert!(matches!(status, Status::NotConverged(Reason::RoundingFloor(30))), "{status:?}");
+    assert!(residual < 1e-12 && iterations > 30);
+    let (status, iterations, residual) = end(10.0, 1e-8);
+    assert!(matches!(status, Status::Diverged(Reason::Stalled(30))), "{status:?}");
+    assert!(residual > 1e-3 && iterations < 60, "{residual} {iterations}");
+    let (status, iterations, _) = end(1e8, 1e-8);
+    assert!(matches!(status, Status::Diverged(Reason::RanAway(_))) && iterations == 1, "{status:?} {iterations}");
 }
