@@ -442,7 +442,9 @@ fn the_warped_iteration_says_why_it_ends() {
         scene.scale_loads(factor);
         scene.solver.tolerance = tolerance;
         let mut simulation = Simulation::new(&scene).unwrap();
-        (simulation.solve().clone(), simulation.iterations(), simulation.residual())
+        let end = (simulation.solve().clone(), simulation.iterations(), simulation.residual());
+        assert_eq!(simulation.load_stepping(), (1.0, 1), "all of the load at once");
+        end
     };
     let (status, _, residual) = end(1.0, 1e-8);
     assert_eq!(status, Status::Converged);
