@@ -444,6 +444,7 @@ fn the_warped_iteration_says_why_it_ends() {
         let mut simulation = Simulation::new(&scene).unwrap();
         let end = (simulation.solve().clone(), simulation.iterations(), simulation.residual());
         assert_eq!(simulation.load_stepping(), (1.0, 1), "all of the load at once");
+        assert_eq!(simulation.status().is_success(), *simulation.status() == Status::Converged);
         end
     };
     let (status, _, residual) = end(1.0, 1e-8);

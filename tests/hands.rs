@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use common::{ids_of, scene};
 use nalgebra::{Matrix2, Vector2};
-use warpbeam::assembly::{Forces, Kinematics};
+use warpbeam::assembly::{Forces, Kinematics, Mass};
 use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::element::ELEMENTS;
 use warpbeam::scene::Analysis;
@@ -280,4 +280,48 @@ fn a_hand_keeps_its_hold_when_a_support_comes() {
     let (hand, force) = simulation.hand().unwrap();
     let lifted = hand.position(simulation.displacement()) - place;
     assert!(lifted.y > 0.15 && force.norm() > 0.0, "{lifted}");
+}
+
+/// An explicit step bears a hand no stiffer than a quarter of the mass it moves over h²; held against that of a beam it
+/// leads a corner so far, and comes to rest there: its damper is no harder than the step bears either.
+#[test]
+fn an_explicit_step_softens_the_hand() {
+    let static_scene = Scene::beam(1.0, 0.5).with_cells(3, 1).with_material(Material::new(1e6, 0.3)).clamp("left");
+    let corner = Vector2::new(1.0, 0.25);
+    let moved = |force: [f64; 2]| {
+        let scene = static_scene.clone().with_method(MethodKind::Linear).force(<[f64; 2]>::from(corner), force);
+        let loaded = common::solved(&scene);
+        loaded.displacement()[loaded.system().mesh().nearest_node(corner) as usize]
+    };
+    let compliance = Matrix2::from_columns(&[moved([1.0, 0.0]), moved([0.0, 1.0])]);
+    let mut scene = static_scene.clone().moving(IntegratorKind::SymplecticEuler, 1e-5);
+    scene.material.density = 1000.0;
+    (scene.dynamics.damping.mass, scene.dynamics.duration) = (60.0, 1e3);
+    let critical = Simulation::new(&scene).unwrap().motion().unwrap().critical_step().unwrap();
+    for part in [0.75, 0.9] {
+        let h = part * critical;
+        scene.dynamics.time_step = h;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let point = simulation.system().mesh().locate(corner).unwrap();
+        let node = simulation.system().mesh().nearest_node(corner);
+        assert!(simulation.grab(point));
+        let pull = Vector2::new(2e-5, -1e-4);
+        while simulation.state().time() < 2.0 {
+            simulation.pull_to(corner + pull).unwrap();
+            simulation.step();
+        }
+        assert_eq!(simulation.motion().unwrap().counts().halvings, 0);
+        let mass = Mass::new(simulation.system(), scene.material.area_density()).lumped()[node as usize];
+        let (hand, _) = simulation.hand().unwrap();
+        let soft = 0.25 * mass / (h * h);
+        assert!(
+            soft < 0.9 * hand.stiffness(),
+            "the step is too long for the hand as it is: {soft} {}",
+            hand.stiffness()
+        );
+        let expected = compliance * (compliance + Matrix2::identity() / soft).try_inverse().unwrap() * pull;
+        let found = hand.position(simulation.displacement()) - corner;
+        assert!((found - expected).norm() < 1e-3 * pull.norm(), "{part}: {found} {expected}");
+        assert!(simulation.state().velocity()[node as usize].norm() < 1e-3 * pull.norm(), "it has come to rest");
+    }
 }
