@@ -1,14 +1,17 @@
-//! Rotation, assembly, factorization, solve, edits and the whole iteration, at four sizes of the same cantilever.
+//! Rotation, assembly, factorization, solve, edits and the whole iteration, at four sizes of the same cantilever; the sweep in
+//! nanoseconds an element; and an iteration over a plain loop of sweep, factorization and solve.
 //!
 //! `cargo bench` reports medians of this machine; compare them with each other, not with another machine's.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
 
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Matrix2, Vector2};
+use warpbeam::MethodKind;
 use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
-use warpbeam::element::Tangent;
+use warpbeam::element::{ELEMENTS, Tangent};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::{Rotation, polar};
 use warpbeam::scene::{Scene, Source, open, registry};
@@ -103,6 +106,77 @@ fn iterations(c: &mut Criterion) {
     }
 }
 
+/// The median of some times.
+fn median(mut times: Vec<Duration>) -> Duration {
+    times.sort_unstable();
+    times[times.len() / 2]
+}
+
+fn time(work: impl FnOnce()) -> Duration {
+    let start = Instant::now();
+    work();
+    start.elapsed()
+}
+
+/// One sweep, rotations and forces included, in nanoseconds an element; and the first iteration from rest over a plain
+/// loop, which factorizes and solves with the same ordering, sweeps, and does nothing else. The two take turns.
+fn sweeps(_: &mut Criterion) {
+    println!("one sweep, ns an element; an iteration over a plain loop of factorization, solve and sweep");
+    println!("element  unknowns  force only       A   A + G  warped / plain  newton / plain");
+    for (element, mut scene) in ELEMENTS.iter().flat_map(|e| sizes().into_iter().map(move |s| (e, s))) {
+        scene.set_element(element.kind);
+        let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
+        let (system, nodes) = (problem.system(), problem.system().mesh().nodes());
+        let (dofs, count) = (system.dofs(), system.mesh().element_count() as f64);
+        let repetitions = (2_000_000 / dofs).clamp(9, 999);
+        let mut forces = Forces::new(nodes.len());
+        let mut matrix = Matrix::new(system.pattern());
+        let bent: Vec<_> = nodes.iter().map(|x| Rotation::from_angle(-0.05 * x.x).apply(*x) - x).collect();
+        let mut state = system.state_of(&bent).unwrap();
+        let sweep = [None, Some(Tangent::WARPED), Some(Tangent::EXACT)].map(|tangent| {
+            let mut sweep = || {
+                let matrix = tangent.map(|tangent| (tangent, &mut matrix));
+                problem.follow_and_linearize(black_box(&mut state), Kinematics::Corotated, &mut forces, matrix);
+            };
+            median((0..repetitions).map(|_| time(&mut sweep)).collect()).as_secs_f64() * 1e9 / count
+        });
+        let mut factor = Factor::new(system.symbolic()).unwrap();
+        let mut free = vec![0.0; dofs];
+        let ratio =
+            [(MethodKind::Warped, Tangent::WARPED), (MethodKind::Newton, Tangent::EXACT)].map(|(method, tangent)| {
+                scene.solver.method = method;
+                let mut simulation = Simulation::new(&scene).unwrap();
+                let (mut ours, mut plain) = (Vec::new(), Vec::new());
+                for _ in 0..repetitions {
+                    simulation.reset();
+                    ours.push(time(|| {
+                        simulation.step();
+                    }));
+                    let mut state = system.at_rest();
+                    problem.linearize(&state, &mut forces, Some((tangent, &mut matrix)));
+                    problem.balance(&state, Kinematics::Corotated, 1.0, &mut forces);
+                    let mut u = state.displacement().to_vec();
+                    let solve = time(|| {
+                        factor.factorize(matrix.values()).unwrap();
+                        system.pattern().restrict(forces.residual(), &mut free);
+                        factor.solve_in_place(&mut free);
+                        system.pattern().add_free(&free, 1.0, &mut u);
+                    });
+                    state = state.with_displacement(u).unwrap();
+                    let matrix = Some((tangent, &mut matrix));
+                    let sweep = time(|| {
+                        problem.follow_and_linearize(&mut state, Kinematics::Corotated, &mut forces, matrix);
+                    });
+                    plain.push(solve + sweep);
+                }
+                median(ours).as_secs_f64() / median(plain).as_secs_f64()
+            });
+        let [force, a, a_and_g] = sweep;
+        let [warped, newton] = ratio;
+        println!("{:7} {dofs:9} {force:11.1} {a:7.1} {a_and_g:7.1} {warped:15.3} {newton:15.3}", element.id);
+    }
+}
+
 /// Every built-in scene, from rest to the end.
 fn scenes(c: &mut Criterion) {
     for built_in in registry::BUILT_IN {
@@ -121,5 +195,5 @@ fn rotation(c: &mut Criterion) {
     c.bench_function("polar", |b| b.iter(|| polar(black_box(&f))));
 }
 
-criterion_group!(benches, rotation, stages, edits, iterations, scenes);
+criterion_group!(benches, rotation, sweeps, stages, edits, iterations, scenes);
 criterion_main!(benches);

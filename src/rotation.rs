@@ -32,12 +32,14 @@ impl Rotation {
 
     /// The matrix of article eq. (39).
     #[must_use]
+    #[inline(always)]
     pub fn matrix(self) -> Matrix2<f64> {
         Matrix2::new(self.c, -self.s, self.s, self.c)
     }
 
     /// R v.
     #[must_use]
+    #[inline(always)]
     pub fn apply(self, v: Vector2<f64>) -> Vector2<f64> {
         Vector2::new(self.c * v.x - self.s * v.y, self.s * v.x + self.c * v.y)
     }
@@ -59,7 +61,7 @@ impl Rotation {
 /// assert!(polar(&Matrix2::new(1.0, 0.0, 0.0, -1.0)).is_none());
 /// ```
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
     let mut a = f.m11 + f.m22;
     let mut b = f.m21 - f.m12;
@@ -84,7 +86,7 @@ pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
 
 /// [`polar`], keeping `previous` where the rotation is undefined.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn polar_or(f: &Matrix2<f64>, previous: Rotation) -> Rotation {
     polar(f).unwrap_or(previous)
 }

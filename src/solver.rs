@@ -41,34 +41,52 @@ pub struct Symbolic(Arc<Analysis>);
 
 struct Analysis {
     structure: SymbolicSparseColMat<usize>,
-    symbolic: SymbolicCholesky<usize>,
+    /// Of L Lᵀ: simplicial where that is faster.
+    definite: SymbolicCholesky<usize>,
+    /// Of L B Lᵀ, where it is another: simplicial factors do not pivot.
+    indefinite: Option<SymbolicCholesky<usize>>,
     price: f64,
+}
+
+impl Analysis {
+    fn symbolic(&self, kind: Kind) -> &SymbolicCholesky<usize> {
+        match kind {
+            Kind::PositiveDefinite => &self.definite,
+            Kind::Indefinite => self.indefinite.as_ref().unwrap_or(&self.definite),
+        }
+    }
 }
 
 impl std::fmt::Debug for Symbolic {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Symbolic").field("factor_entries", &self.0.symbolic.len_val()).finish_non_exhaustive()
+        f.debug_struct("Symbolic").field("factor_entries", &self.0.definite.len_val()).finish_non_exhaustive()
     }
 }
 
 impl Symbolic {
-    /// Orders and analyses the lower triangle of a symmetric matrix, in compressed columns with sorted rows: the start
-    /// of each column and the end of the last, and the row of every entry (AMD, supernodal: faer's automatic choice is
-    /// up to 2.6 times slower on these meshes).
+    /// Orders (AMD) and analyses the lower triangle of a symmetric matrix, in compressed columns with sorted rows: the
+    /// start of each column and the end of the last, and the row of every entry. The factor is simplicial up to
+    /// [`SPARSE`] entries an unknown, supernodal beyond; faer's own choice is up to 2.6 times slower on these meshes.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
     pub fn new(column_starts: &[usize], row_indices: &[usize]) -> Result<Self, SolverError> {
         let n = column_starts.len().saturating_sub(1);
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
-        };
         let structure = SymbolicSparseColMat::new_checked(n, n, column_starts.to_vec(), None, row_indices.to_vec());
-        let symbolic = factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, SymmetricOrdering::Amd, params)
-            .map_err(|_| SolverError::TooLarge)?;
-        let price = price(&symbolic);
-        Ok(Self(Arc::new(Analysis { structure, symbolic, price })))
+        let analyse = |threshold| {
+            let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() };
+            factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, SymmetricOrdering::Amd, params)
+                .map_err(|_| SolverError::TooLarge)
+        };
+        let supernodal = analyse(SupernodalThreshold::FORCE_SUPERNODAL)?;
+        let (definite, indefinite) = if n <= MOST_SIMPLICIAL {
+            let simplicial = analyse(SupernodalThreshold::FORCE_SIMPLICIAL)?;
+            if simplicial.len_val() <= SPARSE * n { (simplicial, Some(supernodal)) } else { (supernodal, None) }
+        } else {
+            (supernodal, None)
+        };
+        let price = price(&definite);
+        Ok(Self(Arc::new(Analysis { structure, definite, indefinite, price })))
     }
 
     /// Rows of the matrix.
@@ -78,22 +96,39 @@ impl Symbolic {
     }
 }
 
+/// Up to so many entries an unknown a simplicial factor is faster, factorization and solve together: measured on
+/// cantilevers, by 6 to 22 % on three-node triangles (7 to 13.5 entries), by 5 % on six-node triangles (12.5); with 16 and
+/// more, from some two thousand unknowns on, it is slower, by 10 % and more.
+const SPARSE: usize = 14;
+/// Larger systems have more: it is not looked for.
+const MOST_SIMPLICIAL: usize = 2500;
+
 /// See [`Factor::price`]: from the operations that the sparsity says, not from a clock.
 fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
-    /// What small fronts take, and …
-    const LEAST: f64 = 1.5;
-    /// … operations of a factorization in the time of one of a back substitution, which waits for memory: both fitted to
-    /// beams of 40 to 33 000 unknowns.
-    const FASTER: f64 = 4.0;
-    let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else { return LEAST };
     let (mut factorization, mut substitution) = (0.0, 0.0);
-    let columns = supernodal.supernode_begin().iter().zip(supernodal.supernode_end());
-    for ((begin, end), rows) in columns.zip(supernodal.col_ptr_for_row_idx().windows(2)) {
-        let (width, below) = ((end - begin) as f64, (rows[1] - rows[0]) as f64);
-        factorization += width * (width * width / 3.0 + width * below + below * below);
-        substitution += 4.0 * width * (0.5 * width + below);
-    }
-    if substitution > 0.0 { LEAST + factorization / (FASTER * substitution) } else { LEAST }
+    // What small columns and fronts take, and the price of an operation of a factorization over that of a back
+    // substitution, which waits for memory: fitted to beams, simplicial of 100 to 1 200 unknowns, supernodal of 40 to
+    // 33 000.
+    let (least, operation) = match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(simplicial) => {
+            for column in simplicial.col_ptr().windows(2) {
+                let entries = (column[1] - column[0]) as f64;
+                factorization += entries * entries;
+                substitution += 4.0 * entries;
+            }
+            (4.2, 0.9)
+        }
+        SymbolicCholeskyRaw::Supernodal(supernodal) => {
+            let columns = supernodal.supernode_begin().iter().zip(supernodal.supernode_end());
+            for ((begin, end), rows) in columns.zip(supernodal.col_ptr_for_row_idx().windows(2)) {
+                let (width, below) = ((end - begin) as f64, (rows[1] - rows[0]) as f64);
+                factorization += width * (width * width / 3.0 + width * below + below * below);
+                substitution += 4.0 * width * (0.5 * width + below);
+            }
+            (1.5, 0.25)
+        }
+    };
+    if substitution > 0.0 { least + operation * factorization / substitution } else { least }
 }
 
 /// A factor of a symmetric matrix with a fixed pattern.
@@ -121,16 +156,18 @@ impl Factor {
     /// [`SolverError::TooLarge`].
     pub fn new(symbolic: &Symbolic) -> Result<Self, SolverError> {
         let n = symbolic.size();
-        let analysis = &symbolic.0.symbolic;
+        let [definite, indefinite] = [Kind::PositiveDefinite, Kind::Indefinite].map(|kind| symbolic.0.symbolic(kind));
         let scratch = StackReq::any_of(&[
-            analysis.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()),
-            analysis.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Spec::default()),
-            analysis.solve_in_place_scratch::<f64>(1, Par::Seq),
+            definite.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()),
+            indefinite.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Spec::default()),
+            definite.solve_in_place_scratch::<f64>(1, Par::Seq),
+            indefinite.solve_in_place_scratch::<f64>(1, Par::Seq),
         ]);
+        let entries = definite.len_val().max(indefinite.len_val());
         let memory = MemBuffer::try_new(scratch).map_err(|_| SolverError::TooLarge)?;
         let mut values = Vec::new();
-        values.try_reserve_exact(analysis.len_val()).map_err(|_| SolverError::TooLarge)?;
-        values.resize(analysis.len_val(), 0.0);
+        values.try_reserve_exact(entries).map_err(|_| SolverError::TooLarge)?;
+        values.resize(entries, 0.0);
         Ok(Self {
             symbolic: symbolic.clone(),
             values,
@@ -153,11 +190,12 @@ impl Factor {
     /// # Errors
     /// [`SolverError::NotPositiveDefinite`]; the factor then is of no use until the next success.
     pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), SolverError> {
-        let Analysis { structure, symbolic, .. } = &*self.symbolic.0;
-        let matrix = SparseColMatRef::new(structure.as_ref(), matrix);
+        let analysis = &*self.symbolic.0;
+        let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
         self.kind = Kind::PositiveDefinite;
+        let symbolic = analysis.symbolic(self.kind);
         let factorized = symbolic.factorize_numeric_llt(
-            &mut self.values,
+            &mut self.values[..symbolic.len_val()],
             matrix,
             Side::Lower,
             LltRegularization::default(),
@@ -180,11 +218,12 @@ impl Factor {
     /// Factorizes a symmetric matrix that need not be definite. One that is singular gives solutions that are not
     /// finite.
     fn factorize_indefinite(&mut self, matrix: &[f64]) {
-        let Analysis { structure, symbolic, .. } = &*self.symbolic.0;
-        let matrix = SparseColMatRef::new(structure.as_ref(), matrix);
+        let analysis = &*self.symbolic.0;
+        let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
         self.kind = Kind::Indefinite;
+        let symbolic = analysis.symbolic(self.kind);
         symbolic.factorize_numeric_intranode_lblt(
-            &mut self.values,
+            &mut self.values[..symbolic.len_val()],
             &mut self.subdiagonal,
             &mut self.pivots,
             &mut self.inverse_pivots,
@@ -201,14 +240,15 @@ impl Factor {
         let rows = b.len();
         let b = MatMut::from_column_major_slice_mut(b, rows, 1);
         let memory = MemStack::new(&mut self.memory);
-        let symbolic = &self.symbolic.0.symbolic;
+        let symbolic = self.symbolic.0.symbolic(self.kind);
+        let values = &self.values[..symbolic.len_val()];
         match self.kind {
             Kind::PositiveDefinite => {
-                LltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, b, Par::Seq, memory);
+                LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, b, Par::Seq, memory);
             }
             Kind::Indefinite => {
                 let pivots = PermRef::new_checked(&self.pivots, &self.inverse_pivots, rows);
-                IntranodeLbltRef::new(symbolic, &self.values, &self.subdiagonal, pivots).solve_in_place_with_conj(
+                IntranodeLbltRef::new(symbolic, values, &self.subdiagonal, pivots).solve_in_place_with_conj(
                     Conj::No,
                     b,
                     Par::Seq,

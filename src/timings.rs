@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 /// Time spent in each stage of an iteration or a time step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timings {
-    /// Deformation gradients and polar decompositions.
+    /// Rotations and turns of edges found apart, at the end of time steps; those of an iteration are found in the sweep
+    /// that assembles.
     pub rotate: Duration,
-    /// Stiffness, forces, residual.
+    /// Rotations, stiffness, forces, residual.
     pub assemble: Duration,
     /// Numeric factorization.
     pub factorize: Duration,

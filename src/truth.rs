@@ -15,7 +15,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector2};
 
-use crate::scene::{Analysis, Axis, Load, Place, Plane, Scene};
+use crate::scene::{Analysis, Axis, Load, Place, Plane, Scene, Support};
 
 /// A clamped beam and its loads. Any consistent units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,10 +199,40 @@ impl ClampedBeam {
     /// other side of that is not taken, so the path stays the stable one.
     #[must_use]
     pub fn path(&self, largest: f64, points: u32) -> Vec<PathPoint> {
-        let scale = self.bending / self.length;
-        let mut unknowns = DVector::zeros(2 * SEGMENTS);
-        let Some((_, side)) = self.newton_step(&mut unknowns, 0.0) else { return Vec::new() };
         let mut path = Vec::new();
+        self.follow(largest, points, &mut |factor, unknowns| {
+            let tip = self.stations(unknowns, factor).pop();
+            let tip = tip.unwrap_or(Tip { x: Vector2::zeros(), angle: 0.0 });
+            path.push(PathPoint { factor, tip, clamp_moment: unknowns[1] * self.bending / self.length });
+        });
+        path
+    }
+
+    /// The axis under the whole load, from the clamp to the tip; `None` where the equilibrium cannot be followed.
+    #[must_use]
+    pub fn axis(&self) -> Option<Vec<Tip>> {
+        let mut axis = None;
+        self.follow(1.0, 1, &mut |factor, unknowns| axis = Some(self.stations(unknowns, factor)));
+        axis
+    }
+
+    /// Both ends of every piece of a solution, from the clamp to the tip.
+    fn stations(&self, unknowns: &DVector<f64>, factor: f64) -> Vec<Tip> {
+        let scale = self.bending / self.length;
+        let mut tip = Tip { x: Vector2::zeros(), angle: 0.0 };
+        let mut stations = vec![tip];
+        for piece in 0..SEGMENTS {
+            let end = self.shoot(piece, unknowns[2 * piece], unknowns[2 * piece + 1] * scale, factor);
+            tip = Tip { x: tip.x + end.x, angle: end.theta };
+            stations.push(tip);
+        }
+        stations
+    }
+
+    /// Visits the equilibria of [`Self::path`].
+    fn follow(&self, largest: f64, points: u32, visit: &mut dyn FnMut(f64, &DVector<f64>)) {
+        let mut unknowns = DVector::zeros(2 * SEGMENTS);
+        let Some((_, side)) = self.newton_step(&mut unknowns, 0.0) else { return };
         let (mut reached, mut step) = (0.0_f64, 1.0 / 16.0_f64);
         for point in 1..=points {
             let goal = largest * f64::from(point) / f64::from(points);
@@ -217,19 +247,13 @@ impl ClampedBeam {
                     None => {
                         step = 0.4 * step.min(goal - reached);
                         if step < SMALLEST_LOAD_STEP {
-                            return path;
+                            return;
                         }
                     }
                 }
             }
-            let mut tip = Tip { x: Vector2::zeros(), angle: 0.0 };
-            for piece in 0..SEGMENTS {
-                let end = self.shoot(piece, unknowns[2 * piece], unknowns[2 * piece + 1] * scale, goal);
-                tip = Tip { x: tip.x + end.x, angle: end.theta };
-            }
-            path.push(PathPoint { factor: goal, tip, clamp_moment: unknowns[1] * scale });
+            visit(goal, &unknowns);
         }
-        path
     }
 
     /// The equilibrium at a load factor, near `start` and on the same side of a critical point.
@@ -297,10 +321,10 @@ impl BeamTruth {
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         const SHEAR_AREA: f64 = 5.0 / 6.0;
-        if scene.analysis != Analysis::Static {
+        if scene.analysis != Analysis::Static || scene.supports.iter().any(Support::moves) {
             return None;
         }
-        let beam = scene.beam.as_ref()?;
+        let beam = scene.beam.as_ref().filter(|beam| beam.rise == 0.0)?;
         let m = &scene.material;
         let young = match m.plane {
             Plane::Stress => m.young,
@@ -348,5 +372,17 @@ impl BeamTruth {
             Self::Cantilever(beam) => beam.tip().map(|tip| tip.x - Vector2::new(beam.length, 0.0)),
             Self::Bar { stretch } => Some(Vector2::new(*stretch, 0.0)),
         }
+    }
+
+    /// The outline of a beam this high, m, around its true axis, closed and counter-clockwise; `None` for the bar, whose
+    /// sides move in, and where the equilibrium cannot be followed.
+    #[must_use]
+    pub fn outline(&self, height: f64) -> Option<Vec<Vector2<f64>>> {
+        let Self::Cantilever(beam) = self else { return None };
+        let axis = beam.axis()?;
+        let beside = |tip: &Tip, side: f64| tip.x + Vector2::new(-tip.angle.sin(), tip.angle.cos()) * (side * height);
+        let below = axis.iter().map(|tip| beside(tip, -0.5));
+        let above = axis.iter().rev().map(|tip| beside(tip, 0.5));
+        Some(below.chain(above).chain(axis.first().map(|tip| beside(tip, -0.5))).collect())
     }
 }

@@ -30,8 +30,13 @@ const PREFIXES: [(&str, i32); 9] =
 /// Significant digits of measured values.
 const DIGITS: i32 = 4;
 
+/// Units that take no prefix: they have one already, or are no symbol.
+fn takes_no_prefix(unit: &str) -> bool {
+    ["kg", "°", "%", "1/"].iter().any(|own| unit.starts_with(own)) || ["", "ms"].contains(&unit)
+}
+
 /// The prefix in which the largest of some values, in SI units, is from 1 to 1000: a power of ten and its symbol. Units
-/// that have a prefix already, such as kg m/s, and ° and % take none.
+/// that have a prefix already, such as kg m/s, and °, % and 1/s take none.
 ///
 /// ```
 /// use warpbeam::words::prefix;
@@ -40,7 +45,7 @@ const DIGITS: i32 = 4;
 #[must_use]
 pub fn prefix(values: &[f64], unit: &str) -> (i32, &'static str) {
     let largest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |m, v| m.max(v.abs()));
-    if largest == 0.0 || unit.is_empty() || ["kg", "°", "%"].iter().any(|own| unit.starts_with(own)) {
+    if largest == 0.0 || takes_no_prefix(unit) {
         return (0, "");
     }
     // Rounded first: 999.96 is 1000.
@@ -58,8 +63,92 @@ pub fn prefix(values: &[f64], unit: &str) -> (i32, &'static str) {
 /// ```
 #[must_use]
 pub fn engineering(value: f64, unit: &str) -> String {
+    engineering_digits(value, unit, DIGITS)
+}
+
+/// The same to so many significant digits.
+fn engineering_digits(value: f64, unit: &str, digits: i32) -> String {
     let (power, symbol) = prefix(&[value], unit);
-    format!("{} {symbol}{unit}", significant(scaled(value, power))).trim_end().to_owned()
+    with_unit(&significant(scaled(value, power), digits), symbol, unit)
+}
+
+/// A number with its unit. A degree sign follows at once.
+fn with_unit(number: &str, symbol: &str, unit: &str) -> String {
+    if unit == "°" { format!("{number}°") } else { format!("{number} {symbol}{unit}").trim_end().to_owned() }
+}
+
+/// A value that is edited, in engineering units: all of its digits where they are few, else six.
+///
+/// ```
+/// use warpbeam::words::editable;
+/// assert_eq!((editable(2.1e11, "Pa"), editable(1000.0 / 3.0, "N")), ("210 GPa".to_owned(), "333.333 N".to_owned()));
+/// ```
+#[must_use]
+pub fn editable(value: f64, unit: &str) -> String {
+    const EDITABLE: i32 = 6;
+    engineering_digits(value, unit, EDITABLE)
+}
+
+/// An error or a share in percent: two digits, `exact` where only rounding is left.
+///
+/// ```
+/// use warpbeam::words::percent;
+/// assert_eq!(
+///     [43.96, 0.0512, 4e-11].map(percent),
+///     ["44 %".to_owned(), "0.051 %".to_owned(), "exact".to_owned()]
+/// );
+/// ```
+#[must_use]
+pub fn percent(value: f64) -> String {
+    /// Below this, percent, a difference is rounding.
+    const ROUNDING: f64 = 1e-7;
+    if value.abs() < ROUNDING {
+        return "exact".to_owned();
+    }
+    if value.abs() >= 99.5 {
+        return format!("{} %", number(three_digits(value)));
+    }
+    format!("{} %", significant(value, 2))
+}
+
+/// The nearest number of three significant digits: as much as a slider, a pointer or a clock is good for.
+#[must_use]
+pub fn three_digits(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+/// The largest of 1, 2, 5 · 10ⁿ that is not above `length`.
+#[must_use]
+pub fn round_down(length: f64) -> f64 {
+    let power = 10f64.powf(length.log10().floor());
+    [5.0, 2.0].into_iter().map(|m| m * power).find(|&l| l <= length * (1.0 + 1e-12)).unwrap_or(power)
+}
+
+/// Round values from `low` to `high`, 1, 2 or 5 · 10ⁿ apart: as many as there can be, and at most `most`.
+///
+/// ```
+/// use warpbeam::words::ticks;
+/// assert_eq!(ticks(-0.3, 4.1, 5), [0.0, 1.0, 2.0, 3.0, 4.0]);
+/// ```
+#[must_use]
+pub fn ticks(low: f64, high: f64, most: u32) -> Vec<f64> {
+    let span = high - low;
+    if !(span.is_finite() && span > 0.0) || most == 0 {
+        return Vec::new();
+    }
+    let mut step = round_down(span / f64::from(most));
+    for _ in 0..8 {
+        let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
+        if last - first < f64::from(most) && step > 0.0 {
+            return (0..).map(|i| first + f64::from(i)).take_while(|&k| k <= last).map(|k| k * step).collect();
+        }
+        // A little above it is the next round number: 1, 2, 5, 10.
+        step = round_down(2.5 * step);
+    }
+    Vec::new()
 }
 
 /// Both components of a vector with one prefix: `(1.5, -0.02) mm`. What is rounding beside the other is 0.
@@ -74,7 +163,7 @@ pub fn engineering_pair(values: [f64; 2], unit: &str) -> String {
     let (power, symbol) = prefix(&values, unit);
     let largest = values[0].abs().max(values[1].abs());
     let [x, y] = values.map(|v| if v.abs() < ROUNDING * largest { 0.0 } else { v });
-    format!("({}, {}) {symbol}{unit}", significant(scaled(x, power)), significant(scaled(y, power)))
+    format!("({}, {}) {symbol}{unit}", significant(scaled(x, power), DIGITS), significant(scaled(y, power), DIGITS))
 }
 
 /// A value in units of a power of ten.
@@ -82,13 +171,13 @@ fn scaled(value: f64, power: i32) -> f64 {
     if power < 0 { value * 10f64.powi(-power) } else { value / 10f64.powi(power) }
 }
 
-/// Four significant digits, trailing zeros dropped; with an exponent where that is shorter.
-fn significant(value: f64) -> String {
+/// So many significant digits, trailing zeros dropped; with an exponent where that is shorter.
+fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         // No -0.
         return if value == 0.0 { "0".to_owned() } else { value.to_string() };
     }
-    let text = format!("{value:.*e}", DIGITS as usize - 1);
+    let text = format!("{value:.*e}", digits as usize - 1);
     number(text.parse().unwrap_or(value))
 }
 
@@ -118,5 +207,45 @@ mod tests {
         }
         assert_eq!(engineering_pair([0.3, -1200.0], "N"), "(0.0003, -1.2) kN");
         assert_eq!(engineering_pair([0.0, -0.0], "N"), "(0, 0) N");
+    }
+    #[test]
+    fn what_is_shown_reads_back() {
+        use crate::scene::units::parse;
+        for unit in ["N", "Pa", "m", "m/s²", "N m", "s", "1/s", "°", "kg/m³", "", "%"] {
+            for value in [30_000.0, -0.25, 1e6, 0.016, 1234.5, 2.1e11, 1e-9, 9.81] {
+                let shown = editable(value, unit);
+                let read = parse(&shown, unit).unwrap_or(f64::NAN);
+                assert!(
+                    (read - value).abs() <= 1e-15 * value.abs(),
+                    "{value} {unit} is shown as {shown}, read as {read}"
+                );
+            }
+        }
+        assert_eq!((editable(1e-3, "1/s"), editable(16.0, "ms")), ("0.001 1/s".to_owned(), "16 ms".to_owned()));
+        assert_eq!((engineering(-90.0, "°"), engineering(30.0, "%")), ("-90°".to_owned(), "30 %".to_owned()));
+    }
+
+    #[test]
+    fn percents_have_two_digits() {
+        for (value, text) in [(120.4, "120 %"), (99.4, "99 %"), (5.04, "5 %"), (0.000_123, "0.00012 %"), (0.0, "exact")]
+        {
+            assert_eq!(percent(value), text);
+        }
+    }
+
+    #[test]
+    fn ticks_are_round_and_few() {
+        for (low, high, most) in [(0.0, 1.0, 5), (13.0, 977.0, 4), (-45.0, 45.0, 5), (1e5, 1.3e5, 4), (0.1, 0.11, 6)] {
+            let ticks = ticks(low, high, most);
+            assert!(ticks.len() >= 2 && ticks.len() <= most as usize, "{low} to {high}: {ticks:?}");
+            let step = ticks[1] - ticks[0];
+            let mantissa = step / 10f64.powf((step * 1.000_001).log10().floor());
+            assert!([1.0, 2.0, 5.0].iter().any(|m| (mantissa - m).abs() < 1e-3), "{ticks:?}");
+            assert!(ticks.iter().all(|t| (low - 1e-9..=high + 1e-9).contains(t)), "{ticks:?}");
+        }
+        assert!(ticks(1.0, 1.0, 4).is_empty() && ticks(f64::NAN, 1.0, 4).is_empty());
+        for (length, round) in [(1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (0.07, 0.05), (499.0, 200.0)] {
+            assert!((round_down(length) - round).abs() < 1e-12 * round, "{length}");
+        }
     }
 }

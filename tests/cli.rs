@@ -694,9 +694,83 @@ fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
     let full = rows.iter().find(|r| (r[0] - 1.0).abs() < 1e-9).unwrap();
     let truth = &solve_json(&["elastica"])["probes"][0]["truth_u"];
     assert!((full[3] - truth[0].as_f64().unwrap()).abs() < 1e-6 && (full[4] - truth[1].as_f64().unwrap()).abs() < 1e-6);
-    let none = warpbeam(&["curve", "shear"]);
-    assert_eq!(none.status.code(), Some(2));
-    assert!(stderr(&none).contains("no exact beam is known"));
+    for (args, why) in [
+        (&["curve", "swing"][..], "expected a scene at rest"),
+        (&["curve", "shear", "--set", "solver.method=linear"], "expected a scene at rest"),
+        (&["curve", "snap", "--picture", "x.png", "--of", "nobody"], "expected one of crown, quarter, support.0"),
+        (&["curve", "snap", "--picture", "x.pdf"], "expected a name that ends in .svg or .png"),
+    ] {
+        let none = warpbeam(args);
+        assert_eq!(none.status.code(), Some(2), "{args:?}");
+        assert!(stderr(&none).contains(why), "{}", stderr(&none));
+    }
+}
+
+/// The load path of any scene: what is unstable under force control is said, marked in the table and dashed in the
+/// picture.
+#[test]
+fn curve_follows_an_arch_through_its_limit_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = warpbeam_in(folder.path(), &["curve", "snap", "--out", "snap.csv", "--picture", "snap.svg"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(text.contains("the limit load") && text.contains("stable under force control again"), "{text}");
+    let table = fs::read_to_string(folder.path().join("snap.csv")).unwrap();
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|h| *h == name).unwrap();
+    let (force, stable) = (column("support.2_force_y"), column("stable_under_force"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    // Unstable is where the force falls.
+    for three in rows.windows(3) {
+        let f: Vec<f64> = three.iter().map(|row| -row[force].parse::<f64>().unwrap()).collect();
+        if (f[1] - f[0]) * (f[2] - f[1]) > 0.0 && (f[2] - f[1]).abs().min((f[1] - f[0]).abs()) > 0.2 {
+            assert_eq!(three[1][stable], if f[2] > f[0] { "true" } else { "false" }, "{f:?}");
+        }
+    }
+    assert!(rows.iter().filter(|row| row[stable] == "false").count() > 20);
+    assert!(fs::read_to_string(folder.path().join("snap.svg")).unwrap().contains("stroke-dasharray=\"9 5\""));
+    for of in ["crown", "support.0"] {
+        let output = warpbeam_in(folder.path(), &["curve", "snap", "--picture", "snap.png", "--of", of]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    assert!(fs::read(folder.path().join("snap.png")).unwrap().starts_with(b"\x89PNG"));
+}
+
+/// Under a force beyond its limit load the arch jumps, and it is said; a beam that bends does not.
+#[test]
+fn a_jump_is_said() {
+    let json = solve_json(&["jump", "--no-truth"]);
+    assert_eq!((&json["jumped"], &json["stable"]), (&true.into(), &true.into()));
+    let at = json["jumped_at"].as_f64().unwrap();
+    assert!((at * 90.0 - 80.8).abs() < 0.5, "{at}");
+    assert!(json["probes"][0]["u"][1].as_f64().unwrap() < -0.012, "{json}");
+    let text = stdout(&warpbeam(&["solve", "jump", "--no-truth"]));
+    assert!(text.contains("it jumped: beyond 89."), "{text}");
+    for scene in [&["cantilever"][..], &["column"], &["jump", "--set", "load.0.force=[0 N, -70 N]"]] {
+        let json = solve_json(&[scene, &["--no-truth"]].concat());
+        assert_eq!((&json["jumped"], &json["jumped_at"]), (&false.into(), &serde_json::Value::Null), "{scene:?}");
+    }
+    let unknown = solve_json(&["jump", "--no-truth", "--no-certificate"]);
+    assert!(unknown["jumped"].is_null());
+}
+
+/// The reaction of every support, in JSON and in words; units where a way or a turn is typed.
+#[test]
+fn solve_tells_the_reaction_of_every_support() {
+    let set = ["--set", "support.1.turn=30°", "--set", "support.1.displacement=[-5 mm, 0 mm]"];
+    let json = solve_json(&[&["snap", "--no-truth"][..], &set].concat());
+    let supports = json["supports"].as_array().unwrap();
+    assert_eq!(supports.len(), 3);
+    assert_eq!((&supports[1]["edge"], &supports[1]["displacement"][0]), (&"right".into(), &(-0.005).into()));
+    assert!((supports[1]["turn"].as_f64().unwrap() - std::f64::consts::FRAC_PI_6).abs() < 1e-12);
+    assert_eq!(supports[2]["at"], serde_json::json!([0.1, 0.0085]));
+    let sum: f64 = supports.iter().map(|s| s["force"][1].as_f64().unwrap()).sum();
+    assert!(sum.abs() < 1e-3, "{sum}");
+    let text = stdout(&warpbeam(&[&["solve", "snap", "--no-truth"][..], &set].concat()));
+    assert!(text.contains("support right, moved by (-5, 0) mm, turned by 30 °: reaction ("), "{text}");
+    let wrong = warpbeam(&["solve", "snap", "--set", "support.1.turn=3 mm"]);
+    assert!(stderr(&wrong).contains("`3 mm` is a length (m); expected an angle (rad)"), "{}", stderr(&wrong));
 }
 
 /// Sentences of the physics that the JSON carries: certificate, ρ, truth and error.
@@ -738,9 +812,9 @@ fn extremes_writes_the_stability_atlas() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let csv = fs::read_to_string(out.join("extremes.csv")).unwrap();
     let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
-    assert!(rows.len() >= 150 && rows.iter().all(|row| row.len() == 13));
+    assert!(rows.len() >= 150 && rows.iter().all(|row| row.len() == 14));
     for row in &rows {
-        for value in row[3..8].iter().chain(&row[9..]) {
+        for value in row[3..8].iter().chain(&row[9..13]) {
             assert!(value.parse::<f64>().unwrap().is_finite(), "{row:?}");
         }
     }

@@ -14,6 +14,7 @@ use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::scene::{Analysis, Load, MethodKind, Plane, Source};
 use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::Demand;
+use warpbeam::words::percent;
 
 fn harness(id: &str) -> Harness<'static, Lab> {
     let mut harness = harness_of(id);
@@ -50,8 +51,40 @@ fn tip(lab: &Lab) -> [f64; 2] {
     lab.simulation().solution().probes[0].u.into()
 }
 
+/// What is behind a fold of the panel.
+const FOLDS: [(&str, &[&str]); 4] = [
+    ("Gravity, moment: ", &["Gravity", "Moment"]),
+    ("Material: ", &["Young E", "Poisson ν", "Density ρ", "Thickness t", "strain"]),
+    ("Mesh: ", &["Cells along", "Cells across"]),
+    ("Details: ", &["stable"]),
+];
+
+/// Opens the fold that something is behind, if it is shut, and shuts the others: all of them are longer than the window.
+fn unfold(harness: &mut Harness<'_, Lab>, label: &str) {
+    if !FOLDS.iter().any(|(_, labels)| labels.contains(&label)) {
+        return;
+    }
+    for (fold, labels) in FOLDS {
+        let is_open = harness.query_all_by_label(labels[0]).next().is_some();
+        if is_open != labels.contains(&label) {
+            harness.get_by_label_contains(fold).click();
+            harness.run_steps(8);
+            harness.run();
+        }
+    }
+}
+
+/// Picks an entry of a picker.
+fn pick(harness: &mut Harness<'_, Lab>, picker: &str, entry: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, picker).click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, entry).click();
+    harness.run();
+}
+
 /// Types a number into the field of this label.
 fn type_into(harness: &mut Harness<'_, Lab>, label: &str, text: &str) {
+    unfold(harness, label);
     harness.get_by_role_and_label(Role::SpinButton, label).click();
     harness.run();
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -68,7 +101,7 @@ fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
     let mut harness = harness("cantilever");
     let before = (force(harness.state()), tip(harness.state()));
     let slider = harness.get_by_role_and_label(Role::Slider, "Force").rect();
-    let below = harness.get_by_role_and_label(Role::Slider, "Young E").rect();
+    let below = harness.get_by_label_contains("Material: ").rect();
     let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
     harness.hover_at(at(0.4));
     harness.drag_at(at(0.4));
@@ -78,7 +111,7 @@ fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
     assert!(harness.state().iterates(), "the beam did not start to move");
     let moving = harness.get_by_role_and_label(Role::Slider, "Force").rect();
     assert_eq!(moving, slider, "the slider moves away under the pointer");
-    let moving = harness.get_by_role_and_label(Role::Slider, "Young E").rect();
+    let moving = harness.get_by_label_contains("Material: ").rect();
     assert_eq!(moving, below, "the layout changes while the beam moves");
     harness.run();
     harness.drop_at(at(0.46));
@@ -128,6 +161,8 @@ fn values_out_of_range_are_refused_with_a_message() {
     let cases = [
         ("Force", "-5", "expected 0 to 1e15 N, got -5"),
         ("Force", "lots", "got \u{201c}lots\u{201d}"),
+        ("Force", "0,5", "can be read in two ways"),
+        ("Force", "12 Pa", "is a pressure (Pa); expected a force (N)"),
         ("Direction", "400", "expected -180 to 180 °, got 400"),
         ("Gravity", "1e9", "m/s², got 1e9"),
         ("Moment", "1e30", "N m, got 1e30"),
@@ -142,6 +177,7 @@ fn values_out_of_range_are_refused_with_a_message() {
     ];
     for (label, text, message) in cases {
         let mut harness = harness("cantilever");
+        unfold(&mut harness, label);
         let before = harness.state().scene().clone();
         assert!(harness.query_by_label_contains(message).is_none());
         type_into(&mut harness, label, text);
@@ -150,7 +186,7 @@ fn values_out_of_range_are_refused_with_a_message() {
         let shown = shown.unwrap_or_else(|| unreachable!("{label} {text}: no message {message:?}"));
         let field = harness.get_by_role_and_label(Role::SpinButton, label).rect();
         assert!(
-            shown.top() >= field.bottom() - 1.0 && shown.top() < field.bottom() + 24.0,
+            shown.top() >= field.bottom() - 1.0 && shown.top() < field.bottom() + 48.0,
             "{label}: not next to the field"
         );
         // A good value makes the message go.
@@ -162,19 +198,20 @@ fn values_out_of_range_are_refused_with_a_message() {
 
 #[test]
 fn every_number_has_a_unit_and_a_tooltip() {
-    let mut harness = harness("article");
     for (label, unit, tip) in [
-        ("Force", " N", "12 kN"),
+        ("Force", " kN", "12 kN"),
         ("Direction", "°", "90° up"),
         ("Gravity", "m/s²", "9.81 on earth"),
         ("Moment", "N m", "rolls a beam up once"),
-        ("Young E", " Pa", "stiffness"),
+        ("Young E", " MPa", "stiffness"),
         ("Poisson ν", "", "thins"),
         ("Density ρ", "kg/m³", "inertia in motion"),
         ("Thickness t", " m", "out of the plane"),
         ("Cells along", "", "two triangles"),
         ("Cells across", "", "two triangles"),
     ] {
+        let mut harness = harness("article");
+        unfold(&mut harness, label);
         let node = harness.get_by_role_and_label(Role::SpinButton, label);
         let value = node.accesskit_node().value().unwrap_or_default();
         let center = harness.get_by_role_and_label(Role::Slider, label).rect().center();
@@ -192,12 +229,13 @@ fn run_pause_step_and_reset() {
     let mut harness = harness("article");
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
     let converged = harness.state().simulation().iterations();
-    harness.get_by_label("Pause").click();
+    // What has converged has nothing to pause, by button or by key.
+    assert!(harness.query_by_label("Pause").is_none());
+    assert!(harness.get_by_label("Run").accesskit_node().is_disabled());
+    harness.key_press(Key::Space);
     harness.run();
-    harness.get_by_label("Reset").click();
-    harness.run();
-    assert_eq!(harness.state().simulation().iterations(), 0);
-    assert_eq!(tip(harness.state()), [0.0, 0.0]);
+    assert!(harness.query_by_label_contains("Paused").is_none());
+    // One step more begins again at rest.
     harness.get_by_label("Step").click();
     harness.run();
     assert_eq!(harness.state().simulation().iterations(), 1);
@@ -207,13 +245,161 @@ fn run_pause_step_and_reset() {
     harness.key_press(Key::N);
     harness.run();
     assert_eq!(harness.state().simulation().iterations(), 2);
+    harness.get_by_label("Reset").click();
+    harness.run();
+    assert_eq!(harness.state().simulation().iterations(), 0);
+    assert_eq!(tip(harness.state()), [0.0, 0.0]);
     harness.get_by_label("Run").click();
     harness.run();
     assert_eq!(harness.state().simulation().iterations(), converged);
-    harness.key_press(Key::Space);
-    harness.key_press(Key::R);
+}
+
+/// An edit while paused leaves an old picture, which says so and offers the step.
+#[test]
+fn a_picture_older_than_its_load_says_so() {
+    let mut harness = harness("article");
+    harness.get_by_label("Step").click();
     harness.run();
-    assert_eq!(harness.state().simulation().iterations(), 0);
+    let before = tip(harness.state());
+    type_into(&mut harness, "Force", "20 kN");
+    assert_eq!(tip(harness.state()), before, "paused");
+    assert!(harness.query_by_label("Paused: the picture is older than the load").is_some());
+    harness.get_by_label("Step now").click();
+    harness.run();
+    assert_eq!(harness.state().simulation().iterations(), 1);
+    assert!(harness.query_by_label_contains("older than the load").is_none());
+}
+
+/// Space belongs to the control that has the focus.
+#[test]
+fn space_on_a_focused_button_is_the_buttons() {
+    let mut harness = harness("article");
+    harness.get_by_label("Step").click();
+    harness.run();
+    assert!(!harness.state().iterates());
+    harness.get_by_label("Help").focus();
+    harness.run();
+    harness.key_press(Key::Space);
+    harness.run();
+    assert!(harness.query_by_label_contains("Run or pause").is_some(), "the list of keys opens");
+    assert_eq!(harness.state().simulation().iterations(), 1, "and nothing runs");
+}
+
+/// Arrow keys change a value by a hundredth of it.
+#[test]
+fn arrow_keys_step_a_slider_finely() {
+    let mut harness = harness("article");
+    harness.get_by_role_and_label(Role::Slider, "Force").focus();
+    harness.run();
+    harness.key_press(Key::ArrowRight);
+    harness.run();
+    assert_eq!(force(harness.state()), [0.0, -30_300.0]);
+    harness.get_by_role_and_label(Role::Slider, "Direction").focus();
+    harness.run();
+    harness.key_press(Key::ArrowLeft);
+    harness.run();
+    let [fx, fy] = force(harness.state());
+    assert!((fy.atan2(fx).to_degrees() + 91.0).abs() < 1e-9, "{fx} {fy}");
+}
+
+/// A wrong answer says why, and one click makes it a better one.
+#[test]
+fn remedies_are_one_click_away() {
+    let mut harness = harness("article");
+    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    harness.run();
+    let error = solve_json(&["article"])["probes"][0]["error_percent"].as_f64().unwrap();
+    let shown = format!("ERROR {} mesh", percent(error));
+    assert!(harness.query_by_label(&shown).is_some(), "{shown}: {:?}", texts(&harness));
+    let words = format!("{} off: three-node triangles lock in bending.", percent(error));
+    assert!(harness.query_by_label(&words).is_some(), "{words}");
+    harness.get_by_label("Try t6").click();
+    harness.run();
+    assert_eq!(harness.state().scene().element().id(), "t6");
+    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    harness.run();
+    assert!(harness.query_by_label_contains("lock in bending").is_none());
+
+    let mut harness = self::harness("cantilever");
+    type_into(&mut harness, "Force", "9000");
+    assert!(harness.query_by_label_contains("Cannot converge: ρ = ").is_some());
+    harness.get_by_label("Use newton").click();
+    harness.run();
+    assert_eq!(harness.state().scene().solver.method, MethodKind::Newton);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+
+    let mut harness = self::harness("cook");
+    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    harness.run();
+    assert!(harness.query_by_label_contains("linear theory does not turn").is_some(), "{:?}", texts(&harness));
+}
+
+/// ρ beyond 1 beside a result that has converged says what it means.
+#[test]
+fn rho_beyond_one_beside_a_converged_bar_is_explained() {
+    let mut harness = harness("article");
+    harness.get_by_label("why?").click();
+    harness.run();
+    assert!(harness.query_by_label_contains("The forces balance").is_some());
+    assert!(harness.query_by_label_contains("Stable: pushed a little").is_some());
+    pick(&mut harness, "Scene", "stretch");
+    type_into(&mut harness, "Force", "500 kN");
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    let rho = harness.state().simulation().certificate().and_then(|c| c.fixed_point_rho);
+    assert!(rho.is_some_and(|rho| rho > 1.0), "{rho:?}");
+    assert!(harness.query_by_label_contains("It did converge, because").is_some());
+}
+
+#[test]
+fn presets_set_the_material_and_the_fold_says_it() {
+    let mut harness = harness("article");
+    assert!(harness.query_by_label("Material: rubber, 1 MPa").is_some());
+    unfold(&mut harness, "Young E");
+    harness.get_by_label("Steel").click();
+    harness.run();
+    let m = harness.state().scene().material;
+    assert_eq!((m.young, m.poisson, m.density, m.thickness), (2.1e11, 0.3, 7850.0, 1.0));
+    assert!(harness.query_by_label("Material: steel, 210 GPa").is_some());
+}
+
+/// In a window of any size every control is in it, has a name, and can be reached.
+#[test]
+fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
+    for size in [[640.0, 480.0], [800.0, 600.0], [1280.0, 800.0]] {
+        let mut harness = harness("article");
+        harness.set_size(size.into());
+        harness.run();
+        let narrow = size[0] < 900.0;
+        assert_eq!(harness.query_by_role_and_label(Role::Slider, "Force").is_none(), narrow);
+        if narrow {
+            harness.get_by_label("Panel").click();
+            harness.run();
+            assert!(harness.state().view_rect().right() > size[0] - 20.0, "the sheet is over the body");
+        }
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        for name in
+            ["Pause", "Run", "Step", "Reset", "Explore", "Budget", "Help", "Theme", "Panel", "Load curve", "why?"]
+        {
+            let node = harness.query_by_label(name);
+            assert!(node.is_some() || ["Pause"].contains(&name), "{size:?}: no {name}");
+            assert!(node.is_none_or(|n| window.contains_rect(n.rect())), "{size:?}: {name} is clipped");
+        }
+        let controls = [Role::Button, Role::ComboBox, Role::Slider, Role::SpinButton, Role::CheckBox];
+        for node in harness.get_all_by(|node| controls.contains(&node.role())) {
+            let rect = node.rect();
+            assert!(node.accesskit_node().label().is_some_and(|l| !l.is_empty()), "{size:?}: no name at {rect:?}");
+            assert!(
+                rect.left() >= 0.0 && rect.right() <= size[0],
+                "{size:?}: {:?} at {rect:?}",
+                node.accesskit_node().label()
+            );
+        }
+        if narrow {
+            harness.key_press(Key::P);
+            harness.run();
+            assert!(harness.query_by_role_and_label(Role::Slider, "Force").is_none());
+        }
+    }
 }
 
 #[test]
@@ -231,17 +417,12 @@ fn a_diverging_iteration_is_said_in_words_and_the_panel_lives_on() {
 #[test]
 fn scene_method_and_plane_can_be_chosen() {
     let mut harness = harness("article");
-    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
-    harness.run();
-    harness.get_by_label("bridge").click();
-    harness.run();
+    pick(&mut harness, "Scene", "bridge");
     assert_eq!(harness.state().scene().name, "Bridge");
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
-    harness.get_by_role_and_label(Role::ComboBox, "Method").click();
-    harness.run();
-    harness.get_by_role_and_label(Role::Button, "linear").click();
-    harness.run();
+    pick(&mut harness, "Method", "linear");
     assert_eq!(harness.state().scene().solver.method, MethodKind::Linear);
+    unfold(&mut harness, "strain");
     harness.get_by_label("strain").click();
     harness.run();
     assert_eq!(harness.state().scene().material.plane, Plane::Strain);
@@ -284,6 +465,9 @@ fn keys_are_listed_and_work() {
 #[test]
 fn scrolling_zooms_to_the_pointer_and_f_fits() {
     let mut harness = harness("article");
+    // The view is fitted to the true outline too.
+    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    harness.run();
     let rect = harness.state().view_rect();
     let pointer = rect.center() + egui::vec2(150.0, -80.0);
     let offset = [150.0, -80.0];
@@ -326,11 +510,43 @@ fn at_rest_nothing_is_redrawn() {
     assert!(delay > std::time::Duration::from_secs(3600), "{delay:?}");
 }
 
+/// The slider of a support that moves drags the body with it; the window says what it takes, and keeps the slider at 0.
+#[test]
+fn a_support_is_dragged_and_its_reaction_is_shown() {
+    let mut harness = harness("snap");
+    type_into(&mut harness, "Move y", "-3 mm");
+    assert_eq!(harness.state().scene().supports[2].displacement, [0.0, -0.003]);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    assert!(harness.query_by_label("(0, -80.53) N").is_some());
+    let slider = harness.get_by_role_and_label(Role::Slider, "Move y").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    harness.hover_at(at(0.4));
+    harness.drag_at(at(0.4));
+    harness.run();
+    harness.hover_at(at(0.3));
+    harness.run();
+    assert_eq!(harness.get_by_role_and_label(Role::Slider, "Move y").rect(), slider, "the slider moves away");
+    harness.drop_at(at(0.3));
+    harness.run();
+    let lab = harness.state();
+    let way = lab.scene().supports[2].displacement[1];
+    assert!((-0.012..-0.004).contains(&way), "{way}");
+    assert!((tip(lab)[1] - way).abs() < 1e-4, "{:?} {way}", tip(lab));
+    type_into(&mut harness, "Move y", "0");
+    assert!(tip(harness.state())[1].abs() < 1e-9);
+    type_into(&mut harness, "Move y", "-1 mm");
+    assert!((tip(harness.state())[1] + 0.001).abs() < 1e-5);
+    // Scenes whose supports stay have no such slider.
+    let harness = harness_of("cantilever");
+    assert!(harness.query_by_label("Move y").is_none());
+}
+
 /// What the window says of a result: certificate, ρ in words, the error against the exact beam, the load curve.
 #[test]
 fn results_are_certified_and_compared_with_the_truth() {
     let mut harness = harness("elastica");
     let json = solve_json(&["elastica"]);
+    unfold(&mut harness, "stable");
     assert!(harness.query_by_label("stable").is_some());
     let words = "The warped iteration cannot converge here: ρ = 4.039 > 1.";
     assert!(harness.query_by_label(words).is_some());
@@ -338,8 +554,8 @@ fn results_are_certified_and_compared_with_the_truth() {
     wait(&mut harness, "the truth", |lab| !lab.is_searching());
     harness.run();
     let error = json["probes"][0]["error_percent"].as_f64().unwrap();
-    let shown = format!("{:.4} % of", (error * 1e5).round() / 1e5);
-    assert!(harness.query_by_label_contains(&shown[..5]).is_some(), "{shown}");
+    let shown = format!("{} of ", percent(error));
+    assert!(harness.query_by_label_contains(&shown).is_some(), "{shown}");
     let before = harness.state().view_rect();
     harness.key_press(Key::L);
     harness.run();
@@ -353,15 +569,11 @@ fn results_are_certified_and_compared_with_the_truth() {
 fn every_scene_and_element_can_be_chosen() {
     let mut harness = harness("article");
     for id in common::ids_of(Analysis::Static) {
-        harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
-        harness.run();
-        harness.get_by_role_and_label(Role::Button, id).click();
-        harness.run();
+        pick(&mut harness, "Scene", id);
         assert_eq!(harness.state().scene().name, scene(id).name);
         assert_eq!(*harness.state().simulation().status(), Status::Converged, "{id}");
         for element in ["t3", "t6"] {
-            harness.get_by_label(element).click();
-            harness.run();
+            pick(&mut harness, "Element", element);
             assert_eq!(harness.state().scene().element().id(), element, "{id}");
             assert_ne!(*harness.state().simulation().status(), Status::Running, "{id} {element}");
         }
@@ -456,10 +668,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     assert_eq!((lab.scene().solver.method, lab.iterations()), (best.method, best.iterations));
     assert!(meeting.iter().all(|m| m.time.total() >= meeting[0].time.total()));
     // Another scene is another study.
-    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
-    harness.run();
-    harness.get_by_label("bridge").click();
-    harness.run();
+    pick(&mut harness, "Scene", "bridge");
     assert!(harness.state().study().0.is_none());
 }
 
@@ -467,10 +676,8 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
 #[test]
 fn decisions_are_shown() {
     let mut harness = harness("elastica");
-    harness.get_by_role_and_label(Role::ComboBox, "Method").click();
-    harness.run();
-    harness.get_by_role_and_label(Role::Button, "auto").click();
-    harness.run();
+    pick(&mut harness, "Method", "auto");
+    unfold(&mut harness, "stable");
     assert!(harness.query_by_label("Factorized anew.").is_some());
     type_into(&mut harness, "Force", "0.1");
     // From where the large load was it takes steps; from there on linear theory does.

@@ -19,18 +19,21 @@ fn the_golden_comparison_sees_a_changed_load() {
     assert!(difference(&read_png(&path), &read_png("tests/golden/cantilever-dark.png".as_ref())) > 2e-3);
 }
 
-/// The panel is in the picture, and only where it belongs.
+/// The body has most of the picture beside the panel, on the left of it; without panel and bars it has all of it.
 #[test]
 fn the_panel_can_be_left_out() {
     let gpu = Gpu::headless().unwrap();
     let mut lab = lab("article");
     lab.solve();
-    let with = picture(&gpu, &mut lab, [800, 600], 1.0, egui::Theme::Dark).unwrap();
-    assert!((lab.view_rect().left() - warpbeam::app::PANEL_WIDTH).abs() < 2.0, "{:?}", lab.view_rect());
-    assert_eq!(lab.view_rect().right(), 800.0);
+    let with = picture(&gpu, &mut lab, [1280, 800], 1.0, egui::Theme::Dark).unwrap();
+    let view = lab.view_rect();
+    assert_eq!(view.left(), 0.0);
+    assert!((view.right() + warpbeam::app::PANEL_WIDTH - 1280.0).abs() < 2.0, "{view:?}");
+    let share = view.area() / (1280.0 * 800.0);
+    assert!((0.7..0.75).contains(&share), "the body has {share} of the window");
     lab.set_panel(false);
-    let without = picture(&gpu, &mut lab, [800, 600], 1.0, egui::Theme::Dark).unwrap();
-    assert_eq!(lab.view_rect(), egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(800.0, 600.0)));
+    let without = picture(&gpu, &mut lab, [1280, 800], 1.0, egui::Theme::Dark).unwrap();
+    assert_eq!(lab.view_rect(), egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0)));
     assert!(difference(&with, &without) > 0.1);
 }
 

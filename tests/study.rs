@@ -206,3 +206,27 @@ fn motions_at_the_extremes_end_in_words() {
         }
     }
 }
+
+/// The time of an iteration over the unknowns: every element from coarse to fine, as table, picture and words.
+#[test]
+fn scaling_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let done = warpbeam(&["study", "cantilever", "--scaling", "--quick", "--out", out]);
+    assert!(done.status.success(), "{}", stderr(&done));
+    let table = fs::read_to_string(folder.path().join("scaling.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    for element in ElementKind::all() {
+        let own: Vec<_> = rows.iter().filter(|row| row[0] == element.id()).collect();
+        let dofs: Vec<u32> = own.iter().map(|row| row[3].parse().unwrap()).collect();
+        assert!(dofs.len() >= 5 && dofs.is_sorted() && dofs[0] < 200 && *dofs.last().unwrap() > 1000, "{dofs:?}");
+        assert!(own.iter().all(|row| row[4].parse::<f64>().unwrap() > 0.0), "{table}");
+        let words = stdout(&done);
+        assert!(words.contains(&format!("{}: time ∝ unknowns^", element.id())), "{words}");
+    }
+    let picture = fs::read_to_string(folder.path().join("scaling.svg")).unwrap();
+    assert_eq!(picture.matches("<polyline").count(), ElementKind::all().count());
+    assert!(folder.path().join("scaling.png").is_file());
+    let moving = warpbeam(&["study", "swing", "--scaling", "--quick", "--out", out]);
+    assert!(moving.status.code() == Some(2) && stderr(&moving).contains("static"), "{}", stderr(&moving));
+}

@@ -204,3 +204,27 @@ fn plain_numbers_are_si() {
         assert_eq!(opened, direct, "{}", built_in.id);
     }
 }
+
+/// Thousands are parted by commas or spaces; what could be a decimal comma is refused, with what to write.
+#[test]
+fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
+    for (text, value) in [
+        ("30,000", 3e4),
+        ("30 000", 3e4),
+        ("30\u{a0}000 N", 3e4),
+        ("-1,234,567.5 N", -1_234_567.5),
+        ("\u{2212}2.5", -2.5),
+        ("1 200 kN", 1.2e6),
+        ("12kN", 12e3),
+        ("1.2e4", 1.2e4),
+        ("30 N", 30.0),
+    ] {
+        assert_eq!(parse(text, "N"), Ok(value), "{text}");
+    }
+    for text in
+        ["0,5", "-0,5", "1,5 kN", "30,00", "30 00", "1,234 567", "30.000,5", "0,500", "1,,000", ",5", "1234,567"]
+    {
+        let refused = parse(text, "N").unwrap_err().to_string();
+        assert!(refused.contains("two ways") && refused.contains("decimal point"), "{text}: {refused}");
+    }
+}

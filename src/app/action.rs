@@ -1,7 +1,12 @@
 //! What panel, keys and drawers ask of the lab, and how the body is looked at.
 
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::mode::Mode;
 use super::motion_plot::MotionPlot;
-use crate::scene::{IntegratorKind, Scene};
+use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::Setting;
 
@@ -13,6 +18,22 @@ pub(super) const MOST_ITERATIONS: u32 = 100;
 pub(super) enum Action {
     /// Open a built-in scene.
     Open(&'static str),
+    /// Ask for a scene file and open it.
+    OpenFile,
+    /// Open a file that was dropped on the window.
+    Drop(PathBuf),
+    /// Open the scene's file again.
+    Reload,
+    /// Save the scene to its file, or ask for one.
+    Save,
+    /// Ask for a file and save the scene to it.
+    SaveAs,
+    /// Take the last edit back.
+    Undo,
+    /// Do the edit that was taken back last again.
+    Redo,
+    /// Close what is open over the body.
+    Escape,
     /// Change the scene; a refusal is shown next to the field of this label.
     Edit(&'static str, Box<Scene>),
     /// Iterate, or stop.
@@ -55,21 +76,43 @@ pub(super) enum Toggle {
     Wireframe,
     RestOutline,
     Ghost,
+    Exact,
     Trail,
     Panel,
     Help,
+    /// Why the status is what it is.
+    Why,
+    /// A mode, or back to exploring.
+    Mode(Mode),
     Drawer(Drawer),
 }
 
 /// What is shown under the body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(super) enum Drawer {
     /// Load against deflection.
     Curve,
     /// Energy, tip, phase and spectrum of a motion.
     Motion,
-    /// Error against time, and the settings within limits.
-    Budget,
+}
+
+impl Drawer {
+    /// That of a scene.
+    pub(super) fn of(scene: &Scene) -> Self {
+        match scene.analysis {
+            Analysis::Static => Self::Curve,
+            Analysis::Dynamic => Self::Motion,
+        }
+    }
+
+    /// Its name and what is in it.
+    pub(super) fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Curve => ("Load curve", "Load against deflection (L)"),
+            Self::Motion => ("Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),
+        }
+    }
 }
 
 /// How to look at the body.
@@ -81,11 +124,24 @@ pub(super) struct ViewOptions {
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
+    pub exact: bool,
     pub trail: bool,
+    pub mode: Mode,
     pub drawer: Option<Drawer>,
     pub motion_plot: MotionPlot,
+    /// Whether bars and panel are there at all: a picture may do without.
+    pub bars: bool,
+    /// Whether the panel is there where it has its own place.
     pub panel: bool,
+    /// Whether it lies over the body where it has none.
+    pub sheet: bool,
+    /// Whether the window is so narrow that it has none.
+    pub narrow: bool,
+    /// Whether the status is explained.
+    pub why: bool,
     pub help: bool,
+    /// An edge that is shown: the pointer is on its name.
+    pub edge: Option<String>,
 }
 
 impl Default for ViewOptions {
@@ -96,11 +152,18 @@ impl Default for ViewOptions {
             wireframe: true,
             rest_outline: true,
             ghost: true,
+            exact: true,
             trail: true,
+            mode: Mode::default(),
             drawer: None,
             motion_plot: MotionPlot::default(),
+            bars: true,
             panel: true,
+            sheet: false,
+            narrow: false,
+            why: false,
             help: false,
+            edge: None,
         }
     }
 }
@@ -113,10 +176,28 @@ impl ViewOptions {
             Toggle::RestOutline => self.rest_outline ^= true,
             Toggle::Ghost => self.ghost ^= true,
             Toggle::Trail => self.trail ^= true,
+            Toggle::Exact => self.exact ^= true,
+            Toggle::Panel if self.narrow => self.sheet ^= true,
             Toggle::Panel => self.panel ^= true,
             Toggle::Help => self.help ^= true,
-            Toggle::Drawer(drawer) => self.drawer = if self.drawer == Some(drawer) { None } else { Some(drawer) },
+            Toggle::Why => self.why ^= true,
+            Toggle::Mode(mode) => self.mode = if self.mode == mode { Mode::Explore } else { mode },
+            // Plots are for exploring: asked for in another mode they are shown there.
+            Toggle::Drawer(drawer) => {
+                let open = self.plots() == Some(drawer);
+                (self.mode, self.drawer) = (Mode::Explore, (!open).then_some(drawer));
+            }
         }
+    }
+
+    /// The plots that are seen.
+    pub(super) fn plots(&self) -> Option<Drawer> {
+        self.drawer.filter(|_| self.mode == Mode::Explore)
+    }
+
+    /// Whether the panel is seen.
+    pub(super) fn shows_panel(&self) -> bool {
+        if self.narrow { self.sheet } else { self.panel }
     }
 
     /// Colours with another field; a fixed range was for the one before.

@@ -1,20 +1,19 @@
 //! The budget: error against time of everything measured on this machine, and what of it is within limits.
 
-use egui::{Button, Color32, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
+use egui::{Button, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
 use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
 
 use super::action::Action;
 use super::background::{Background, BackgroundError, News};
 use super::field::{Messages, NumberField};
 use super::finder::LISTEN;
-use super::format;
-use super::plot::method_color;
+use super::palette::Palette;
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, Scene, SolverSettings, limits};
 use crate::study::plot::drawn_error;
 use crate::study::{Demand, Measurement, Setting, Study};
-use crate::words::number;
+use crate::words::{engineering, number, percent, three_digits};
 
 /// The study of the lab's scene, and the limits within which its settings are looked for.
 #[derive(Debug, Default)]
@@ -197,12 +196,14 @@ fn settings(
         logarithmic: Some(1e-3),
         whole: false,
     };
-    if let Some(time_ms) = time.show(ui, messages, limits.time_ms) {
-        limits.time_ms = time_ms;
-    }
-    if let Some(error_percent) = error.show(ui, messages, limits.error_percent) {
-        limits.error_percent = error_percent;
-    }
+    ui.columns_const(|[left, right]| {
+        if let Some(time_ms) = time.show(left, messages, limits.time_ms) {
+            limits.time_ms = time_ms;
+        }
+        if let Some(error_percent) = error.show(right, messages, limits.error_percent) {
+            limits.error_percent = error_percent;
+        }
+    });
     let meeting = &budget.meeting;
     ui.horizontal(|ui| {
         let best = meeting.first();
@@ -226,28 +227,28 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let words = format!(
-                "{:>7} ms {:>7} % {}",
-                format::short(m.milliseconds()),
-                format::short(m.error.bound()),
-                m.setting
-            );
+            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error.bound()), m.setting);
             let label = ui.add(
-                Button::selectable(m.setting == applied, RichText::new(words).font(FontId::monospace(11.0))).truncate(),
+                Button::selectable(m.setting == applied, RichText::new(words).font(FontId::monospace(12.0))).truncate(),
             );
             let e = &m.error;
             let parts = format!(
-                "Click to apply. {} unknowns. Error: mesh {} %, stopped early {} %, linear theory {} %.",
+                "Click to apply. {} unknowns. Error: mesh {}, stopped early {}, linear theory {}.",
                 m.dofs,
-                format::short(e.discretization),
-                format::short(e.iteration),
-                format::short(e.model)
+                percent(e.discretization),
+                percent(e.iteration),
+                percent(e.model)
             );
             if label.on_hover_text(parts).clicked() {
                 actions.push(Action::Apply(m.setting));
             }
         }
     });
+}
+
+/// The time of a solve, three digits.
+fn milliseconds(m: &Measurement) -> String {
+    engineering(three_digits(1e-3 * m.milliseconds()), "s")
 }
 
 /// A mark at every decade.
@@ -267,12 +268,12 @@ fn place(m: &Measurement) -> [f64; 2] {
 
 /// What colours and shapes mean, in one line: the plot has no room for a list.
 fn legend(ui: &mut Ui) {
-    let dark = ui.visuals().dark_mode;
+    let palette = Palette::new(ui.visuals());
     ui.horizontal(|ui| {
         ui.add_space(56.0);
         ui.spacing_mut().item_spacing.x = 10.0;
         for method in METHODS {
-            ui.label(RichText::new(method.id).small().strong().color(method_color(method.kind, dark)));
+            ui.label(RichText::new(method.id).small().strong().color(palette.method(method.kind)));
         }
         let shapes: Vec<String> = ELEMENTS.iter().map(|e| format!("{} {}", marker(e.kind).1, e.id)).collect();
         ui.label(RichText::new(format!("{}; nothing beats the line", shapes.join(", "))).small());
@@ -292,7 +293,8 @@ fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
 }
 
 fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
-    let (dark, text) = (ui.visuals().dark_mode, ui.visuals().text_color());
+    let palette = Palette::new(ui.visuals());
+    let text = palette.text;
     let measured: &[Measurement] = budget.study.map_or(&[], |s| &s.measurements);
     let nearest = |x: f64, y: f64| {
         let distance = |m: &Measurement| (place(m)[0] - x).hypot(place(m)[1] - y);
@@ -306,11 +308,11 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .x_axis_formatter(|mark, _| decade_words(mark))
         .y_axis_formatter(|mark, _| decade_words(mark))
         .label_formatter(|at| match at {
-            egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y).map(|m| {
-                format!("{}\n{} ms, {} %", m.setting, format::short(m.milliseconds()), format::short(m.error.bound()))
-            }),
+            egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
+                .map(|m| format!("{}\n{}, {}", m.setting, milliseconds(m), percent(m.error.bound()))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
+        .grid_color(palette.line)
         .include_x(-2.5)
         .include_x(2.5)
         .include_y(-3.0)
@@ -323,7 +325,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
             for element in ElementKind::all() {
                 let (shape, _) = marker(element);
                 for method in METHODS.iter().map(|m| m.kind) {
-                    let color = method_color(method, dark);
+                    let color = palette.method(method);
                     let own = measured.iter().filter(|m| (m.setting.element, m.setting.method) == (element, method));
                     let points: Vec<[f64; 2]> = own.map(place).collect();
                     let name = format!("{} {}", element.id(), method.id());
@@ -332,7 +334,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
             }
             let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(place).collect();
             plot.line(Line::new("Pareto front", PlotPoints::from(front)).color(text).width(1.5));
-            let limit = Color32::from_gray(128);
+            let limit = palette.secondary;
             let style = LineStyle::dashed_dense();
             if let Some(time) = budget.demand.max_time_ms {
                 plot.vline(VLine::new("at most", time.log10()).color(limit).style(style));

@@ -21,6 +21,10 @@ pub(super) struct Drawing {
     value_weights: Vec<f64>,
     /// Element sides.
     pub lines: Vec<[u32; 2]>,
+    /// A triangle beside each of these.
+    pub beside: Vec<u32>,
+    /// Pieces of an element's side.
+    pub pieces: u32,
     /// The lines around the body, each closed, counter-clockwise.
     pub outline: Vec<Vec<u32>>,
     /// The sides of triangles that make them up.
@@ -30,18 +34,21 @@ pub(super) struct Drawing {
 impl Drawing {
     pub(super) fn new(mesh: &Mesh) -> Self {
         let entry = mesh.element().entry();
-        let mut drawing = Self { stride: entry.nodes.len(), boundary: mesh.outline(), ..Self::default() };
+        let (stride, pieces) = (entry.nodes.len(), entry.drawn_pieces);
+        let mut drawing = Self { stride, pieces, boundary: mesh.outline(), ..Self::default() };
         let pattern = CellPattern::new(entry);
         let boundary: HashSet<_> = drawing.boundary.iter().map(Segment::key).collect();
         let mut drawn = HashSet::new();
         // Every boundary side's end corner and points, by its first corner.
         let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();
         for (number, nodes) in (0..).zip(mesh.elements()) {
+            let first_triangle = drawing.triangles.len() as u32;
             let first = drawing.add(&pattern, number, nodes);
-            for (side, points) in mesh.sides(nodes).zip(&pattern.sides) {
+            for ((side, points), beside) in mesh.sides(nodes).zip(&pattern.sides).zip(&pattern.beside) {
                 let points: Vec<u32> = points.iter().map(|p| first + p).collect();
                 if drawn.insert(side.key()) {
                     drawing.lines.extend(points.windows(2).map(|w| [w[0], w[1]]));
+                    drawing.beside.extend(beside.iter().map(|t| first_triangle + t));
                 }
                 if boundary.contains(&side.key()) {
                     let [from, to] = side.ends();
@@ -111,6 +118,8 @@ struct CellPattern {
     triangles: Vec<([u32; 3], Vec<f64>)>,
     /// Points along each side.
     sides: Vec<Vec<u32>>,
+    /// The triangle at every piece of each side.
+    beside: Vec<Vec<u32>>,
 }
 
 impl CellPattern {
@@ -119,10 +128,16 @@ impl CellPattern {
         let place = |p: u32| Vector2::from(lattice.points[p as usize]);
         let middle = |corners: &[u32; 3]| corners.iter().map(|&p| place(p)).sum::<Vector2<f64>>() / 3.0;
         let triangles = lattice.triangles.iter().map(|t| (*t, (entry.point_weights)(middle(t).into())));
+        let triangle_at = |piece: &[u32]| {
+            let found = lattice.triangles.iter().position(|t| piece.iter().all(|p| t.contains(p)));
+            found.unwrap_or_default() as u32
+        };
+        let beside = lattice.sides.iter().map(|side| side.windows(2).map(triangle_at).collect()).collect();
         Self {
             points: lattice.points.iter().map(|&at| (entry.shape)(at)).collect(),
             triangles: triangles.collect(),
             sides: lattice.sides.clone(),
+            beside,
         }
     }
 }
@@ -154,6 +169,10 @@ mod tests {
             let around: f64 = line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
             assert!((around - 10.0).abs() < 1e-12, "{element:?}: {around}");
             assert_eq!(drawing.triangles.len(), drawing.value_of.len());
+            assert_eq!(drawing.lines.len(), drawing.beside.len());
+            let touches =
+                |(line, &t): (&[u32; 2], &u32)| line.iter().all(|p| drawing.triangles[t as usize].contains(p));
+            assert!(drawing.lines.iter().zip(&drawing.beside).all(touches), "{element:?}: a triangle elsewhere");
             // A field that is linear within elements is drawn as it is: its mean over the body is that of its points.
             let entry = element.entry();
             let field = |nodes: &[u32], at: [f64; 2]| -> f64 {

@@ -4,13 +4,13 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use egui::{DragValue, Slider, SliderClamping, Ui};
+use egui::{Align, DragValue, Key, Layout, Response, Slider, SliderClamping, Ui};
 use thiserror::Error;
 
-use super::format;
 use crate::scene::OutOfRange;
 use crate::scene::limits::Limit;
-use crate::words::number;
+use crate::scene::units::{self, UnitError};
+use crate::words::{editable, number, three_digits};
 
 /// Messages next to fields, by the field's label.
 pub(super) type Messages = BTreeMap<&'static str, String>;
@@ -40,60 +40,68 @@ enum FieldError {
     OutOfRange(#[from] OutOfRange),
 }
 
-const LABEL_WIDTH: f32 = 78.0;
 const VALUE_WIDTH: f32 = 104.0;
 
 impl NumberField {
     /// Shows the row; returns a new value that is within the limit, once there is one.
     pub(super) fn show(&self, ui: &mut Ui, messages: &mut Messages, value: f64) -> Option<f64> {
         let mut edited = None;
-        let unparsed = RefCell::new(None);
-        ui.horizontal(|ui| {
-            let label = ui
-                .scope(|ui| {
-                    ui.set_min_width(LABEL_WIDTH);
-                    ui.set_max_width(LABEL_WIDTH);
-                    ui.label(self.label)
-                })
-                .inner
-                .on_hover_text(self.tooltip);
-            let spacing = ui.spacing().item_spacing.x;
-            ui.spacing_mut().slider_width = (ui.available_width() - VALUE_WIDTH - spacing).max(40.0);
-
-            let mut slid = value;
-            let mut slider =
-                Slider::new(&mut slid, self.slider.clone()).clamping(SliderClamping::Never).show_value(false);
-            if let Some(smallest) = self.logarithmic {
-                slider = slider.logarithmic(true).smallest_positive(smallest);
-            }
-            let response = ui.add(slider).labelled_by(label.id).on_hover_text(self.tooltip);
-            if response.changed() {
-                edited = Some(if self.whole { slid.round() } else { format::round_to_slider(slid) });
-            }
-
-            let mut typed = value;
-            let suffix = if self.limit.unit.is_empty() { String::new() } else { format!(" {}", self.limit.unit) };
-            let drag = DragValue::new(&mut typed)
-                .speed(if self.whole { 0.1 } else { 0.005 * value.abs().max(*self.slider.end() * 1e-3) })
-                .suffix(suffix)
-                .update_while_editing(false)
-                .custom_formatter(|v, _| format::editable(v))
-                .custom_parser(|text| {
-                    let parsed = format::parse(text, self.limit.unit).filter(|v| v.is_finite());
-                    if parsed.is_none() {
-                        *unparsed.borrow_mut() = Some(text.trim().to_owned());
+        let refused = RefCell::new(None);
+        let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
+        let label = ui
+            .horizontal(|ui| {
+                let label = ui.label(self.label).on_hover_text(self.tooltip);
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let mut typed = value;
+                    let drag = DragValue::new(&mut typed)
+                        .speed(if self.whole { 0.1 } else { 0.005 * value.abs().max(*self.slider.end() * 1e-3) })
+                        .update_while_editing(false)
+                        .custom_formatter(|v, _| editable(v, unit))
+                        .custom_parser(|text| {
+                            // Left as it was: all the digits that are not shown stay.
+                            if text.trim() == shown {
+                                return Some(value);
+                            }
+                            match parse(text, unit) {
+                                Ok(number) if number.is_finite() => Some(number),
+                                Ok(_) => {
+                                    refused.replace(Some(self.expected(text)));
+                                    None
+                                }
+                                Err(error) => {
+                                    let says_enough = !matches!(error, UnitError::NoNumber { .. });
+                                    let reason = if says_enough { error.to_string() } else { self.expected(text) };
+                                    refused.replace(Some(reason));
+                                    None
+                                }
+                            }
+                        });
+                    let size = egui::vec2(VALUE_WIDTH, ui.spacing().interact_size.y);
+                    let response = ui.add_sized(size, drag).labelled_by(label.id);
+                    if response.changed() {
+                        edited = Some(if response.dragged() { three_digits(typed) } else { typed });
                     }
-                    parsed
+                    quiet_tip(response, self.tooltip);
                 });
-            let size = egui::vec2(VALUE_WIDTH, ui.spacing().interact_size.y);
-            let response = ui.add_sized(size, drag).labelled_by(label.id).on_hover_text(self.tooltip);
-            if response.changed() {
-                edited = Some(if response.dragged() { format::round_to_slider(typed) } else { typed });
-            }
-        });
-        let accepted = match (unparsed.into_inner(), edited) {
-            (Some(text), _) => {
-                messages.insert(self.label, self.limit.expected(&format!("\u{201c}{text}\u{201d}")).to_string());
+                label
+            })
+            .inner;
+        ui.spacing_mut().slider_width = ui.available_width();
+        let mut slid = value;
+        let mut slider = Slider::new(&mut slid, self.slider.clone()).clamping(SliderClamping::Never).show_value(false);
+        if let Some(smallest) = self.logarithmic {
+            slider = slider.logarithmic(true).smallest_positive(smallest);
+        }
+        let response = ui.add(slider).labelled_by(label.id);
+        if response.has_focus() && !response.dragged() {
+            edited = self.stepped(ui, value).or(edited);
+        } else if response.changed() {
+            edited = Some(if self.whole { slid.round() } else { three_digits(slid) });
+        }
+        quiet_tip(response, self.tooltip);
+        let accepted = match (refused.into_inner(), edited) {
+            (Some(reason), _) => {
+                messages.insert(self.label, reason);
                 None
             }
             (None, Some(new)) => match self.check(new) {
@@ -112,6 +120,27 @@ impl NumberField {
         accepted.filter(|&new| new != value)
     }
 
+    /// What the arrow keys make of a value: one per cent of it, of a straight scale a 360th, and whole numbers one by one.
+    fn stepped(&self, ui: &Ui, value: f64) -> Option<f64> {
+        let pressed = |key| ui.input(|i| i.num_presses(key)) as f64;
+        let steps = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
+        if steps == 0.0 {
+            return None;
+        }
+        let (low, high) = (*self.slider.start(), *self.slider.end());
+        let step = match self.logarithmic {
+            _ if self.whole => 1.0,
+            Some(smallest) => (0.01 * value.abs()).max(smallest),
+            None => (high - low) / 360.0,
+        };
+        let stepped = (value + steps * step).clamp(low.min(value), high.max(value));
+        Some(if self.whole { stepped } else { three_digits(stepped) })
+    }
+
+    fn expected(&self, text: &str) -> String {
+        self.limit.expected(&format!("\u{201c}{}\u{201d}", text.trim())).to_string()
+    }
+
     fn check(&self, value: f64) -> Result<(), FieldError> {
         if self.whole && value.fract() != 0.0 {
             return Err(FieldError::NotWhole(number(value)));
@@ -125,5 +154,38 @@ pub(super) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
     if let Some(message) = messages.get(label) {
         let color = ui.visuals().error_fg_color;
         ui.add(egui::Label::new(egui::RichText::new(message).color(color).small()).wrap());
+    }
+}
+
+/// A tooltip that stays away from what is dragged: it would cover the row below.
+fn quiet_tip(response: Response, tip: &str) {
+    if !response.dragged() && !response.has_focus() {
+        response.on_hover_text(tip);
+    }
+}
+
+/// A typed number, in this unit where it has none: `2.5`, `1e4`, `12 kN`, `30,000`, and `3k` for 3 kN.
+fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
+    // A prefix alone is that of the field's unit.
+    units::parse(text, unit).or_else(|error| units::parse(&format!("{}{unit}", text.trim()), unit).map_err(|_| error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn typed_numbers_take_units_and_prefixes() {
+        for (text, value) in
+            [("2.5", 2.5), ("1e4", 1e4), ("12 kN", 12e3), ("12kN", 12e3), ("7 N", 7.0), ("3k", 3e3), ("30,000", 3e4)]
+        {
+            assert_eq!(parse(text, "N"), Ok(value), "{text}");
+        }
+        assert_eq!((parse("3 mm", "m"), parse("7.8 g/cm³", "kg/m³")), (Ok(0.003), Ok(7800.0)));
+        assert_eq!((parse("2 m", "m"), parse("45 °", "°"), parse("45°", "°")), (Ok(2.0), Ok(45.0), Ok(45.0)));
+        assert!(matches!(parse("12 kN", "Pa"), Err(UnitError::WrongDimension { .. })));
+        assert!(matches!(parse("0,5", "N"), Err(UnitError::Ambiguous { .. })));
+        assert!(matches!(parse("two", "N"), Err(UnitError::NoNumber { .. })));
+        assert!(parse("", "N").is_err());
     }
 }

@@ -1,39 +1,63 @@
 //! The lab: a scene, its simulation, and how it is looked at. Window, shot and tests show it through [`Lab::ui`].
 
+use std::path::Path;
 use std::time::Duration;
 
 use egui::{CentralPanel, Color32, Panel, Rect, Sense, Ui};
 use nalgebra::Vector2;
 
 use super::ThemeChoice;
-use super::action::{Action, Drawer, MOST_ITERATIONS, ViewOptions};
+use super::action::{Action, Drawer, MOST_ITERATIONS, Toggle, ViewOptions};
+use super::arrow::{Forces, vector};
 use super::budget::{Budget, question};
+use super::document::Document;
 use super::drawing::Drawing;
+use super::edits::{Edits, Snapshot};
+use super::eye::Eye;
+use super::file_dialog::{Answer, FileDialog, Purpose};
 use super::finder::{Finder, LISTEN};
-use super::motion_plot;
-use super::overlay::{self, Overlay};
-use super::panel::{self, PanelInput, PanelState, status_words};
+use super::intro::Intro;
+use super::mode::Mode;
+use super::overlay::{self, Overlay, Projection};
+use super::palette::{self, Palette};
+use super::panel::{self, PanelInput, PanelState};
 use super::playback::Playback;
-use super::pointer::{self, Look, Reach};
+use super::plot::Curve;
+use super::pointer::{Look, Pointer, Reach};
 use super::recorder::Recorder;
-use super::{help, keys, plot};
+use super::settings::Settings;
+use super::verdict::{self, Errors};
+use super::{headline, help, keys, motion_plot, plot, probe, toolbar};
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
+use crate::mesh::MaterialPoint;
+use crate::render::colormap::ColorMap;
 use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{LoadCurve, Reference, Study};
+use crate::study::{Jump, LoadPath, Reference, Study};
 use crate::timings::Timings;
 
 /// Width of the panel, points.
-pub const PANEL_WIDTH: f32 = 324.0;
+pub const PANEL_WIDTH: f32 = 284.0;
+
+/// A window narrower than this, points, has no place for the panel: it lies over the body, and can be put away.
+const NARROW: f32 = 900.0;
+
+/// Heights of the bars along the top and the bottom, points.
+const TOOLBAR_HEIGHT: f32 = 36.0;
+const HEADLINE_HEIGHT: f32 = 42.0;
 
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 
-/// Height of what is shown under the body, points.
+/// Height of what is shown under the body, points; at most a part of the window's.
 const DRAWER_HEIGHT: f32 = 270.0;
+const DRAWER_SHARE: f32 = 0.45;
+
+/// Residuals that are kept for the way down.
+const MOST_RESIDUALS: usize = 400;
 
 /// How long a message stays.
 const TOAST: Duration = Duration::from_secs(4);
@@ -48,25 +72,37 @@ pub enum Request {
 /// Everything the window shows.
 #[derive(Debug)]
 pub struct Lab {
-    source: Source,
+    document: Document,
     scene: Scene,
+    /// What can be undone.
+    edits: Edits,
     simulation: Simulation,
     /// The same scene under linear theory; `None` where it could not be set up.
     linear: Option<Simulation>,
     running: bool,
     view: ViewOptions,
     panel: PanelState,
-    /// `None`: follows the body.
-    camera: Option<Camera>,
-    fitted: Camera,
+    eye: Eye,
+    /// Whether the view takes its time on the way to where it looks.
+    eases: bool,
     view_rect: Rect,
+    pointer: Pointer,
+    /// The material point whose values are shown.
+    probe: Option<MaterialPoint>,
+    /// The file that is asked for.
+    dialog: Option<FileDialog>,
+    /// Whether the scene's file has been written by somebody else.
+    is_outdated: bool,
+    settings: Settings,
     adapter: String,
     toast: Option<(String, f64)>,
     drawing: Drawing,
     shape: Shape,
     /// What errors are measured against; looked for when the body has come to rest.
     truth: Finder<Reference>,
-    curve: Finder<LoadCurve>,
+    curve: Finder<Curve>,
+    /// Where the body jumps on its way from rest.
+    jump: Finder<Jump>,
     budget: Budget,
     /// The lowest natural frequency, Hz.
     frequency: Finder<f64>,
@@ -78,6 +114,10 @@ pub struct Lab {
     iterations: u32,
     /// Time of the last iterations made for one displayed frame.
     timings: Timings,
+    /// The residual after every iteration since the last change.
+    residuals: Vec<f64>,
+    /// The first seconds, while they last.
+    intro: Option<Intro>,
 }
 
 /// Why a scene is not shown.
@@ -103,6 +143,7 @@ struct Shape {
     background: [u8; 3],
     surround: [u8; 3],
     absent_color: [u8; 3],
+    map: ColorMap,
 }
 
 impl Lab {
@@ -110,23 +151,31 @@ impl Lab {
     #[must_use]
     pub fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
         let drawing = Drawing::new(simulation.system().mesh());
+        let (low, high) = simulation.system().mesh().bounds();
         let mut lab = Self {
-            source,
+            document: Document::new(source, scene.clone()),
             linear: None,
             scene,
+            edits: Edits::default(),
             simulation,
             running: true,
             view: ViewOptions::default(),
             panel: PanelState::default(),
-            camera: None,
-            fitted: Camera { center: Vector2::zeros(), scale: 1.0 },
+            eye: Eye::new([low, high]),
+            eases: false,
             view_rect: Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1.0, 1.0)),
+            pointer: Pointer::default(),
+            probe: None,
+            dialog: None,
+            is_outdated: false,
+            settings: Settings::default(),
             adapter: String::new(),
             toast: None,
             drawing,
             shape: Shape::default(),
             truth: Finder::new(|scene| Reference::of(scene).ok()),
-            curve: Finder::new(LoadCurve::new),
+            curve: Finder::new(Curve::of),
+            jump: Finder::new(LoadPath::jump_of),
             budget: Budget::default(),
             frequency: Finder::new(natural_frequency),
             playback: Playback::default(),
@@ -134,6 +183,8 @@ impl Lab {
             recorder: None,
             iterations: 1,
             timings: Timings::default(),
+            residuals: Vec::new(),
+            intro: None,
         };
         lab.solve_linear();
         lab
@@ -144,9 +195,14 @@ impl Lab {
         self.adapter = adapter;
     }
 
-    /// Shows or hides the panel.
+    /// Shows or hides the panel and the bars: without them the view is all of the picture.
     pub fn set_panel(&mut self, shown: bool) {
-        self.view.panel = shown;
+        self.view.bars = shown;
+    }
+
+    /// Lets the load grow before the eyes of who opens the window: nothing waits for it, and any input ends it.
+    pub(super) fn introduce(&mut self) {
+        self.intro = Intro::new(&self.simulation);
     }
 
     /// Shows the load curve under the body.
@@ -156,7 +212,7 @@ impl Lab {
 
     /// Shows a study under the body.
     pub fn show_study(&mut self, study: Study) {
-        self.view.drawer = Some(Drawer::Budget);
+        self.view.mode = Mode::Budget;
         self.budget.set(&self.scene, study);
     }
 
@@ -179,7 +235,7 @@ impl Lab {
 
     /// Looks through this camera, and colours with this range, whatever the body does.
     pub(super) fn fix_view(&mut self, camera: Camera, range: [f64; 2]) {
-        self.camera = Some(camera);
+        self.eye.look(camera);
         self.view.fixed_range = Some(range);
     }
 
@@ -187,6 +243,7 @@ impl Lab {
     pub fn set_outlines(&mut self, shown: bool) {
         self.view.rest_outline = shown;
         self.view.ghost = shown;
+        self.view.exact = shown;
     }
 
     /// The scene as it stands.
@@ -213,16 +270,24 @@ impl Lab {
         self.view_rect
     }
 
+    /// Where the tips of the forces' arrows are in the window, points, with the number of each among the scene's loads.
+    #[must_use]
+    pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
+        let projection = Projection { camera: self.camera(), rect: self.view_rect };
+        self.forces().arrows(&projection).iter().map(|arrow| (arrow.load, arrow.tip())).collect()
+    }
+
     /// The camera of the last [`Self::ui`].
     #[must_use]
     pub fn camera(&self) -> Camera {
-        self.camera.unwrap_or(self.fitted)
+        self.eye.camera()
     }
 
     /// Title for the window.
     #[must_use]
     pub fn title(&self) -> String {
-        format!("{} \u{2013} warpbeam", self.scene.name)
+        let edited = if self.scene == self.document.original { "" } else { "*" };
+        format!("{}{edited} \u{2013} warpbeam", self.scene.name)
     }
 
     /// Makes the iterations of one displayed frame if it runs, or the time steps that are due at `now`, s of any clock
@@ -237,6 +302,63 @@ impl Lab {
             (false, _) => self.playback.pace.rest(),
         }
         self.iterates()
+    }
+
+    /// Whether there is an edit to undo.
+    #[must_use]
+    pub fn can_undo(&self) -> bool {
+        self.edits.can_undo()
+    }
+
+    /// Whether there is an undone edit to do again.
+    #[must_use]
+    pub fn can_redo(&self) -> bool {
+        self.edits.can_redo()
+    }
+
+    /// Lets the view take its time on the way to where it looks, as in a window, or not, as in pictures.
+    pub fn set_easing(&mut self, eases: bool) {
+        self.eases = eases;
+    }
+
+    /// The material point whose values are shown beside the body.
+    #[must_use]
+    pub fn probed(&self) -> Option<MaterialPoint> {
+        self.probe
+    }
+
+    /// Looks as it was left.
+    pub fn set_settings(&mut self, ctx: &egui::Context, settings: Settings) {
+        if let Some(theme) = settings.theme {
+            ctx.set_theme(egui::Theme::from(theme));
+        }
+        self.view.panel = settings.panel;
+        self.view.drawer = settings.drawer;
+        self.view.color_with(settings.color());
+        self.settings = settings;
+        if let Some(path) = self.document.path() {
+            self.settings.add_recent(path);
+        }
+    }
+
+    /// The window that shows it has this size, points.
+    pub fn set_window_size(&mut self, size: [f32; 2]) {
+        self.settings.set_size(size);
+    }
+
+    /// What is to be remembered of how it is looked at.
+    #[must_use]
+    pub fn settings(&self, ctx: &egui::Context) -> Settings {
+        let theme = match ctx.options(|options| options.theme_preference) {
+            egui::ThemePreference::Dark => Some(ThemeChoice::Dark),
+            egui::ThemePreference::Light => Some(ThemeChoice::Light),
+            egui::ThemePreference::System => None,
+        };
+        let ViewOptions { panel, drawer, field, .. } = self.view;
+        let mut settings = self.settings.clone();
+        (settings.theme, settings.panel, settings.drawer) = (theme, panel, drawer);
+        settings.set_color(field);
+        settings
     }
 
     /// Whether the scene is one in time.
@@ -256,6 +378,10 @@ impl Lab {
             if *self.simulation.status() == Status::Running {
                 self.simulation.step();
                 self.timings.add(self.simulation.last_iteration());
+                if self.simulation.iterations() <= 1 || self.residuals.len() >= MOST_RESIDUALS {
+                    self.residuals.clear();
+                }
+                self.residuals.push(self.simulation.residual());
             }
         }
     }
@@ -277,6 +403,7 @@ impl Lab {
         }
         self.simulation.certify();
         self.truth.settle(&self.scene);
+        self.jump.settle(&self.scene);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.settle(&self.scene);
         }
@@ -307,7 +434,7 @@ impl Lab {
             Some(Drawer::Motion) => self.frequency.is_open(),
             _ => false,
         };
-        open || self.truth.is_open() && !self.moves()
+        open || (self.truth.is_open() || self.jump.is_open()) && !self.moves()
     }
 
     /// What is drawn of the body, as of the last [`Self::ui`].
@@ -320,6 +447,9 @@ impl Lab {
             values: &shape.values,
             range: shape.range,
             lines: if self.view.wireframe { &self.drawing.lines } else { &[] },
+            beside: &self.drawing.beside,
+            pieces: self.drawing.pieces,
+            map: shape.map,
             line_color: shape.line_color,
             background: shape.background,
             surround: shape.surround,
@@ -329,67 +459,154 @@ impl Lab {
 
     fn update_shape(&mut self, visuals: &egui::Visuals) {
         let shape = &mut self.shape;
+        let simulation = self.intro.as_ref().map_or(&self.simulation, Intro::simulation);
         shape.nodes.clear();
-        let rest = self.simulation.system().mesh().nodes();
-        shape.nodes.extend(rest.iter().zip(self.simulation.displacement()).map(|(x, u)| x + u));
+        let rest = simulation.system().mesh().nodes();
+        shape.nodes.extend(rest.iter().zip(simulation.displacement()).map(|(x, u)| x + u));
         let nodes = &shape.nodes;
         self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
-        self.simulation.field(self.view.field, &mut shape.at_points);
+        simulation.field(self.view.field, &mut shape.at_points);
         self.drawing.values(&shape.at_points, &mut shape.values);
-        let range = panel::range_of(&shape.at_points);
+        let [mut low, mut high] = panel::range_of(&shape.at_points);
+        if palette::has_sign(self.view.field) {
+            let reach = high.abs().max(low.abs());
+            (low, high) = (-reach, reach);
+        }
         // Colours that jump from frame to frame say nothing of a motion: its range only grows.
         let before = self.swept.map(|_| shape.range).filter(|_| shape.field == Some(self.view.field));
-        let grown = before.map_or(range, |[low, high]| [low.min(range[0]), high.max(range[1])]);
+        let grown = before.map_or([low, high], |range| [low.min(range[0]), high.max(range[1])]);
         shape.field = Some(self.view.field);
         shape.range = self.view.fixed_range.unwrap_or(grown);
-        shape.background = if visuals.dark_mode { [22, 24, 28] } else { [244, 245, 247] };
+        let palette = Palette::new(visuals);
+        let opaque = |color: egui::Color32| [color.r(), color.g(), color.b()];
+        shape.background = opaque(palette.canvas);
         // What is behind panels: these fill nothing themselves, which is dear where a processor draws.
-        let [r, g, b, _] = visuals.panel_fill.to_array();
-        shape.surround = [r, g, b];
-        shape.absent_color = if visuals.dark_mode { [90, 90, 96] } else { [170, 170, 176] };
-        shape.line_color = if visuals.dark_mode { [0, 0, 0, 110] } else { [0, 0, 0, 90] };
+        shape.surround = opaque(palette.panel);
+        shape.absent_color = opaque(palette.absent);
+        shape.line_color = palette.wire;
+        shape.map = palette.map(self.view.field);
     }
 
-    /// Sizes and colours that the defaults get wrong here.
-    fn style(ctx: &egui::Context) {
-        ctx.all_styles_mut(|style| {
-            style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(11.0));
-        });
+    /// What toolbar, panel and headlines show.
+    fn input(&self) -> PanelInput<'_> {
+        PanelInput {
+            truth: self.truth.get(),
+            jump: self.jump.get(),
+            scene: &self.scene,
+            scene_name: self.document.source.name.to_str().unwrap_or_default(),
+            simulation: &self.simulation,
+            linear: self.linear.as_ref(),
+            running: self.running,
+            playback: &self.playback,
+            iterations: self.iterations,
+            timings: &self.timings,
+            residuals: &self.residuals,
+            can_undo: self.edits.can_undo(),
+            can_redo: self.edits.can_redo(),
+            adapter: &self.adapter,
+        }
     }
 
     /// Shows everything but the body, which is drawn under it, and does what was asked for.
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
-        Self::style(ui.ctx());
+        palette::install(ui.ctx());
         let mut actions = Vec::new();
+        self.edits.listen(ui.ctx());
+        self.hear_of_files(ui.ctx(), &mut actions);
         self.find_out(ui.ctx());
         self.budget.listen(ui.ctx());
-        if self.view.panel {
-            let input = PanelInput {
-                truth: self.truth.get(),
-                scene: &self.scene,
-                scene_name: self.source.name.to_str().unwrap_or_default(),
-                simulation: &self.simulation,
-                running: self.running,
-                playback: &self.playback,
-                iterations: self.iterations,
-                timings: &self.timings,
-                adapter: &self.adapter,
-            };
-            let panel = Panel::left("panel").exact_size(PANEL_WIDTH).resizable(false).frame(unfilled(ui));
-            panel.show(ui, |ui| panel::show(ui, &input, &mut self.panel, &mut self.view, &mut actions));
+        self.go_on_with_intro(ui.ctx());
+        self.view.narrow = ui.available_width() < NARROW;
+        if self.view.bars {
+            self.bars(ui, &mut actions);
         }
-        actions.extend(keys::actions(ui.ctx(), self.view.help));
-        self.drawer(ui, &mut actions);
+        if self.dialog.is_none() {
+            actions.extend(keys::actions(ui.ctx()));
+        }
+        (self.view.mode.entry().show)(self, ui, &mut actions);
         let mut requests = Vec::new();
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
-        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui));
+        let mut actions = Vec::new();
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, &mut actions, &mut requests));
+        if self.view.bars && self.view.narrow && self.view.sheet && self.view_rect.width() >= 160.0 {
+            self.sheet(ui, &mut actions);
+        }
+        for action in actions {
+            self.act(ui.ctx(), action, &mut requests);
+        }
         help::show(ui.ctx(), &mut self.view.help);
-        if self.iterates() {
+        self.ask_for_file(ui.ctx());
+        if self.iterates() || self.intro.is_some() {
             ui.ctx().request_repaint();
         }
         requests
+    }
+
+    /// The bars along the top and the bottom, and the panel where it has its place.
+    fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let errors = verdict::errors(&self.input());
+        let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
+        let top = Panel::top("toolbar").exact_size(TOOLBAR_HEIGHT).resizable(false).frame(bar(ui));
+        top.show(ui, |ui| toolbar::show(ui, &self.input(), &self.view, actions));
+        let bottom = Panel::bottom("headline").exact_size(HEADLINE_HEIGHT).resizable(false).frame(bar(ui));
+        bottom.show(ui, |ui| headline::show(ui, &self.input(), &errors, &self.view, actions));
+        if self.view.panel && !self.view.narrow {
+            let frame = unfilled(ui).inner_margin(egui::Margin { left: 12, right: 8, top: 8, bottom: 4 });
+            let panel = Panel::right("panel").exact_size(PANEL_WIDTH).resizable(false).frame(frame);
+            panel.show(ui, |ui| self.panel(ui, &errors, actions));
+        }
+    }
+
+    /// The panel over the body, where the window is narrow.
+    fn sheet(&mut self, ui: &Ui, actions: &mut Vec<Action>) {
+        let errors = verdict::errors(&self.input());
+        let rect = self.view_rect;
+        let width = PANEL_WIDTH.min(rect.width());
+        egui::Area::new(egui::Id::unique("sheet"))
+            .order(egui::Order::Foreground)
+            .fixed_pos(rect.right_top() - egui::vec2(width, 0.0))
+            .constrain(false)
+            .show(ui.ctx(), |ui| {
+                let palette = Palette::new(ui.visuals());
+                let margin = egui::Margin { left: 12, right: 8, top: 8, bottom: 4 };
+                let frame = egui::Frame::new().fill(palette.panel).inner_margin(margin);
+                frame.stroke(egui::Stroke::new(1.0, palette.line)).show(ui, |ui| {
+                    ui.set_width((width - 22.0).max(0.0));
+                    ui.set_height((rect.height() - 14.0).max(0.0));
+                    self.panel(ui, &errors, actions);
+                });
+            });
+        if ui.input(|i| i.key_pressed(egui::Key::Escape)) && !ui.ctx().text_edit_focused() {
+            self.view.sheet = false;
+        }
+    }
+
+    fn panel(&mut self, ui: &mut Ui, errors: &Errors, actions: &mut Vec<Action>) {
+        // The panel's own memory is apart from what it shows.
+        let (mut state, mut view) = (std::mem::take(&mut self.panel), self.view.clone());
+        panel::show(ui, &self.input(), errors, &mut state, &mut view, actions);
+        (self.panel, self.view) = (state, view);
+    }
+
+    /// Lets the load of the first seconds grow, until they are over or somebody does something.
+    fn go_on_with_intro(&mut self, ctx: &egui::Context) {
+        if self.intro.is_none() {
+            return;
+        }
+        let (now, touched) = ctx.input(|i| {
+            let idle = |event: &egui::Event| {
+                matches!(event, egui::Event::PointerMoved(_) | egui::Event::WindowFocused(_) | egui::Event::PointerGone)
+            };
+            (i.time, i.events.iter().any(|event| !idle(event)))
+        });
+        // Not before it is known where all of it goes: the view stands still then.
+        let waits = self.iterates() || self.truth.is_open();
+        let goes_on = waits || self.intro.as_mut().is_some_and(|intro| intro.advance(now));
+        if touched || !goes_on {
+            self.intro = None;
+        }
     }
 
     /// Looks for what is known of the scene and of its result, once the body is at rest: a dragged slider need not wait.
@@ -405,23 +622,28 @@ impl Lab {
         }
         self.simulation.certify();
         self.truth.ask(&self.scene, ctx);
+        self.jump.ask(&self.scene, ctx);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.ask(&self.scene, ctx);
         }
     }
 
-    fn drawer(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    /// The plots under the body, where they are open.
+    pub(super) fn plots(&mut self, ui: &mut Ui, _: &mut Vec<Action>) {
         let Some(drawer) = self.view.drawer else { return };
-        let panel = Panel::bottom("drawer").exact_size(DRAWER_HEIGHT).resizable(false).frame(unfilled(ui));
-        panel.show(ui, |ui| match drawer {
+        drawer_panel(ui).show(ui, |ui| match drawer {
             Drawer::Curve => plot::show(ui, self.curve.get(), !self.curve.is_open()),
             Drawer::Motion => {
                 let frequency = self.frequency.get().copied();
                 let integrator = self.scene.dynamics.integrator;
                 motion_plot::show(ui, &mut self.view.motion_plot, &self.playback, integrator, frequency);
             }
-            Drawer::Budget => self.budget.show(ui, &self.scene, self.iterations, actions),
         });
+    }
+
+    /// Error against time, under the body.
+    pub(super) fn budget(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        drawer_panel(ui).show(ui, |ui| self.budget.show(ui, &self.scene, self.iterations, actions));
     }
 
     /// Takes a scene that should be as good as the present one; says so where it is not.
@@ -431,60 +653,228 @@ impl Lab {
         }
     }
 
-    fn body_view(&mut self, ui: &mut Ui) {
+    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        self.view_rect = rect;
         // What is pressed is what was seen: the last picture.
-        let reach = Reach { camera: self.camera(), positions: &self.shape.nodes, outline: &self.drawing.boundary };
-        let holds = pointer::hold(ui, &response, &reach, &mut self.simulation, &mut self.playback);
+        let projection = Projection { camera: self.camera(), rect: self.view_rect };
+        let arrows = self.forces().arrows(&projection);
+        let size = [rect.width(), rect.height()].map(f64::from);
+        let reach = Reach {
+            camera: projection.camera,
+            positions: &self.shape.nodes,
+            outline: &self.drawing.boundary,
+            arrows: &arrows,
+            scales: self.eye.scales(size),
+        };
+        self.view_rect = rect;
+        let wish = self.pointer.follow(ui, &response, &reach, &mut self.simulation, &mut self.playback);
+        if let Some((load, magnitude, degrees)) = wish.force {
+            self.panel.keep_force_direction(degrees);
+            let mut scene = Box::new(self.scene.clone());
+            // There is such a force: its arrow was taken.
+            if scene.set_force(load, vector(magnitude, degrees)).is_ok() && *scene != self.scene {
+                self.act(ui.ctx(), Action::Edit("Force", scene), requests);
+                ui.ctx().request_repaint();
+            }
+        }
+        if let Some(restored) = wish.restore.and_then(|load| self.with_original_load(load)) {
+            self.act(ui.ctx(), Action::Edit("Force", Box::new(restored)), requests);
+            ui.ctx().request_repaint();
+        }
         self.update_shape(ui.visuals());
-        self.follow(rect);
-        match pointer::look(ui, &response, self.camera(), holds) {
+        match wish.look {
             Look::Same => {}
-            Look::At(camera) => self.camera = Some(camera),
-            Look::Fit => self.camera = None,
+            Look::At(camera) => self.eye.look(camera),
+            Look::Fit => self.eye.fit(),
+        }
+        self.follow(ui, size);
+        if let (Some(Some(point)), Some(click)) = (wish.clicked, response.interact_pointer_pos()) {
+            let kept = self.probe.and_then(|kept| self.in_view(kept));
+            self.probe = (!kept.is_some_and(|kept| probe::is_on(kept, click))).then_some(point);
         }
         let painter = ui.painter_at(rect);
-        let (words, bad) = status_words(&self.simulation, true);
+        let errors = verdict::errors(&self.input());
+        let (words, bad) = verdict::status_words(&self.simulation, true);
+        let shown = self.intro.as_ref().map_or(&self.simulation, Intro::simulation);
+        let moves = self.simulation.problem().supports().move_the_body();
+        let reactions = if moves { self.simulation.support_reactions() } else { Vec::new() };
         let overlay = Overlay {
-            scene: &self.scene,
-            system: self.simulation.system(),
+            scene: shown.scene(),
+            system: shown.system(),
             drawing: &self.drawing,
             options: &self.view,
             camera: self.camera(),
             positions: &self.shape.nodes,
             ghost: self.ghost(),
-            time: self.simulation.state().time(),
+            exact: if self.intro.is_some() { &[] } else { self.exact() },
+            errors: if self.intro.is_some() { Errors::default() } else { errors },
+            time: shown.state().time(),
+            direction: self.panel.force_direction(),
+            hot: self.pointer.hot_arrow(),
             hand: self.simulation.hand(),
             playback: &self.playback,
+            reactions: &reactions,
             color_range: self.shape.range,
-            warning: bad.then_some(&words),
+            // Beside bars the status says it.
+            warning: (bad && !self.view.bars).then_some(&words),
         };
         overlay::paint(&painter, rect, &overlay, ui.visuals());
+        self.show_values(ui, &painter);
+        if self.view.bars && self.intro.is_none() {
+            let mut free = rect;
+            if self.view.narrow && self.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
+                free.max.x -= PANEL_WIDTH;
+            }
+            if free.width() >= 160.0 && free.height() >= 90.0 {
+                self.status(ui, free, &errors, actions);
+            }
+        }
         self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
     }
 
-    /// Fits the view to the body at rest and now, while nobody has moved it.
-    fn follow(&mut self, rect: Rect) {
+    /// How it stands, over the body; why; and what would help.
+    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
+        const WIDEST: f32 = 460.0;
+        let input = self.input();
+        let palette = Palette::new(ui.visuals());
+        let narrow = rect.width() < 640.0;
+        let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
+        let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
+        let area = egui::Area::new(egui::Id::unique("status"))
+            .order(egui::Order::Middle)
+            .fixed_pos(rect.left_bottom() + egui::vec2(14.0, -above))
+            .pivot(egui::Align2::LEFT_BOTTOM)
+            .constrain_to(rect);
+        area.show(ui.ctx(), |ui| {
+            ui.set_max_width(WIDEST.min(rect.width() - 28.0));
+            if self.view.why {
+                chip(palette.panel).show(ui, |ui| {
+                    for line in verdict::explanation(&input) {
+                        ui.add(egui::Label::new(line).wrap());
+                    }
+                });
+            }
+            if let Some(remedy) = verdict::remedy(&input, errors) {
+                chip(palette.error_chip).show(ui, |ui| {
+                    ui.horizontal_wrapped(|ui| {
+                        ui.colored_label(palette.error, &remedy.words);
+                        if ui.button(&remedy.offer).clicked() {
+                            actions.push(Action::Edit(remedy.edits, remedy.scene.clone()));
+                        }
+                    });
+                });
+            }
+            let (words, bad) = verdict::summary(&input);
+            let tint = if bad { palette.error_chip } else { palette.panel };
+            chip(tint).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.colored_label(if bad { palette.error } else { palette.text }, words);
+                    if verdict::is_stale(&input) && ui.button("Step now").clicked() {
+                        actions.push(Action::Step);
+                    }
+                    let why = ui.selectable_label(self.view.why, egui::RichText::new("why?").color(palette.accent));
+                    if why.clicked() {
+                        actions.push(Action::Toggle(Toggle::Why));
+                    }
+                });
+            });
+        });
+    }
+
+    /// The true outline, m, where it is known of what is shown.
+    fn exact(&self) -> &[Vec<Vector2<f64>>] {
+        let shown = self.view.exact && !self.moves() && !self.iterates() && self.simulation.hand().is_none();
+        let reference = self.truth.get().filter(|_| shown);
+        reference.map_or(&[], |reference| &reference.outline)
+    }
+
+    /// What the arrows of the last picture are of.
+    fn forces(&self) -> Forces<'_> {
+        Forces {
+            scene: &self.scene,
+            system: self.simulation.system(),
+            positions: &self.shape.nodes,
+            time: self.simulation.state().time(),
+            direction: self.panel.force_direction(),
+        }
+    }
+
+    /// The scene with one of its loads as in its file; `None` where that has none such there.
+    fn with_original_load(&self, load: usize) -> Option<Scene> {
+        let original = self.document.original.loads.get(load)?;
+        let mut scene = self.scene.clone();
+        let present = scene.loads.get_mut(load)?;
+        if std::mem::discriminant(original) != std::mem::discriminant(present) {
+            return None;
+        }
+        present.clone_from(original);
+        Some(scene)
+    }
+
+    /// Where a material point is in the window.
+    fn in_view(&self, point: MaterialPoint) -> Option<egui::Pos2> {
+        let place = probe::place(self.simulation.system().mesh(), &self.shape.nodes, point)?;
+        Some(Projection { camera: self.camera(), rect: self.view_rect }.point(place))
+    }
+
+    /// The value of the field that colours the body, at a material point.
+    fn field_at(&self, point: MaterialPoint) -> (Field, Option<f64>) {
+        (self.view.field, Field::at(self.simulation.system().mesh(), &self.shape.at_points, point))
+    }
+
+    /// Shows the values under the pointer, and those at the point that is kept.
+    fn show_values(&mut self, ui: &Ui, painter: &egui::Painter) {
+        if let Some((point, at)) = self.pointer.over_body() {
+            let mesh = self.simulation.system().mesh();
+            if let Some(u) = probe::place(mesh, self.simulation.displacement(), point) {
+                probe::paint_hover(ui, painter, at, self.field_at(point), u);
+            }
+        }
+        let Some(point) = self.probe else { return };
+        let (Some(state), Some(at)) = (self.simulation.point_state(point), self.in_view(point)) else { return };
+        if probe::show_card(ui, painter, self.view_rect, at, self.field_at(point), &state) {
+            self.probe = None;
+        }
+    }
+
+    /// Fits the view to the body at rest and now, while nobody has moved it. What has not converged is not followed: it
+    /// may be anywhere.
+    fn follow(&mut self, ui: &Ui, size: [f64; 2]) {
         // A view that moved with the body would move the place under a pointer that holds it.
-        if self.simulation.hand().is_some() {
+        if self.pointer.holds() {
             return;
         }
-        let mesh = self.simulation.system().mesh();
-        let (mut low, mut high) = mesh.bounds();
-        if let (Some([swept_low, swept_high]), true) = (self.swept, self.moves()) {
-            (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
-        }
-        let mut include = |positions: &mut dyn Iterator<Item = Vector2<f64>>| {
-            for p in positions {
-                low = low.inf(&p);
-                high = high.sup(&p);
+        let status = self.simulation.status();
+        let is_sound = if self.moves() { !matches!(status, Status::Stopped(_)) } else { *status == Status::Converged };
+        if is_sound {
+            let (mut low, mut high) = self.simulation.system().mesh().bounds();
+            if let (Some([swept_low, swept_high]), true) = (self.swept, self.moves()) {
+                (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
             }
-        };
-        include(&mut self.shape.points.iter().copied());
-        self.swept = Some([low, high]).filter(|_| self.moves());
-        self.fitted = self.fit(low, high, [f64::from(rect.width()), f64::from(rect.height())]);
+            let mut include = |points: &mut dyn Iterator<Item = Vector2<f64>>| {
+                for p in points {
+                    (low, high) = (low.inf(&p), high.sup(&p));
+                }
+            };
+            include(&mut self.shape.points.iter().copied());
+            if self.intro.is_some() {
+                // Where it is going to be.
+                let rest = self.simulation.system().mesh().nodes();
+                for u in std::iter::once(self.simulation.displacement()).chain(self.linear_displacement()) {
+                    include(&mut rest.iter().zip(u).map(|(x, u)| x + u));
+                }
+            }
+            include(&mut self.exact().iter().flatten().copied());
+            self.swept = Some([low, high]).filter(|_| self.moves());
+            self.eye.follow([low, high]);
+        }
+        let [low, high] = self.eye.whole();
+        let fitted = self.fit(low, high, size);
+        let dt = f64::from(ui.input(|i| i.stable_dt));
+        if self.eye.aim(fitted, self.eases.then_some(dt)) {
+            ui.ctx().request_repaint();
+        }
     }
 
     /// The camera that shows a box, m, and the linear solution beside it, in a view of this size, points.
@@ -500,28 +890,78 @@ impl Lab {
                 (low, high) = (ghost_low, ghost_high);
             }
         }
-        Camera::fit(low, high, view, FIT_MARGINS)
+        let margins = self.with_room_for_arrows(Camera::fit(low, high, view, FIT_MARGINS), view);
+        Camera::fit(low, high, view, margins)
+    }
+
+    /// What is kept free around the body: also what the loads' arrows need beyond the view of this camera.
+    fn with_room_for_arrows(&self, camera: Camera, view: [f64; 2]) -> Margins {
+        /// Beyond a tip, points: its force stands there.
+        const BEYOND: f32 = 36.0;
+        let size = egui::vec2(view[0] as f32, view[1] as f32);
+        let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
+        self.forces().arrows(&projection).iter().fold(FIT_MARGINS, |margins, arrow| {
+            let tip = arrow.tip();
+            let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
+            Margins {
+                sides: margins.sides.max(FIT_MARGINS.sides + beyond((-tip.x).max(tip.x - size.x))),
+                top: margins.top.max(FIT_MARGINS.top + beyond(-tip.y)),
+                bottom: margins.bottom.max(FIT_MARGINS.bottom + beyond(tip.y - size.y)),
+            }
+        })
     }
 
     /// The linear solution, if it is to be shown.
     fn ghost(&self) -> Option<&[Vector2<f64>]> {
         let wanted = self.view.ghost && self.scene.solver.method != MethodKind::Linear;
-        self.linear_displacement().filter(|_| wanted)
+        let linear = match &self.intro {
+            Some(intro) => intro.linear().map(Simulation::displacement),
+            None => self.linear_displacement(),
+        };
+        linear.filter(|_| wanted)
     }
 
     fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
         match action {
-            Action::Open(id) => self.open(ctx, id),
+            Action::Open(id) => self.open(ctx, Source { name: id.into(), assignments: Vec::new() }),
+            Action::OpenFile => self.dialog = Some(FileDialog::new(Purpose::Open, self.document.path(), "")),
+            Action::Drop(path) => self.open(ctx, Source { name: path, assignments: Vec::new() }),
+            Action::Reload => self.open(ctx, self.document.source.clone()),
+            Action::Save => match self.document.path().map(Path::to_owned) {
+                Some(path) => {
+                    let saved = self.save(&path);
+                    self.say(ctx, saved.unwrap_or_else(|reason| format!("Not saved: {reason}")));
+                }
+                None => self.ask_where_to_save(),
+            },
+            Action::SaveAs => self.ask_where_to_save(),
+            Action::Undo => {
+                let step = self.edits.undo(self.snapshot());
+                self.go_to(ctx, step);
+            }
+            Action::Redo => {
+                let step = self.edits.redo(self.snapshot());
+                self.go_to(ctx, step);
+            }
+            Action::Escape if self.view.help => self.view.help = false,
+            Action::Escape => self.probe = None,
             Action::Edit(label, scene) => {
+                let before = self.snapshot();
                 if let Err(error) = self.set_scene(*scene) {
                     self.panel.messages.insert(label, error.to_string());
                 } else {
                     self.panel.messages.remove(label);
+                    self.remember(before, Some(label));
                 }
             }
+            // What has come to its end has nothing to pause.
+            Action::ToggleRun if self.running && !self.iterates() => {}
             Action::ToggleRun => self.running ^= true,
             Action::Step => {
                 self.running = false;
+                if !self.moves() && self.simulation.is_at_rest() {
+                    self.reset();
+                }
                 self.iterate(1);
             }
             Action::Reset => self.reset(),
@@ -533,7 +973,7 @@ impl Lab {
             Action::Speed(speed) => self.playback.pace.set_speed(speed),
             Action::Compare(integrator) => self.compare_with(integrator),
             Action::Iterations(iterations) => self.iterations = iterations.clamp(1, MOST_ITERATIONS),
-            Action::Fit => self.camera = None,
+            Action::Fit => self.eye.fit(),
             Action::Toggle(what) => self.view.toggle(what),
             Action::Color(field) => self.view.color_with(field),
             Action::ToggleTheme => {
@@ -546,9 +986,38 @@ impl Lab {
             Action::Measure(true) => self.budget.measure(&self.scene),
             Action::Measure(false) => self.budget.cancel(),
             Action::Apply(setting) => {
+                let before = self.snapshot();
                 self.edit(ctx, setting.apply(&self.scene));
                 self.iterations = setting.iterations.clamp(1, MOST_ITERATIONS);
+                self.remember(before, None);
             }
+        }
+    }
+
+    /// The scene as it stands, to come back to.
+    fn snapshot(&self) -> Snapshot {
+        Snapshot { document: self.document.clone(), scene: self.scene.clone(), iterations: self.iterations }
+    }
+
+    /// Keeps how it was before something was changed, if it was.
+    fn remember(&mut self, before: Snapshot, label: Option<&'static str>) {
+        if before != self.snapshot() {
+            self.edits.record(before, label);
+        }
+    }
+
+    /// Goes to a step of the past or the future.
+    fn go_to(&mut self, ctx: &egui::Context, step: Option<Snapshot>) {
+        let Some(Snapshot { document, scene, iterations }) = step else { return };
+        let gone = if document.source == self.document.source {
+            self.panel.messages.clear();
+            self.set_scene(scene)
+        } else {
+            self.adopt(document, scene)
+        };
+        match gone {
+            Ok(()) => self.iterations = iterations,
+            Err(error) => self.say(ctx, error.to_string()),
         }
     }
 
@@ -565,7 +1034,10 @@ impl Lab {
         self.simulation.change_scene(&scene)?;
         let is_another = self.scene.beam != scene.beam || self.scene.mesh != scene.mesh;
         if is_another {
-            self.drawing = Drawing::new(self.simulation.system().mesh());
+            let mesh = self.simulation.system().mesh();
+            self.drawing = Drawing::new(mesh);
+            self.eye.set_body(mesh.bounds().into());
+            self.probe = None;
         }
         let is_another = is_another || self.scene.analysis != scene.analysis;
         if is_another {
@@ -577,27 +1049,122 @@ impl Lab {
             self.truth.forget();
         }
         self.curve.forget();
+        self.jump.forget();
         self.scene = scene;
+        self.intro = None;
+        if !(self.view.mode.entry().serves)(&self.scene) {
+            self.view.mode = Mode::Explore;
+        }
+        self.view.drawer = self.view.drawer.map(|_| Drawer::of(&self.scene));
         self.solve_linear();
         Ok(())
     }
 
-    fn open(&mut self, ctx: &egui::Context, id: &str) {
-        let source = Source { name: id.into(), assignments: Vec::new() };
-        let opened = scene::open(&source).map_err(OpenError::from).and_then(|scene| Ok(self.set_scene(scene)?));
-        match opened {
-            Ok(()) => {
-                self.source = source;
-                self.playback = Playback::default();
-                self.reset();
-                self.panel.clear();
-                self.budget = Budget::default();
-                self.iterations = 1;
-                self.camera = None;
-                self.view.fixed_range = None;
-            }
-            Err(error) => self.say(ctx, error.to_string()),
+    /// Opens a scene in the place of the present one; says so where that fails.
+    fn open(&mut self, ctx: &egui::Context, source: Source) {
+        if let Err(error) = self.try_open(source) {
+            self.say(ctx, error.to_string());
         }
+    }
+
+    fn try_open(&mut self, source: Source) -> Result<(), OpenError> {
+        let before = self.snapshot();
+        let document = Document::open(source)?;
+        let scene = document.original.clone();
+        self.adopt(document, scene)?;
+        if let Some(path) = self.document.path() {
+            self.settings.add_recent(path);
+        }
+        self.remember(before, None);
+        Ok(())
+    }
+
+    /// Takes a scene from somewhere else.
+    fn adopt(&mut self, document: Document, scene: Scene) -> Result<(), SimulationError> {
+        self.set_scene(scene)?;
+        self.document = document;
+        self.is_outdated = false;
+        self.playback = Playback::default();
+        self.reset();
+        self.panel.clear();
+        self.budget = Budget::default();
+        self.iterations = 1;
+        self.eye = Eye::new(self.simulation.system().mesh().bounds().into());
+        self.probe = None;
+        self.view.fixed_range = None;
+        Ok(())
+    }
+
+    /// Saves the scene to a file; returns what there is to say of it, or why it failed.
+    fn save(&mut self, path: &Path) -> Result<String, String> {
+        self.document = self.document.save(&self.scene, path).map_err(|reason| reason.to_string())?;
+        self.settings.add_recent(path);
+        self.is_outdated = false;
+        Ok(format!("Saved {}", path.display()))
+    }
+
+    fn ask_where_to_save(&mut self) {
+        let name = self.document.path().and_then(Path::file_name).and_then(|name| name.to_str());
+        let name = name.map_or_else(|| format!("{}.toml", self.document.source.name.display()), str::to_owned);
+        let name = if name == "-.toml" { "scene.toml".to_owned() } else { name };
+        self.dialog = Some(FileDialog::new(Purpose::Save, self.document.path(), &name));
+    }
+
+    /// Shows the dialog that asks for a file, and does what it answers.
+    fn ask_for_file(&mut self, ctx: &egui::Context) {
+        let Some(mut dialog) = self.dialog.take() else { return };
+        let done = match dialog.show(ctx, self.settings.recent()) {
+            None => Err(None),
+            Some(Answer::Cancel) => Ok(None),
+            Some(Answer::File(path)) => match dialog.purpose {
+                Purpose::Open => {
+                    let source = Source { name: path, assignments: Vec::new() };
+                    self.try_open(source).map(|()| None).map_err(|error| Some(error.to_string()))
+                }
+                Purpose::Save => self.save(&path).map(Some).map_err(Some),
+            },
+        };
+        match done {
+            Ok(None) => {}
+            Ok(Some(words)) => self.say(ctx, words),
+            Err(message) => {
+                message.into_iter().for_each(|message| dialog.refuse(message));
+                self.dialog = Some(dialog);
+            }
+        }
+        if self.dialog.is_none() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Opens what is dropped on the window. When the window gets the focus, looks whether the scene's file has been
+    /// written by somebody else, and offers it.
+    fn hear_of_files(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        let (dropped, is_back) = ctx.input(|i| {
+            let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
+            (dropped, i.events.contains(&egui::Event::WindowFocused(true)))
+        });
+        actions.extend(dropped.map(Action::Drop));
+        self.is_outdated |= is_back && self.document.has_changed();
+        if !self.is_outdated {
+            return;
+        }
+        let area =
+            egui::Area::new(egui::Id::unique("outdated")).anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 12.0));
+        area.show(ctx, |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    ui.label(format!("{} has changed on disk.", self.document.source.name.display()));
+                    if ui.button("Reload").clicked() {
+                        actions.push(Action::Reload);
+                    }
+                    if ui.button("Keep this one").clicked() {
+                        self.document.ignore_change();
+                        self.is_outdated = false;
+                    }
+                });
+            });
+        });
     }
 
     fn solve_linear(&mut self) {
@@ -637,7 +1204,7 @@ impl Lab {
             return recorder.stop();
         }
         let theme = if ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
-        match Recorder::start(self.source.clone(), self.scene.clone(), theme) {
+        match Recorder::start(self.document.source.clone(), self.scene.clone(), theme) {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(reason) => self.say(ctx, format!("No recording: {reason}")),
         }
@@ -690,6 +1257,12 @@ fn natural_frequency(scene: &Scene) -> Option<f64> {
     let problem = simulation.problem();
     let mass = Mass::new(problem.system(), scene.material.area_density());
     Some(lowest_frequency(problem, &mass)? / std::f64::consts::TAU)
+}
+
+/// Where plots are, under the body.
+fn drawer_panel(ui: &Ui) -> Panel {
+    let height = DRAWER_HEIGHT.min(DRAWER_SHARE * ui.ctx().content_rect().height());
+    Panel::bottom("drawer").exact_size(height).resizable(false).frame(unfilled(ui))
 }
 
 /// A panel's frame without its background: the body's pass has filled that.

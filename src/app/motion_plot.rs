@@ -5,8 +5,11 @@ use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, VL
 use realfft::RealFftPlanner;
 
 use super::history::{History, Sample};
+use super::palette::Palette;
 use super::playback::Playback;
+use super::plot::still;
 use crate::scene::IntegratorKind;
+use crate::words::engineering;
 
 /// What is plotted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,12 +43,6 @@ const LONGEST_SPECTRUM: usize = 4096;
 /// With fewer samples there is none.
 const SHORTEST_SPECTRUM: usize = 64;
 
-/// The colour of an integrator.
-pub(super) fn integrator_color(kind: IntegratorKind, dark: bool) -> Color32 {
-    let [r, g, b] = kind.entry().color(dark);
-    Color32::from_rgb(r, g, b)
-}
-
 /// Shows the plot that is chosen; `frequency` is the lowest natural one, Hz.
 pub(super) fn show(
     ui: &mut Ui,
@@ -65,7 +62,7 @@ pub(super) fn show(
         ui.centered_and_justified(|ui| ui.weak("Nothing has moved yet: run it, or take one step."));
         return;
     }
-    let dark = ui.visuals().dark_mode;
+    let palette = Palette::new(ui.visuals());
     // One line for every motion that is shown.
     let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
     let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
@@ -76,27 +73,20 @@ pub(super) fn show(
         MotionPlot::Tip => {
             let lines =
                 motions.iter().map(|(kind, history)| (*kind, thinned(history, |s| [s.time, s.displacement[axis]])));
-            curves(ui, "tip", "time, s", &format!("{name}, m"), Some(&playback.history), lines, dark);
+            curves(ui, "tip", ("time", "s"), (&name, "m"), Some(&playback.history), lines, &palette);
         }
         MotionPlot::Phase => {
             let lines = motions
                 .iter()
                 .map(|(kind, history)| (*kind, thinned(history, |s| [s.displacement[axis], s.velocity[axis]])));
-            curves(ui, "phase", &format!("{name}, m"), "velocity, m/s", None, lines, dark);
+            curves(ui, "phase", (&name, "m"), ("velocity", "m/s"), None, lines, &palette);
         }
-        MotionPlot::Spectrum => spectra(ui, &motions, axis, frequency, dark),
+        MotionPlot::Spectrum => spectra(ui, &motions, axis, frequency, &palette),
     }
 }
 
-fn plot<'a>(id: &str, x: &str, y: &str) -> Plot<'a> {
-    Plot::new(id.to_owned())
-        .legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true))
-        .x_axis_label(x.to_owned())
-        .y_axis_label(y.to_owned())
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
+fn plot<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
+    still(palette, id, x, y).legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true))
 }
 
 fn thinned(history: &History, point: impl Fn(&Sample) -> [f64; 2]) -> Vec<PlotPoint> {
@@ -116,18 +106,18 @@ fn over_time<'a>(plot: Plot<'a>, history: &History) -> Plot<'a> {
 fn curves(
     ui: &mut Ui,
     id: &str,
-    x: &str,
-    y: &str,
+    x: (&str, &'static str),
+    y: (&str, &'static str),
     in_time: Option<&History>,
     lines: impl Iterator<Item = (IntegratorKind, Vec<PlotPoint>)>,
-    dark: bool,
+    palette: &Palette,
 ) {
-    let plot = plot(id, x, y);
+    let plot = plot(palette, id, x, y);
     let plot = if let Some(history) = in_time { over_time(plot, history) } else { plot };
     plot.show(ui, |plot| {
         for (kind, points) in lines {
             let line = Line::new(kind.id(), PlotPoints::Owned(points));
-            plot.line(line.color(integrator_color(kind, dark)).width(1.5));
+            plot.line(line.color(palette.integrator(kind)).width(1.5));
         }
     });
 }
@@ -136,21 +126,18 @@ fn curves(
 type EnergyKind = (&'static str, Color32, fn(&Sample) -> f64);
 
 fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]) {
-    let dark = ui.visuals().dark_mode;
-    let color = |on_dark: [u8; 3], on_light: [u8; 3]| {
-        let [r, g, b] = if dark { on_dark } else { on_light };
-        Color32::from_rgb(r, g, b)
-    };
-    let sum = ui.visuals().strong_text_color();
+    let palette = Palette::new(ui.visuals());
+    let sum = palette.text;
+    let [kinetic, elastic, potential, dissipated, lost, put_in] = palette.energies();
     let kinds: [EnergyKind; 6] = [
-        ("kinetic", color([110, 170, 255], [20, 90, 200]), |s| s.ledger.kinetic),
-        ("elastic", color([255, 180, 80], [190, 100, 0]), |s| s.ledger.elastic),
-        ("potential of loads", color([120, 210, 130], [20, 120, 50]), |s| s.ledger.potential),
-        ("dissipated", color([170, 170, 180], [110, 110, 120]), |s| s.ledger.dissipated),
-        ("lost by the integrator", color([255, 120, 120], [200, 30, 40]), |s| s.ledger.integrator),
-        ("put in", color([200, 150, 255], [120, 50, 190]), |s| s.ledger.pulses + s.ledger.hands + s.ledger.edits),
+        ("kinetic", kinetic, |s| s.ledger.kinetic),
+        ("elastic", elastic, |s| s.ledger.elastic),
+        ("potential of loads", potential, |s| s.ledger.potential),
+        ("dissipated", dissipated, |s| s.ledger.dissipated),
+        ("lost by the integrator", lost, |s| s.ledger.integrator),
+        ("put in", put_in, |s| s.ledger.pulses + s.ledger.hands + s.ledger.edits),
     ];
-    over_time(plot("energy", "time, s", "energy, J"), history).show(ui, |plot| {
+    over_time(plot(&palette, "energy", ("time", "s"), ("energy", "J")), history).show(ui, |plot| {
         // Beside others only the sums: these are what is compared.
         let shown = if motions.len() == 1 { &kinds[..] } else { &[] };
         for (name, color, value) in shown {
@@ -165,7 +152,7 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
             let (name, color) = if motions.len() == 1 {
                 ("sum".to_owned(), sum)
             } else {
-                (format!("sum, {}", kind.id()), integrator_color(*kind, dark))
+                (format!("sum, {}", kind.id()), palette.integrator(*kind))
             };
             plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(2.5));
         }
@@ -202,7 +189,13 @@ fn spectrum(history: &History, axis: usize) -> Vec<[f64; 2]> {
     amplitudes.iter().enumerate().map(|(i, a)| [i as f64 * bin, a.norm() * scale]).collect()
 }
 
-fn spectra(ui: &mut Ui, motions: &[(IntegratorKind, &History)], axis: usize, frequency: Option<f64>, dark: bool) {
+fn spectra(
+    ui: &mut Ui,
+    motions: &[(IntegratorKind, &History)],
+    axis: usize,
+    frequency: Option<f64>,
+    palette: &Palette,
+) {
     /// Frequencies with less than this part of the largest amplitude are off the picture on the right.
     const SEEN: f64 = 1e-3;
     let all: Vec<_> = motions.iter().map(|(kind, history)| (*kind, spectrum(history, axis))).collect();
@@ -213,15 +206,15 @@ fn spectra(ui: &mut Ui, motions: &[(IntegratorKind, &History)], axis: usize, fre
     let largest = all.iter().flat_map(|(_, s)| s).map(|p| p[1]).fold(0.0, f64::max);
     let seen = all.iter().flat_map(|(_, s)| s).filter(|p| p[1] > SEEN * largest).map(|p| p[0]).fold(0.0, f64::max);
     let end = seen.max(3.0 * frequency.unwrap_or(0.0));
-    plot("spectrum", "frequency, Hz", "amplitude, m").include_y(0.0).show(ui, |plot| {
+    plot(palette, "spectrum", ("frequency", "Hz"), ("amplitude", "m")).include_y(0.0).show(ui, |plot| {
         for (kind, spectrum) in all {
             let points: Vec<[f64; 2]> = spectrum.into_iter().take_while(|p| p[0] <= end).collect();
             let line = Line::new(kind.id(), PlotPoints::from(points));
-            plot.line(line.color(integrator_color(kind, dark)).width(1.5));
+            plot.line(line.color(palette.integrator(kind)).width(1.5));
         }
         if let Some(frequency) = frequency {
-            let name = format!("\u{3c9}\u{2081}/2\u{3c0} about rest: {frequency:.3} Hz");
-            let color = plot.ctx().global_style().visuals.weak_text_color();
+            let name = format!("\u{3c9}\u{2081}/2\u{3c0} about rest: {}", engineering(frequency, "Hz"));
+            let color = palette.secondary;
             plot.vline(VLine::new(name, frequency).color(color).style(LineStyle::dashed_dense()));
         }
     });

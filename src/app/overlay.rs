@@ -4,13 +4,16 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, 
 use nalgebra::Vector2;
 
 use super::action::ViewOptions;
+use super::arrow::{self, Arrow, Forces};
 use super::drawing::Drawing;
-use super::format;
-use super::motion_plot::integrator_color;
+use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
+use super::verdict::Errors;
 use crate::assembly::{Hand, System};
-use crate::render::{Camera, colormap};
-use crate::scene::{Analysis, Load, Place, Scene};
+use crate::render::Camera;
+use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
+use crate::simulation::SupportReaction;
+use crate::words::{engineering, percent, prefix, round_down, three_digits, ticks};
 
 /// What is painted over the body.
 pub(super) struct Overlay<'a> {
@@ -23,59 +26,41 @@ pub(super) struct Overlay<'a> {
     pub positions: &'a [Vector2<f64>],
     /// Displacement of the linear solution, m, where its outline is wanted.
     pub ghost: Option<&'a [Vector2<f64>]>,
+    /// The true outline, m: closed lines.
+    pub exact: &'a [Vec<Vector2<f64>>],
+    /// How far off the body and the linear solution are.
+    pub errors: Errors,
     /// Simulated time, s.
     pub time: f64,
+    /// Direction of an arrow without force, degrees.
+    pub direction: f64,
+    /// The arrow whose tip the pointer is on, or has taken and dragged so far.
+    pub hot: Option<HotArrow>,
     /// The hand that pulls, and its force, N.
     pub hand: Option<(&'a Hand, Vector2<f64>)>,
     /// The past of a motion, and the same motion under other integrators.
     pub playback: &'a Playback,
+    /// The reactions of the supports, where one moves.
+    pub reactions: &'a [SupportReaction],
     /// The field's values at the two ends of the colour map.
     pub color_range: [f64; 2],
     /// What is wrong with the state, in words.
     pub warning: Option<&'a str>,
 }
 
-/// The colours of the overlay, chosen to differ in brightness too.
-struct Palette {
-    text: Color32,
-    rest: Color32,
-    ghost: Color32,
-    outline: Color32,
-    support: Color32,
-    load: Color32,
-    hand: Color32,
-}
-
-impl Palette {
-    fn new(visuals: &Visuals) -> Self {
-        if visuals.dark_mode {
-            Self {
-                text: Color32::from_gray(215),
-                rest: Color32::from_gray(110),
-                ghost: Color32::from_rgb(240, 150, 60),
-                outline: Color32::from_gray(235),
-                support: Color32::from_gray(190),
-                load: Color32::from_rgb(255, 105, 97),
-                hand: Color32::from_rgb(120, 220, 130),
-            }
-        } else {
-            Self {
-                text: Color32::from_gray(40),
-                rest: Color32::from_gray(160),
-                ghost: Color32::from_rgb(200, 90, 0),
-                outline: Color32::from_gray(30),
-                support: Color32::from_gray(70),
-                load: Color32::from_rgb(190, 20, 30),
-                hand: Color32::from_rgb(10, 120, 40),
-            }
-        }
-    }
+/// An arrow whose tip the pointer is on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HotArrow {
+    pub arrow: Arrow,
+    /// Where it has been dragged since it was taken, points.
+    pub dragged: Option<Vec2>,
 }
 
 /// Metres to window positions.
-struct Projection {
-    camera: Camera,
-    rect: Rect,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Projection {
+    pub camera: Camera,
+    pub rect: Rect,
 }
 
 impl Projection {
@@ -84,7 +69,7 @@ impl Projection {
     }
 
     /// The window position of a point; far outside the view, somewhere outside the view.
-    fn point(&self, p: Vector2<f64>) -> Pos2 {
+    pub(super) fn point(&self, p: Vector2<f64>) -> Pos2 {
         let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
         self.rect.center() + vec2(x, y)
     }
@@ -150,19 +135,35 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
     if let Some(linear) = overlay.ghost {
-        draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.ghost));
+        draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.method(MethodKind::Linear)));
     }
     for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
         let u = companion.simulation.displacement();
-        let color = integrator_color(companion.integrator, visuals.dark_mode);
+        let color = palette.integrator(companion.integrator);
         draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
     }
-    draw(&|n| overlay.positions[n as usize], Stroke::new(1.2, palette.outline));
+    draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, own_color(overlay, &palette)));
+    for line in overlay.exact {
+        // On a ground of its own: over the body its colour alone would be lost.
+        dashed(painter, &projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
+        dashed(painter, &projection, line, Stroke::new(1.7, palette.exact));
+    }
     if overlay.options.trail {
-        trails(painter, &projection, overlay, &palette, visuals);
+        trails(painter, &projection, overlay, &palette);
+    }
+    if let Some(edge) = &overlay.options.edge {
+        let segments = system.mesh().edges().get(edge).into_iter().flatten();
+        for piece in segments.flat_map(|s| s.nodes().windows(2)) {
+            let ends = [piece[0], piece[1]].map(|n| overlay.positions[n as usize]);
+            if let Some(segment) = projection.segment(ends[0], ends[1]) {
+                painter.line_segment(segment, Stroke::new(9.0, palette.load.gamma_multiply(0.35)));
+                painter.line_segment(segment, Stroke::new(3.5, palette.load));
+            }
+        }
     }
     supports(painter, &projection, overlay, &palette);
     loads(painter, &projection, overlay, &palette, visuals);
+    moved_supports(painter, &projection, overlay, &palette, visuals);
     legend(painter, rect, overlay, &palette, visuals);
     key(painter, rect, overlay, &palette, visuals);
     scale_bar(painter, rect, &projection.camera, &palette);
@@ -175,15 +176,44 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     }
 }
 
+/// The colour of the body's own solution.
+fn own_color(overlay: &Overlay<'_>, palette: &Palette) -> Color32 {
+    match overlay.scene.analysis {
+        Analysis::Static => palette.method(overlay.scene.solver.method),
+        Analysis::Dynamic => palette.integrator(overlay.scene.dynamics.integrator),
+    }
+}
+
+/// A dashed line through some points. Dashes go on around corners.
+fn dashed(painter: &Painter, projection: &Projection, line: &[Vector2<f64>], stroke: Stroke) {
+    const DASH: f32 = 6.0;
+    const PERIOD: f32 = 10.0;
+    let mut phase = 0.0_f32;
+    for ends in line.windows(2) {
+        let Some([from, to]) = projection.segment(ends[0], ends[1]) else { continue };
+        let length = (to - from).length();
+        let at = |s: f32| from + (to - from) * (s / length);
+        let mut s = -phase;
+        while s < length {
+            let (begin, end) = (s.max(0.0), (s + DASH).min(length));
+            if begin < end {
+                painter.line_segment([at(begin), at(end)], stroke);
+            }
+            s += PERIOD;
+        }
+        phase = (phase + length) % PERIOD;
+    }
+}
+
 /// Where the tip has been in the last seconds, fading.
-fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     /// s.
     const DURATION: f64 = 2.0;
     const MOST_PIECES: usize = 400;
     let playback = overlay.playback;
     let companions = playback.companions().iter().filter(|c| !c.has_stopped());
-    let others = companions.map(|c| (&c.history, integrator_color(c.integrator, visuals.dark_mode)));
-    for (history, color) in std::iter::once((&playback.history, palette.outline)).chain(others) {
+    let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
+    for (history, color) in std::iter::once((&playback.history, own_color(overlay, palette))).chain(others) {
         let points: Vec<Vector2<f64>> = history.last(DURATION).map(|s| s.position).collect();
         let stride = points.len().div_ceil(MOST_PIECES).max(1);
         let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
@@ -234,7 +264,7 @@ fn pull(
     } else {
         painter.line_segment([from, to], stroke);
     }
-    let label = format!("{} N", format::short(force.norm()));
+    let label = engineering(three_digits(force.norm()), "N");
     boxed_text(painter, to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, visuals, palette.hand, 200.0);
 }
 
@@ -281,19 +311,6 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-const ARROW: f32 = 58.0;
-
-fn arrow(painter: &Painter, from: Pos2, direction: Vec2, color: Color32) -> Pos2 {
-    const HEAD: f32 = 12.0;
-    let direction = direction.normalized();
-    let tip = from + direction * ARROW;
-    let side = vec2(-direction.y, direction.x) * (HEAD * 0.42);
-    let neck = tip - direction * HEAD;
-    painter.line_segment([from, neck], Stroke::new(3.0, color));
-    painter.add(egui::Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
-    tip
-}
-
 /// An arc of three quarters of a turn with a head, and the moment beside it.
 fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, visuals: &Visuals) {
     const RADIUS: f32 = 26.0;
@@ -312,61 +329,72 @@ fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, v
     let along = vec2(-outward.y, outward.x) * sense;
     let head = vec![end + along * HEAD, end + outward * (HEAD * 0.5), end - outward * (HEAD * 0.5)];
     painter.add(egui::Shape::convex_polygon(head, color, Stroke::NONE));
-    let label = format!("{} N m", format::short(moment));
+    let label = engineering(moment, "N m");
     boxed_text(painter, center + vec2(0.0, RADIUS + 12.0), Align2::CENTER_TOP, &label, visuals, color, 200.0);
 }
 
-/// Where a load pulls now: the middle of its edge, or its node, m.
-fn load_point(overlay: &Overlay<'_>, place: &Place) -> Option<Vector2<f64>> {
-    let mesh = overlay.system.mesh();
-    let nodes = match place {
-        Place::Edge(name) => mesh.edge_nodes(name)?,
-        Place::At(at) => vec![mesh.nearest_node((*at).into())],
-    };
-    let sum: Vector2<f64> = nodes.iter().map(|&n| overlay.positions[n as usize]).sum();
-    (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
-}
-
 fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    let view = projection.rect;
-    for load in &overlay.scene.loads {
-        /// Less than this part of a pulse is not drawn.
-        const SEEN: f64 = 0.02;
-        if load.pulse().is_some_and(|pulse| pulse.factor(overlay.time) < SEEN) {
-            continue;
+    /// Length of the arrow of a weight, which tells its direction only, points.
+    const WEIGHT: f32 = 58.0;
+    let Overlay { scene, system, positions, time, .. } = *overlay;
+    let forces = Forces { scene, system, positions, time, direction: overlay.direction };
+    for arrow in forces.arrows(projection) {
+        let hot = overlay.hot.as_ref().filter(|hot| hot.arrow.load == arrow.load);
+        arrow.paint(painter, palette.load, visuals, hot.is_some_and(|hot| hot.dragged.is_none()));
+        if let Some((taken, by)) = hot.and_then(|hot| Some((hot.arrow, hot.dragged?))) {
+            taken.paint_handle(painter, by, palette.load);
         }
-        let (vector, from, label) = match load {
-            Load::Force { place, force, .. } => {
-                let Some(point) = load_point(overlay, place) else {
-                    continue;
-                };
-                let magnitude = force[0].hypot(force[1]);
-                (force, projection.point(point), format!("{} N", format::short(magnitude)))
-            }
+    }
+    for load in scene.loads.iter().filter(|load| arrow::is_seen(load, time)) {
+        match load {
+            Load::Force { .. } => {}
             Load::Moment { edge, moment, .. } => {
-                if let (Some(point), true) = (load_point(overlay, &Place::from(edge.as_str())), *moment != 0.0) {
+                let place = Place::from(edge.as_str());
+                if let (Some(point), true) = (arrow::load_point(system.mesh(), positions, &place), *moment != 0.0) {
                     turning_arrow(painter, projection.point(point), *moment, palette.load, visuals);
                 }
-                continue;
             }
-            Load::Gravity { acceleration, .. } => {
-                let magnitude = acceleration[0].hypot(acceleration[1]);
-                (acceleration, view.right_top() + vec2(-64.0, 30.0), format!("{} m/s²", format::short(magnitude)))
+            Load::Gravity { acceleration: [x, y], .. } => {
+                let direction = vec2(*x as f32, -*y as f32).normalized();
+                if direction == Vec2::ZERO || !direction.is_finite() {
+                    continue;
+                }
+                let from = projection.rect.right_top() + vec2(-64.0, 30.0);
+                let tip = arrow::paint_arrow(painter, from, direction * WEIGHT, palette.load);
+                let label = engineering(x.hypot(*y), "m/s²");
+                boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
             }
-        };
-        let direction = vec2(vector[0] as f32, -vector[1] as f32).normalized();
+        }
+    }
+}
+
+/// The force of every support that moves, as an arrow to where it pushes or from where it pulls.
+fn moved_supports(
+    painter: &Painter,
+    projection: &Projection,
+    overlay: &Overlay<'_>,
+    palette: &Palette,
+    visuals: &Visuals,
+) {
+    /// Length of the arrow of a reaction, which tells its direction only, points.
+    const REACTION: f32 = 58.0;
+    for (support, reaction) in overlay.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
+        let direction = vec2(reaction.force.x as f32, -reaction.force.y as f32).normalized();
         if direction == Vec2::ZERO || !direction.is_finite() {
             continue;
         }
-        let tip = arrow(painter, from, direction, palette.load);
-        let (anchor, at) = if direction.y.abs() > direction.x.abs() {
-            let below = direction.y > 0.0;
-            let anchor = if below { Align2::CENTER_TOP } else { Align2::CENTER_BOTTOM };
-            (anchor, tip + vec2(0.0, 6.0 * direction.y.signum()))
-        } else {
-            (Align2::CENTER_BOTTOM, tip - direction * (ARROW * 0.5) - vec2(0.0, 10.0))
+        let middle = projection.point(reaction.middle);
+        // It pushes the way it has gone: from outside. Else it holds back.
+        let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
+        let from = if pushes { middle - direction * REACTION } else { middle };
+        let tip = arrow::paint_arrow(painter, from, direction * REACTION, palette.support);
+        let tail = if pushes { from } else { tip };
+        let (anchor, away) = match (pushes, direction.y > 0.0) {
+            (true, true) | (false, false) => (Align2::CENTER_BOTTOM, -6.0),
+            (true, false) | (false, true) => (Align2::CENTER_TOP, 6.0),
         };
-        boxed_text(painter, at, anchor, &label, visuals, palette.load, 200.0);
+        let label = engineering(reaction.force.norm(), "N");
+        boxed_text(painter, tail + vec2(0.0, away), anchor, &label, visuals, palette.support, 200.0);
     }
 }
 
@@ -380,82 +408,127 @@ pub(super) fn boxed_text(
     color: Color32,
     width: f32,
 ) {
-    let galley = painter.layout(text.to_owned(), FontId::proportional(13.0), color, width.max(40.0));
+    let galley = painter.layout(text.to_owned(), FontId::proportional(BODY), color, width.max(40.0));
     let view = painter.clip_rect().shrink(8.0);
     let wanted = anchor.anchor_size(at, galley.size());
     let corner = wanted.min.clamp(view.min, (view.max - galley.size()).max(view.min));
     let rect = Rect::from_min_size(corner, galley.size());
-    painter.rect_filled(rect.expand(4.0), 4.0, visuals.panel_fill.gamma_multiply(0.85));
+    painter.rect_filled(rect.expand(4.0), 4.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     painter.galley(rect.min, galley, color);
 }
 
-/// The colour bar with its title and its values, along the bottom of the view.
+/// Room that the colour bar takes at the bottom of the view, points.
+pub(super) const LEGEND_HEIGHT: f32 = 66.0;
+
+/// The colour bar with its title and round values, at the bottom of the view.
 fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    const BAR: Vec2 = vec2(240.0, 12.0);
-    const STEPS: u32 = 4;
+    const BAR: Vec2 = vec2(240.0, 10.0);
+    const MOST_TICKS: u32 = 5;
     const STRIPS: u32 = 128;
-    if rect.width() < 460.0 || rect.height() < 120.0 {
+    if rect.width() < 420.0 || rect.height() < 120.0 {
         return;
     }
     let field = overlay.options.field;
     let [low, high] = overlay.color_range;
-    let font = FontId::proportional(12.0);
-    let unit = if field.unit().is_empty() { String::new() } else { format!(" [{}]", field.unit()) };
+    let font = FontId::proportional(SMALL);
+    let (power, symbol) = prefix(&[low, high], field.unit());
+    let unit = if field.unit().is_empty() { String::new() } else { format!(", {symbol}{}", field.unit()) };
     let range = if overlay.options.fixed_range.is_some() { ", fixed range" } else { "" };
     let title = painter.layout_no_wrap(format!("{}{unit}{range}", field.name()), font.clone(), palette.text);
-    let corner = rect.right_bottom() - vec2(BAR.x + 44.0, 58.0);
-    let frame = Rect::from_min_size(corner - vec2(28.0, 4.0), vec2(BAR.x + 60.0, 56.0));
-    painter.rect_filled(frame, 5.0, visuals.panel_fill.gamma_multiply(0.85));
+    let corner = rect.right_bottom() - vec2(BAR.x + 32.0, LEGEND_HEIGHT - 6.0);
+    let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(BAR.x + 34.0, 56.0));
+    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     painter.galley(corner, title, palette.text);
-    let bar = Rect::from_min_size(corner + vec2(0.0, 18.0), BAR);
+    let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), BAR);
+    let map = palette.map(field);
     let mut mesh = egui::Mesh::default();
     for i in 0..STRIPS {
         let at = |i: u32| bar.left() + bar.width() * i as f32 / STRIPS as f32;
-        let [r, g, b] = colormap::color((f64::from(i) + 0.5) / f64::from(STRIPS));
+        let [r, g, b] = map.color((f64::from(i) + 0.5) / f64::from(STRIPS));
         let strip = Rect::from_min_max(pos2(at(i), bar.top()), pos2(at(i + 1), bar.bottom()));
         mesh.add_colored_rect(strip, Color32::from_rgb(r, g, b));
     }
     painter.add(mesh);
-    for i in 0..=STEPS {
-        let t = f64::from(i) / f64::from(STEPS);
-        let value = format::short(low * (1.0 - t) + high * t);
-        let x = bar.left() + bar.width() * t as f32;
+    for value in ticks(low, high, MOST_TICKS) {
+        let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
         painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
-        painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, value, font.clone(), palette.text);
+        let words = engineering(value / 10f64.powi(power), "");
+        painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, words, font.clone(), palette.text);
     }
 }
 
-/// Which line is what.
+/// How a solution is drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum Mark {
+    Line,
+    Dashes,
+    Outline,
+}
+
+/// Which line is what, and how far off each is.
 fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    let own = match overlay.scene.analysis {
-        Analysis::Static => overlay.scene.solver.method.id(),
-        Analysis::Dynamic => overlay.scene.dynamics.integrator.id(),
+    const MARK: f32 = 18.0;
+    const GAP: f32 = 16.0;
+    const ROW: f32 = 20.0;
+    let with_error = |word: &str, error: Option<f64>| match error {
+        Some(error) => format!("{word}  {}", percent(error)),
+        None => word.to_owned(),
     };
-    let mut lines = vec![(palette.outline, own)];
+    let own = match overlay.scene.analysis {
+        Analysis::Static => with_error(overlay.scene.solver.method.id(), overlay.errors.own),
+        Analysis::Dynamic => overlay.scene.dynamics.integrator.id().to_owned(),
+    };
+    let mut lines = vec![(own_color(overlay, palette), Mark::Line, own)];
     for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
-        lines.push((integrator_color(companion.integrator, visuals.dark_mode), companion.integrator.id()));
+        lines.push((palette.integrator(companion.integrator), Mark::Line, companion.integrator.id().to_owned()));
     }
     if overlay.ghost.is_some() {
-        lines.push((palette.ghost, "linear"));
+        let words = with_error(MethodKind::Linear.id(), overlay.errors.linear);
+        lines.push((palette.method(MethodKind::Linear), Mark::Line, words));
+    }
+    if !overlay.exact.is_empty() {
+        lines.push((palette.exact, Mark::Dashes, "exact".to_owned()));
     }
     if overlay.options.rest_outline {
-        lines.push((palette.rest, "at rest"));
+        lines.push((palette.rest, Mark::Outline, "rest".to_owned()));
     }
-    let font = FontId::proportional(12.0);
-    let galleys: Vec<_> = lines
-        .iter()
-        .map(|(color, word)| (*color, painter.layout_no_wrap((*word).to_owned(), font.clone(), palette.text)))
+    let font = FontId::proportional(BODY);
+    // In rows: a narrow view has several.
+    let most = (rect.width() - 32.0).max(1.0);
+    let (mut at, mut widest) = (vec2(0.0, 0.0), 0.0_f32);
+    let placed: Vec<_> = lines
+        .into_iter()
+        .map(|(color, mark, words)| {
+            let galley = painter.layout_no_wrap(words, font.clone(), palette.text);
+            let width = MARK + 6.0 + galley.size().x;
+            if at.x > 0.0 && at.x + width > most {
+                at = vec2(0.0, at.y + ROW);
+            }
+            let place = at;
+            at.x += width + GAP;
+            widest = widest.max(place.x + width);
+            (color, mark, galley, place)
+        })
         .collect();
-    let width: f32 = galleys.iter().map(|(_, g)| g.size().x + 38.0).sum();
-    let frame = Rect::from_min_size(rect.left_top() + vec2(12.0, 12.0), vec2(width - 6.0, 18.0));
-    painter.rect_filled(frame.expand(4.0), 5.0, visuals.panel_fill.gamma_multiply(0.85));
-    let mut x = frame.left() + 2.0;
-    for (color, galley) in galleys {
-        let y = frame.center().y;
-        painter.line_segment([pos2(x, y), pos2(x + 18.0, y)], Stroke::new(2.5, color));
-        let advance = galley.size().x + 38.0;
-        painter.galley(pos2(x + 24.0, y - galley.size().y * 0.5), galley, palette.text);
-        x += advance;
+    let corner = rect.left_top() + vec2(16.0, 12.0);
+    let frame = Rect::from_min_size(corner, vec2(widest, at.y + ROW));
+    painter.rect_filled(frame.expand2(vec2(8.0, 4.0)), 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    for (color, mark, galley, place) in placed {
+        let left = corner + place + vec2(0.0, 0.5 * ROW);
+        let stroke = Stroke::new(2.5, color);
+        match mark {
+            Mark::Line => _ = painter.line_segment([left, left + vec2(MARK, 0.0)], stroke),
+            Mark::Dashes => {
+                for x in [0.0, 7.0, 14.0] {
+                    painter.line_segment([left + vec2(x, 0.0), left + vec2((x + 4.5).min(MARK), 0.0)], stroke);
+                }
+            }
+            Mark::Outline => {
+                let swatch = Rect::from_min_max(left - vec2(0.0, 4.0), left + vec2(MARK, 4.0));
+                painter.rect_stroke(swatch, 0.0, Stroke::new(1.0, color), egui::StrokeKind::Inside);
+            }
+        }
+        painter.galley(left + vec2(MARK + 6.0, -0.5 * galley.size().y), galley, palette.text);
     }
 }
 
@@ -464,7 +537,7 @@ fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) 
     if rect.width() < 220.0 || rect.height() < 80.0 {
         return;
     }
-    let length = round_length(110.0 / camera.scale);
+    let length = round_down(110.0 / camera.scale);
     let bar = (length * camera.scale) as f32;
     let left = rect.left_bottom() + vec2(18.0, -20.0);
     let stroke = Stroke::new(1.5, palette.text);
@@ -473,19 +546,7 @@ fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) 
         painter.line_segment([left + vec2(x, -4.0), left + vec2(x, 4.0)], stroke);
     }
     let middle = left + vec2(bar * 0.5, -6.0);
-    painter.text(
-        middle,
-        Align2::CENTER_BOTTOM,
-        format!("{} m", format::short(length)),
-        FontId::proportional(12.0),
-        palette.text,
-    );
-}
-
-/// The largest of 1, 2, 5 · 10ⁿ not above `length`.
-fn round_length(length: f64) -> f64 {
-    let power = 10f64.powf(length.log10().floor());
-    [5.0, 2.0].into_iter().map(|m| m * power).find(|&l| l <= length).unwrap_or(power)
+    painter.text(middle, Align2::CENTER_BOTTOM, engineering(length, "m"), FontId::proportional(SMALL), palette.text);
 }
 
 #[cfg(test)]
@@ -499,12 +560,5 @@ mod tests {
         assert_eq!(clip([-20.0, 6.0], [20.0, 6.0], [10.0, 5.0]), None);
         let [a, b] = clip([0.0, 0.0], [1e12, 1e12], [10.0, 5.0]).unwrap();
         assert_eq!((a, b[0].round(), b[1].round()), ([0.0, 0.0], 5.0, 5.0));
-    }
-
-    #[test]
-    fn bar_lengths_are_round() {
-        for (length, round) in [(1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (0.07, 0.05), (499.0, 200.0)] {
-            assert!((round_length(length) - round).abs() < 1e-12 * round, "{length}");
-        }
     }
 }

@@ -1,44 +1,120 @@
-//! The load–deflection plot: linear theory, the exact beam, every method's point, and where linear theory leaves.
+//! The load–deflection plot. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory
+//! leaves. Of any other scene: its load path, what is unstable dashed.
 
-use egui::{Color32, Ui};
-use egui_plot::{Corner, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
+use egui::Ui;
+use egui_plot::{
+    Corner, GridInput, GridMark, HoverPosition, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine,
+};
 
-use crate::scene::MethodKind;
+use super::palette::Palette;
+use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
-use crate::study::LoadCurve;
+use crate::study::path_chart::{Ordinate, Piece, drawn};
+use crate::study::{LoadCurve, LoadPath};
+use crate::words::{engineering, three_digits, ticks};
 
-/// The colour of a method.
-pub(super) fn method_color(method: MethodKind, dark: bool) -> Color32 {
-    let [r, g, b] = method.entry().color(dark);
-    Color32::from_rgb(r, g, b)
+/// What is known of a scene's load and deflection.
+#[derive(Debug)]
+pub(super) enum Curve {
+    /// Of a cantilever.
+    Beam(LoadCurve),
+    /// Of any scene at rest; of the scene with it.
+    Path(Box<(LoadPath, Scene)>),
 }
 
-/// Shows the plot, or says why there is none: not yet, or not at all.
-pub(super) fn show(ui: &mut Ui, curve: Option<&LoadCurve>, looked_for: bool) {
-    let Some(curve) = curve else {
-        ui.centered_and_justified(|ui| {
-            ui.weak(if looked_for {
-                "No load curve: it needs a beam clamped left, loaded on its right edge or by its weight."
-            } else {
-                "Looking for the load curve."
-            });
-        });
-        return;
-    };
-    let text = ui.visuals().text_color();
-    let dark = ui.visuals().dark_mode;
-    let linear = method_color(MethodKind::Linear, dark);
-    let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {
-        curve.samples.iter().map(|s| [100.0 * s.factor, value(s)]).collect()
-    };
-    Plot::new("load curve")
-        .legend(Legend::default().position(Corner::RightBottom).follow_insertion_order(true))
-        .x_axis_label("load, % of the scene's")
-        .y_axis_label("tip displacement, m")
+impl Curve {
+    pub(super) fn of(scene: &Scene) -> Option<Self> {
+        let path = || Some(Self::Path(Box::new((LoadPath::of(scene)?, scene.clone()))));
+        LoadCurve::new(scene).map(Self::Beam).or_else(path)
+    }
+}
+
+/// A plot that stands still, with round ticks and values in engineering units.
+pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
+    /// Grid lines so far apart, points, are drawn in full, and so are their numbers.
+    const CLEAR: f32 = 40.0;
+    /// A value between ticks, to three digits.
+    fn value(value: f64, unit: &str) -> String {
+        engineering(three_digits(value), unit)
+    }
+    let ((x_name, x_unit), (y_name, y_unit)) = (x, y);
+    Plot::new(id.to_owned())
+        .x_axis_label(x_name.to_owned())
+        .y_axis_label(y_name.to_owned())
+        .x_grid_spacer(round_marks)
+        .y_grid_spacer(round_marks)
+        .x_axis_formatter(move |mark, _| engineering(mark.value, x_unit))
+        .y_axis_formatter(move |mark, _| engineering(mark.value, y_unit))
+        .label_formatter(move |at| match at {
+            HoverPosition::NearDataPoint { plot_name, position, .. } => {
+                Some(format!("{plot_name}\n{}, {}", value(position.x, x_unit), value(position.y, y_unit)))
+            }
+            HoverPosition::Elsewhere { .. } => None,
+        })
+        .grid_color(palette.line)
+        .grid_spacing(egui::Rangef::new(8.0, CLEAR))
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
         .allow_boxed_zoom(false)
+}
+
+/// Marks 1, 2 or 5 · 10ⁿ apart.
+fn round_marks(input: GridInput) -> Vec<GridMark> {
+    const MOST: u32 = 9;
+    let (low, high) = input.bounds;
+    let ticks = ticks(low, high, MOST);
+    let step_size = ticks.windows(2).next().map_or(high - low, |pair| pair[1] - pair[0]);
+    ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
+}
+
+/// Shows the plot, or says why there is none: not yet, or not at all.
+pub(super) fn show(ui: &mut Ui, curve: Option<&Curve>, looked_for: bool) {
+    match curve {
+        Some(Curve::Beam(curve)) => beam(ui, curve),
+        Some(Curve::Path(of)) => path(ui, &of.0, &of.1),
+        None => {
+            ui.centered_and_justified(|ui| {
+                ui.weak(if looked_for {
+                    "No load curve: linear theory knows one straight line only."
+                } else {
+                    "The load curve comes when the body has come to rest."
+                });
+            });
+        }
+    }
+}
+
+fn path(ui: &mut Ui, path: &LoadPath, scene: &Scene) {
+    let palette = Palette::new(ui.visuals());
+    let drawn = drawn(path, scene, &Ordinate::Usual);
+    let [stable, unstable] = [MethodKind::Newton, MethodKind::Warped].map(|method| palette.method(method));
+    // Where the curve is not: a load's begins low, that of a support that moves falls again.
+    let corner = if path.driven.is_some() { Corner::RightTop } else { Corner::LeftTop };
+    still(&palette, "load path", (&drawn.x_label, ""), (&drawn.y_label, ""))
+        .legend(Legend::default().position(corner).follow_insertion_order(true))
+        .show(ui, |plot| {
+            for (points, piece) in drawn.pieces(path) {
+                let (name, color, style) = match piece {
+                    Piece::Stable => ("stable", stable, LineStyle::Solid),
+                    Piece::Unstable => ("unstable under force control", unstable, LineStyle::dashed_loose()),
+                    Piece::Jump => ("it jumps", unstable, LineStyle::dotted_dense()),
+                };
+                plot.line(Line::new(name, PlotPoints::from(points)).color(color).width(2.0).style(style));
+            }
+            let at: Vec<[f64; 2]> = drawn.points.last().map(|p| p.0).into_iter().collect();
+            plot.points(Points::new("the scene", at).color(palette.text).radius(4.0));
+        });
+}
+
+fn beam(ui: &mut Ui, curve: &LoadCurve) {
+    let palette = Palette::new(ui.visuals());
+    let linear = palette.method(MethodKind::Linear);
+    let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {
+        curve.samples.iter().map(|s| [100.0 * s.factor, value(s)]).collect()
+    };
+    still(&palette, "load curve", ("load, of the scene's", "%"), ("tip displacement", "m"))
+        .legend(Legend::default().position(Corner::RightBottom).follow_insertion_order(true))
         .show(ui, |plot| {
             let exact = samples(|s| s.truth.norm());
             let top = exact.iter().map(|p| p[1]).fold(0.0, f64::max);
@@ -48,7 +124,7 @@ pub(super) fn show(ui: &mut Ui, curve: Option<&LoadCurve>, looked_for: bool) {
                 .take_while(|p| p[1] <= 1.35 * top.max(f64::MIN_POSITIVE))
                 .collect();
             plot.line(Line::new("linear theory", PlotPoints::from(straight)).color(linear).width(1.5));
-            plot.line(Line::new("exact beam", PlotPoints::from(exact)).color(text).width(2.0));
+            plot.line(Line::new("exact beam", PlotPoints::from(exact)).color(palette.exact).width(2.0));
             for departure in &curve.departures {
                 let name =
                     format!("linear off by {} %: {:.1}°", departure.percent, departure.at.rotation.to_degrees().abs());
@@ -68,7 +144,7 @@ pub(super) fn show(ui: &mut Ui, curve: Option<&LoadCurve>, looked_for: bool) {
                 let at = if off { Vec::new() } else { vec![[100.0, point.tip.norm()]] };
                 let shape = if point.status == Status::Converged { MarkerShape::Circle } else { MarkerShape::Cross };
                 let points = Points::new(format!("{}{word}", point.method.id()), at);
-                plot.points(points.color(method_color(point.method, dark)).radius(5.0).shape(shape));
+                plot.points(points.color(palette.method(point.method)).radius(5.0).shape(shape));
             }
         });
 }

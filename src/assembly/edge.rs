@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use crate::element::side_weights;
 use crate::mesh::Mesh;
 use crate::scene::Invalid;
+use crate::words::{engineering, number};
 
 /// Nodes with a weight each.
 pub type NodeWeights = Vec<(u32, f64)>;
@@ -117,6 +118,34 @@ fn arms(mesh: &Mesh, weights: &[(u32, f64)]) -> Option<(NodeWeights, Vector2<f64
     let arms: NodeWeights = weights.iter().map(|&(node, weight)| (node, weight * distance(node) / second)).collect();
     let direction: Vector2<f64> = arms.iter().map(|&(node, c)| mesh.node(node) * c).sum();
     direction.iter().all(|v| v.is_finite()).then_some((arms, direction))
+}
+
+/// The node nearest to a point that the scene's table `key` names; refused where it is farther away than one of its elements
+/// is large.
+pub(super) fn node_at(mesh: &Mesh, at: [f64; 2], key: &str) -> Result<u32, Invalid> {
+    let node = mesh.nearest_node(at.into());
+    let nearest = mesh.node(node);
+    let distance = (nearest - Vector2::from(at)).norm();
+    let sizes = mesh.elements().filter(|nodes| nodes.contains(&node)).map(|nodes| {
+        let from_node = nodes.iter().map(|&n| (mesh.node(n) - nearest).norm());
+        from_node.fold(0.0, f64::max)
+    });
+    let size = sizes.fold(0.0, f64::max);
+    // Written so that NaN is refused too. Where elements differ much in size, the nearest node may not be the element's own.
+    if distance <= size || mesh.locate(at.into()).is_some() {
+        return Ok(node);
+    }
+    let [x, y] = at;
+    let message = format!(
+        "expected a point of the body, or one within an element of it ({}); ({}, {}) is {} from the nearest node, at ({}, {})",
+        engineering(size, "m"),
+        number(x),
+        number(y),
+        engineering(distance, "m"),
+        number(nearest.x),
+        number(nearest.y)
+    );
+    Err(Invalid::new(format!("{key}.at"), message))
 }
 
 /// The complaint of a scene's table `key` that names an edge that is not there.

@@ -5,6 +5,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::edge::node_at;
 use super::{Edge, Kinematics, Matrix, System};
 use crate::scene::{Invalid, Load, Material, Place, Pulse};
 use crate::state::State;
@@ -52,7 +53,7 @@ impl Loads {
             let key = format!("load.{i}");
             let (forces, pulse): (NodalForces, _) = match load {
                 Load::Force { place: Place::At(at), force, pulse } => {
-                    (vec![(system.mesh().nearest_node((*at).into()), Vector2::from(*force))], pulse)
+                    (vec![(node_at(system.mesh(), *at, &key)?, Vector2::from(*force))], pulse)
                 }
                 Load::Force { place: Place::Edge(name), force, pulse } => {
                     let weights = system.edge(name, &key)?.1.weights();

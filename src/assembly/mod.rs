@@ -24,4 +24,6 @@ pub use matrix::Matrix;
 pub use pattern::Pattern;
 pub use probe::NodalProbe;
 pub use problem::{Change, Forces, Problem};
+pub(crate) use supports::LARGEST_TURN;
+pub use supports::{NodalSupport, Supports};
 pub use system::{Kinematics, System, SystemError};

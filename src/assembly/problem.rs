@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::{Hand, Kinematics, Loads, Matrix, NodalProbe, System, SystemError};
-use crate::element::{Elements, MatrixSum, Tangent};
+use super::{Hand, Kinematics, Loads, Matrix, NodalProbe, Supports, System, SystemError};
+use crate::element::{Elements, MatrixSum, Rotations, Tangent};
 use crate::material::Lame;
-use crate::scene::{Load, Material, Scene};
+use crate::rotation::Rotation;
+use crate::scene::{Load, Material, Scene, Support};
 use crate::state::State;
 
 /// The discrete problem of a scene.
@@ -18,6 +19,8 @@ pub struct Problem {
     /// What the scene says of its loads, to see what an edit changes.
     scene_loads: Vec<Load>,
     loads: Loads,
+    scene_supports: Vec<Support>,
+    supports: Supports,
     probes: Vec<NodalProbe>,
     hand: Option<Hand>,
 }
@@ -25,7 +28,7 @@ pub struct Problem {
 /// What an edit has changed, each more than the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Change {
-    /// At most loads and probes: forces within the body are what they were.
+    /// At most loads, probes and where supports take their places: forces within the body are what they were.
     Loads,
     /// The stiffness too; states are still states of the body.
     Stiffness,
@@ -86,6 +89,8 @@ impl Problem {
             material: scene.material,
             scene_loads: scene.loads.clone(),
             loads: Loads::new(&scene.loads, &scene.material, &system)?,
+            scene_supports: scene.supports.clone(),
+            supports: Supports::new(&scene.supports, &scene.material, &system)?,
             probes: NodalProbe::of(&scene.probes, &system)?,
             system,
             hand: None,
@@ -109,6 +114,11 @@ impl Problem {
         } else {
             Some(Loads::new(&scene.loads, &scene.material, &system)?)
         };
+        let supports = if same_system && self.scene_supports == scene.supports {
+            None
+        } else {
+            Some(Supports::new(&scene.supports, &scene.material, &system)?)
+        };
         let change = if !same_mesh {
             Change::Mesh
         } else if !same_system {
@@ -124,6 +134,12 @@ impl Problem {
         if let Some(loads) = loads {
             self.scene_loads.clone_from(&scene.loads);
             self.loads = loads;
+        }
+        if let Some(supports) = supports {
+            self.scene_supports.clone_from(&scene.supports);
+            self.supports = supports;
+        } else if change == Change::Stiffness {
+            self.supports.set_stiffness(&scene.material, &system);
         }
         self.hand = match change {
             Change::Mesh => None,
@@ -151,6 +167,12 @@ impl Problem {
     #[must_use]
     pub fn loads(&self) -> &Loads {
         &self.loads
+    }
+
+    /// What holds, and where it takes what it holds.
+    #[must_use]
+    pub fn supports(&self) -> &Supports {
+        &self.supports
     }
 
     /// The hand that holds the body, if one does.
@@ -184,7 +206,30 @@ impl Problem {
     /// it vanishes exactly at rest.
     pub fn linearize(&self, state: &State, forces: &mut Forces, tangent: Option<(Tangent, &mut Matrix)>) {
         self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
-            elements.linearize(moduli, &state.displacement, &state.rotations, force, magnitude, matrix);
+            let rotations = Rotations::Given(&state.rotations);
+            elements.linearize(moduli, &state.displacement, rotations, force, magnitude, matrix);
+        });
+    }
+
+    /// [`System::follow`] and [`Self::linearize`] in the same sweep: for a state whose displacement is new.
+    pub fn follow_and_linearize(
+        &self,
+        state: &mut State,
+        kinematics: Kinematics,
+        forces: &mut Forces,
+        tangent: Option<(Tangent, &mut Matrix)>,
+    ) {
+        self.system.turn_edges(state, kinematics);
+        let State { displacement: u, rotations, .. } = state;
+        let rotations = match kinematics {
+            Kinematics::Corotated => Rotations::Follow(rotations),
+            Kinematics::Linear => {
+                rotations.fill(Rotation::IDENTITY);
+                Rotations::Given(rotations)
+            }
+        };
+        self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
+            elements.linearize(moduli, u, rotations, force, magnitude, matrix);
         });
     }
 
@@ -243,7 +288,8 @@ impl Problem {
         }
         let pattern = self.system.pattern();
         let residual = pattern.norm(residual);
-        if residual == 0.0 {
+        let moves = self.supports.move_the_body();
+        if residual == 0.0 || moves && residual <= self.supports.rounding(&self.system, &state.displacement) {
             return 0.0;
         }
         residual / pattern.norm(magnitude).max(pattern.norm(external))

@@ -149,7 +149,9 @@ impl System {
             Origin::Beam(_) | Origin::File(_) => scene.validate()?,
         }
         let couples = || self.moment_edges(scene).iter().all(|edge| self.coupled.contains(edge));
-        if scene.supports == self.supports && couples() {
+        let same_supports = scene.supports.len() == self.supports.len()
+            && scene.supports.iter().zip(&self.supports).all(|(a, b)| a.fixes_as(b));
+        if same_supports && couples() {
             check_held(self.hold, scene.analysis)?;
             return Ok(self.clone());
         }
@@ -259,11 +261,17 @@ impl System {
     /// Sets rotations and turns of edges to those of the displacement. An edge is taken to have turned to the nearest
     /// angle from where it was, so that full turns are kept.
     pub fn follow(&self, state: &mut State, kinematics: Kinematics) {
-        let State { displacement: u, rotations, turns, .. } = state;
+        let State { displacement: u, rotations, .. } = state;
         match kinematics {
             Kinematics::Corotated => self.elements().rotations(u, rotations),
             Kinematics::Linear => rotations.fill(Rotation::IDENTITY),
         }
+        self.turn_edges(state, kinematics);
+    }
+
+    /// Sets turns of edges to those of the displacement.
+    pub(super) fn turn_edges(&self, state: &mut State, kinematics: Kinematics) {
+        let State { displacement: u, turns, .. } = state;
         for (edge, turn) in self.edges().iter().zip(turns).filter(|(edge, _)| edge.is_straight()) {
             *turn = match kinematics {
                 Kinematics::Corotated => edge.turn(u, *turn),

@@ -1,10 +1,11 @@
 //! The commands that need no window.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use super::args::{FolderArgs, SolveArgs, TuneArgs};
+use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::progress::Watch;
 use super::{CliError, NOT_CONVERGED, exit_code, json, named, simulate, text};
 use crate::dynamics::StopReason;
@@ -12,9 +13,10 @@ use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::picture::draw_svg;
 use crate::scene::{self, Analysis, Scene};
 use crate::simulation::{Simulation, Solution, Status};
+use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Demand, Extent, LoadCurve, MotionStudy, Progress, Reference, Study, StudyError, Tuning, extremes, heat_map,
-    motion_heat_map, plot,
+    Demand, Extent, LoadCurve, LoadPath, MotionStudy, Progress, Reference, Scaling, Study, StudyError, Tuning,
+    extremes, heat_map, motion_heat_map, parallel, path_chart, plot,
 };
 use crate::timings::Timings;
 use crate::words::count;
@@ -83,16 +85,23 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
             march(&mut simulation, writer)
         }
     };
+    let certified = Instant::now();
+    let jump = (status == Status::Converged && !no_certificate && !simulation.is_linear())
+        .then(|| LoadPath::jump_before(&scene, simulation.displacement()))
+        .flatten();
+    let certify_path = certified.elapsed();
     // A scene without a truth has a result all the same.
     let sought = Instant::now();
     let truth = if no_truth { None } else { Reference::of(&scene).ok() };
     let truth_time = sought.elapsed();
     let solution = Solution { status, ..simulation.solution() };
-    let spent = Spent { wall: began.elapsed(), set_up, stages: solution.time, truth: truth_time };
+    let mut stages = solution.time;
+    stages.certify += certify_path;
+    let spent = Spent { wall: began.elapsed(), set_up, stages, truth: truth_time };
     text::print(&if json {
-        json::solution(&scene, &solution, truth.as_ref(), &spent)
+        json::solution(&scene, &solution, jump, truth.as_ref(), &spent)
     } else {
-        text::solution(&scene, &solution, truth.as_ref(), &spent)
+        text::solution(&scene, &solution, jump, truth.as_ref(), &spent)
     })?;
     // What could not be written is no reason to keep the result from who waits for it.
     written?;
@@ -125,14 +134,50 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>) -> (Stat
     (status, written)
 }
 
-pub(super) fn curve(source: &scene::Source, out: Option<&Path>) -> Result<ExitCode, CliError> {
-    let (scene, _) = simulate(source)?;
-    let curve = LoadCurve::new(&scene).ok_or_else(|| CliError::NoBeam(named(source)))?;
-    if let Some(path) = out {
-        export::write_text(path, &text::curve_table(&curve))?;
+pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
+    let CurveArgs { scene, out, picture, of } = args;
+    let source = scene::Source::from(scene);
+    let (scene, _) = simulate(&source)?;
+    // What cannot be drawn is said before the work.
+    let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
+    let is_png = |path: &Path| match path.extension().and_then(|e| e.to_str()) {
+        Some("png") => Ok(true),
+        Some("svg") => Ok(false),
+        _ => Err(CliError::NoPictureFormat(path.to_owned())),
+    };
+    let is_png = picture.as_deref().map(is_png).transpose()?;
+    let beam = LoadCurve::new(&scene);
+    let path = if beam.is_none() || picture.is_some() { LoadPath::of(&scene) } else { None };
+    let (words, table) = match (&beam, &path) {
+        (Some(curve), _) => (text::curve(&scene, curve), text::curve_table(curve)),
+        (None, Some(path)) => (text::path(&scene, path), text::path_table(&scene, path)),
+        (None, None) => return Err(CliError::NoPath(named(&source))),
+    };
+    if let Some(out) = out {
+        export::write_text(&out, &table)?;
     }
-    text::print(&text::curve(&scene, &curve))?;
-    Ok(ExitCode::SUCCESS)
+    if let (Some(picture), Some(is_png)) = (picture, is_png) {
+        let path = path.as_ref().ok_or_else(|| CliError::NoPath(named(&source)))?;
+        let svg = path_chart::svg(path, &scene, &ordinate);
+        if is_png { draw_svg(&svg)?.write_png(&picture)? } else { export::write_text(&picture, &svg)? }
+    }
+    text::print(&words)?;
+    Ok(if path.is_none_or(|path| path.complete) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
+}
+
+/// What a name on the command line asks to be drawn.
+fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
+    if let Some(i) = scene.probes.iter().position(|p| p.name == name) {
+        return Ok(Ordinate::Probe(i));
+    }
+    let supports = (0..scene.supports.len()).map(|i| format!("support.{i}"));
+    match supports.clone().position(|support| support == name) {
+        Some(i) => Ok(Ordinate::Reaction(i)),
+        None => {
+            let known = scene.probes.iter().map(|p| p.name.clone()).chain(supports).collect();
+            Err(CliError::NoOrdinate { name, known })
+        }
+    }
 }
 
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
@@ -167,6 +212,22 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     write_folder(&out.folder, &texts, "study.svg")?;
     text::print(&summary)?;
     Ok(ended(interrupted, "the study lacks what was not measured yet"))
+}
+
+pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
+    let (scene, _) = simulate(source)?;
+    let watch = Watch::new();
+    let study = Scaling::new(&scene, extent(out), &mut |progress| watch.observe(&progress));
+    drop(watch);
+    let study = match study {
+        Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
+        study => study.map_err(failed(source))?,
+    };
+    let (table, svg, summary) = (study.table(), study.svg(), study.summary());
+    let texts = [("scaling.csv", table.as_str()), ("scaling.svg", &svg), ("scaling.txt", &summary)];
+    write_folder(&out.folder, &texts, "scaling.svg")?;
+    text::print(&summary)?;
+    Ok(ended(study.is_partial, "finer meshes have not been measured"))
 }
 
 /// The exit code of a command that may have been interrupted, and then says what is missing.
@@ -215,19 +276,23 @@ fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) ->
 pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (cases, motion_cases) = (extremes::cases(extent(out)), extremes::motion::cases(extent(out)));
     let all = cases.len() + motion_cases.len();
-    let (mut entries, mut motions) = (Vec::with_capacity(cases.len()), Vec::with_capacity(motion_cases.len()));
     let watch = Watch::new();
-    let show = |done: usize| watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
-    for case in cases.into_iter().take_while(|_| !watch.is_called_off()) {
-        let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
-        entries.push(case.solve().map_err(broken)?);
-        show(entries.len());
-    }
-    for case in motion_cases.into_iter().take_while(|_| !watch.is_called_off()) {
-        let broken = |error| CliError::Simulation { scene: format!("{case:?}"), error };
-        motions.push(case.run().map_err(broken)?);
-        show(entries.len() + motions.len());
-    }
+    let observe = |done: usize| {
+        watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
+        if watch.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let entries = parallel::map(
+        &cases,
+        |case| case.solve().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
+        observe,
+    );
+    let entries: Vec<_> = entries.into_iter().flatten().collect::<Result<_, _>>()?;
+    let motions = parallel::map(
+        &motion_cases,
+        |case| case.run().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
+        |done| observe(cases.len() + done),
+    );
+    let motions: Vec<_> = motions.into_iter().flatten().collect::<Result<_, _>>()?;
     drop(watch);
     let missing = all - entries.len() - motions.len();
     let summary = format!("{}\n{}", extremes::summary(&entries), extremes::motion::summary(&motions));

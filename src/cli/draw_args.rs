@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use thiserror::Error;
 
-use super::args::parse_with_unit;
+use super::args::{NumberError, parse_number};
 use crate::app;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;
-use crate::scene::limits::{DURATION, OutOfRange, PLAYBACK_SPEED};
+use crate::scene::limits::{DURATION, PLAYBACK_SPEED};
 
 /// The picture written where there is no display.
 pub(super) const DEFAULT_PICTURE: &str = "warpbeam.png";
@@ -24,7 +24,7 @@ pub(super) struct ShotArgs {
     /// Its size in pixels, 64x64 to 8192x8192.
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = parse_size)]
     pub size: [u32; 2],
-    /// Only the view, without the panel.
+    /// Only the view, without panel and bars.
     #[arg(long)]
     pub no_panel: bool,
     /// With the load–deflection curve.
@@ -86,12 +86,12 @@ fn parse_integrator(text: &str) -> Result<IntegratorKind, NoIntegrator> {
     INTEGRATORS.iter().find(|entry| entry.id == text).map(|entry| entry.kind).ok_or(NoIntegrator)
 }
 
-fn parse_seconds(text: &str) -> Result<f64, OutOfRange> {
-    parse_with_unit(text, DURATION, &[("s", 1.0), ("ms", 1e-3)])
+fn parse_seconds(text: &str) -> Result<f64, NumberError> {
+    parse_number(text, DURATION)
 }
 
-fn parse_speed(text: &str) -> Result<f64, OutOfRange> {
-    parse_with_unit(text, PLAYBACK_SPEED, &[])
+fn parse_speed(text: &str) -> Result<f64, NumberError> {
+    parse_number(text, PLAYBACK_SPEED)
 }
 
 /// A size that is none, or is out of range.

@@ -6,14 +6,21 @@ use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
 use super::commands::Spent;
-use crate::scene::Scene;
-use crate::simulation::{MotionResult, ProbeResult, Solution};
-use crate::study::{ProbeTruth, Reference};
+use crate::scene::{Place, Scene, Support};
+use crate::simulation::{MotionResult, ProbeResult, Solution, SupportReaction};
+use crate::study::{Jump, ProbeTruth, Reference};
 
 /// A result.
-pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>, spent: &Spent) -> String {
+pub(super) fn solution(
+    scene: &Scene,
+    solution: &Solution,
+    jump: Option<Option<Jump>>,
+    truth: Option<&Reference>,
+    spent: &Spent,
+) -> String {
     let truths = truth.map_or(&[][..], Reference::probes);
     let probes: Vec<Value> = solution.probes.iter().enumerate().map(|(i, p)| probe(p, truths.get(i))).collect();
+    let supports: Vec<Value> = scene.supports.iter().zip(&solution.supports).map(|(s, r)| support(s, r)).collect();
     let certificate = solution.certificate.unwrap_or_default();
     let deformation = &solution.deformation;
     let parts = spent.parts().map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
@@ -28,6 +35,8 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         "status": solution.status.id(),
         "reason": solution.status.failure(),
         "stable": certificate.stable,
+        "jumped": jump.map(|jump| jump.is_some()),
+        "jumped_at": jump.flatten().map(|jump| number(jump.factor)),
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
         "residual": number(solution.residual),
@@ -39,11 +48,13 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         "energy": {
             "elastic": number(solution.energy.elastic),
             "external": number(solution.energy.external),
+            "supports": number(solution.energy.supports),
             // A body at rest has neither.
             "kinetic": solution.motion.map(|m| number(m.ledger.kinetic)),
             "dissipated": solution.motion.map(|m| number(m.ledger.dissipated)),
         },
         "reaction": { "force": pair(solution.reaction.force), "moment": number(solution.reaction.moment) },
+        "supports": supports,
         "time_us": time_us,
     });
     // Only where it decided: everyone else gets the documented object and nothing more.
@@ -96,6 +107,20 @@ fn probe(result: &ProbeResult, truth: Option<&ProbeTruth>) -> Value {
         "truth_source": truth.map(|t| t.source.to_string()),
         "error_percent": truth.and_then(|t| t.error_percent(result)).map(number),
     })
+}
+
+/// A support and its reaction; the moment is about the middle of its edge.
+fn support(support: &Support, reaction: &SupportReaction) -> Value {
+    let mut object = Map::new();
+    match &support.place {
+        Place::Edge(edge) => object.insert("edge".to_owned(), json!(edge)),
+        Place::At(at) => object.insert("at".to_owned(), json!(at)),
+    };
+    object.insert("displacement".to_owned(), pair(support.displacement.into()));
+    object.insert("turn".to_owned(), number(support.turn));
+    object.insert("force".to_owned(), pair(reaction.force));
+    object.insert("moment".to_owned(), number(reaction.moment));
+    Value::Object(object)
 }
 
 fn pair(v: Vector2<f64>) -> Value {

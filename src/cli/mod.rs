@@ -48,9 +48,13 @@ enum CliError {
     #[error("{scene}: {error}")]
     Study { scene: String, error: StudyError },
     #[error(
-        "{0}: expected a beam clamped left and loaded on its right edge or by its weight; no exact beam is known for this scene"
+        "{0}: expected a scene at rest with a method other than linear: a load path is one of equilibria under finite rotations"
     )]
-    NoBeam(String),
+    NoPath(String),
+    #[error("--of {name}: expected one of {}", known.join(", "))]
+    NoOrdinate { name: String, known: Vec<String> },
+    #[error("{}: expected a name that ends in .svg or .png", .0.display())]
+    NoPictureFormat(std::path::PathBuf),
     #[error("the tuned scene cannot be written as TOML: {0}")]
     Toml(#[from] toml::ser::Error),
     #[error("standard output: {0}")]
@@ -88,8 +92,9 @@ pub fn main() -> ExitCode {
         Some(Command::Run { scene, output }) => window::run(scene.into(), &output),
         Some(Command::Scenes) => text::print(&text::scenes()).map(|()| ExitCode::SUCCESS),
         Some(Command::Solve(args)) => commands::solve(args),
-        Some(Command::Curve { scene, out }) => commands::curve(&scene.into(), out.as_deref()),
-        Some(Command::Study { scene, out }) => commands::study(&scene.into(), &out),
+        Some(Command::Curve(args)) => commands::curve(args),
+        Some(Command::Study { scene, out, scaling: false }) => commands::study(&scene.into(), &out),
+        Some(Command::Study { scene, out, scaling: true }) => commands::scaling(&scene.into(), &out),
         Some(Command::Tune(args)) => commands::tune(args),
         Some(Command::Extremes { out }) => commands::extremes(&out),
         #[cfg(feature = "app")]

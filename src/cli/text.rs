@@ -8,9 +8,9 @@ use nalgebra::Vector2;
 use super::CliError;
 use super::commands::Spent;
 use crate::method::{Certificate, rho_words};
-use crate::scene::{Analysis, MethodKind, Scene, registry};
+use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
-use crate::study::{LoadCurve, Reference};
+use crate::study::{Jump, LoadCurve, LoadPath, PathState, Reference, support_name};
 use crate::words::{count, engineering, engineering_pair, prefix};
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
@@ -35,7 +35,13 @@ pub(super) fn scenes() -> String {
 }
 
 /// A result.
-pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Reference>, spent: &Spent) -> String {
+pub(super) fn solution(
+    scene: &Scene,
+    solution: &Solution,
+    jump: Option<Option<Jump>>,
+    truth: Option<&Reference>,
+    spent: &Spent,
+) -> String {
     let mut text = format!(
         "{}: element {}, {}, {} unknowns\n",
         scene.name,
@@ -62,6 +68,9 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
     };
     if let Some(reason) = solution.status.failure() {
         let _ = writeln!(text, "  {reason}");
+    }
+    if let Some(jump) = jump.flatten() {
+        let _ = writeln!(text, "{jump}");
     }
     if let Some(auto) = &solution.auto {
         let _ = writeln!(
@@ -116,12 +125,17 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
         pair(solution.reaction.force, "N"),
         engineering(solution.reaction.moment, "N m")
     );
-    let _ = writeln!(
+    text.push_str(&reactions(scene, solution));
+    let _ = write!(
         text,
         "elastic energy {}, work of the loads {}",
         joules(solution.energy.elastic),
         joules(solution.energy.external)
     );
+    text.push_str(&match moved(scene) {
+        true => format!(", of the moved supports {}\n", joules(solution.energy.supports)),
+        false => "\n".to_owned(),
+    });
     if let Some(motion) = &solution.motion {
         text.push_str(&books(motion));
     }
@@ -131,6 +145,33 @@ pub(super) fn solution(scene: &Scene, solution: &Solution, truth: Option<&Refere
     let shown: Vec<String> =
         shown.map(|(name, time)| format!("{} {}", name.replace('_', " "), seconds(*time))).collect();
     let _ = writeln!(text, "time {}: {}", seconds(spent.wall()), shown.join(", "));
+    text
+}
+
+fn moved(scene: &Scene) -> bool {
+    scene.supports.iter().any(Support::moves)
+}
+
+/// The reaction of each support, where there are several or one moves.
+fn reactions(scene: &Scene, solution: &Solution) -> String {
+    let mut text = String::new();
+    if solution.supports.len() < 2 && !moved(scene) {
+        return text;
+    }
+    for (support, reaction) in scene.supports.iter().zip(&solution.supports) {
+        let _ = write!(text, "  support {}", support.place);
+        if support.displacement != [0.0; 2] {
+            let _ = write!(text, ", moved by {}", engineering_pair(support.displacement, "m"));
+        }
+        if support.turn != 0.0 {
+            let _ = write!(text, ", turned by {}", engineering(support.turn.to_degrees(), "°"));
+        }
+        let _ = write!(text, ": reaction {}", pair(reaction.force, "N"));
+        if matches!(support.place, Place::Edge(_)) {
+            let _ = write!(text, ", moment about its middle {}", engineering(reaction.moment, "N m"));
+        }
+        text.push('\n');
+    }
     text
 }
 
@@ -237,6 +278,86 @@ pub(super) fn curve_table(curve: &LoadCurve) -> String {
             s.rotation.to_degrees(),
             s.strain
         );
+    }
+    text
+}
+
+/// A load path for people: where it turns round, and where it jumps.
+pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
+    let mut text = format!("{}: load path, {}\n\n", path.scene, count(path.states.len() as u64, "equilibrium state"));
+    let name = path.driven.map(|i| support_name(scene, i));
+    let probe = scene.probes.first().map(|p| p.name.as_str());
+    let _ = match &name {
+        Some(name) => write!(text, "   load   way of {name:<12} its reaction   "),
+        None => write!(text, "   load   "),
+    };
+    let _ = writeln!(text, "{}", probe.map_or_else(String::new, |probe| format!("displacement of {probe}")));
+    let shown = (path.states.len() / 12).max(1);
+    for state in path.states.iter().step_by(shown) {
+        let _ = write!(text, "{:5.1} %  ", 100.0 * state.factor);
+        if let Some(words) = driven_words(scene, path, state) {
+            let _ = write!(text, "{:<19} {:<15}", words[0], words[1]);
+        }
+        if let Some(u) = state.probes.first() {
+            let _ = write!(text, "{:<24}", pair(*u, "m"));
+        }
+        let _ = writeln!(text, "{}", if state.stable == Some(false) { "unstable under force control" } else { "" });
+    }
+    text.push('\n');
+    for pair in path.states.windows(2) {
+        let (at, word) = match [pair[0].stable, pair[1].stable] {
+            [Some(true), Some(false)] => (&pair[0], "the limit load: beyond, it is unstable under force control"),
+            [Some(false), Some(true)] => (&pair[1], "stable under force control again"),
+            _ => continue,
+        };
+        if let Some([way, force]) = driven_words(scene, path, at) {
+            let _ = writeln!(text, "{way}, {force}: {word}");
+        }
+    }
+    if let Some(jump) = path.jump {
+        let _ = writeln!(text, "{jump}");
+    }
+    if !path.complete {
+        let _ = writeln!(text, "the path was not followed to its end");
+    }
+    text
+}
+
+/// The way of the support that moves, and its reaction along it.
+fn driven_words(scene: &Scene, path: &LoadPath, state: &PathState) -> Option<[String; 2]> {
+    let [way, force] = path.driven_pair(scene, state)?;
+    let turns = scene.supports.get(path.driven?)?.displacement == [0.0; 2];
+    Some(match turns {
+        true => [engineering(way.to_degrees(), "°"), engineering(force, "N m")],
+        false => [engineering(way, "m"), engineering(force, "N")],
+    })
+}
+
+/// A load path as CSV.
+pub(super) fn path_table(scene: &Scene, path: &LoadPath) -> String {
+    let mut text = String::from("load_factor");
+    for probe in &scene.probes {
+        let _ = write!(text, ",{0}_u_x,{0}_u_y", probe.name);
+    }
+    for i in 0..scene.supports.len() {
+        let name = support_name(scene, i);
+        let _ = write!(
+            text,
+            ",{name}_displacement_x,{name}_displacement_y,{name}_turn,{name}_force_x,{name}_force_y,{name}_moment"
+        );
+    }
+    text.push_str(",stable_under_force\n");
+    for state in &path.states {
+        let _ = write!(text, "{}", state.factor);
+        for u in &state.probes {
+            let _ = write!(text, ",{},{}", u.x, u.y);
+        }
+        for (support, reaction) in scene.supports.iter().zip(&state.reactions) {
+            let [x, y] = support.displacement.map(|u| u * state.factor);
+            let turn = support.turn * state.factor;
+            let _ = write!(text, ",{x},{y},{turn},{},{},{}", reaction.force.x, reaction.force.y, reaction.moment);
+        }
+        let _ = writeln!(text, ",{}", state.stable.map_or_else(String::new, |stable| stable.to_string()));
     }
     text
 }

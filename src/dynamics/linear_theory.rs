@@ -108,18 +108,15 @@ impl LinearTheory {
             Some(scratch) => scratch,
             None => self.scratch.insert(Box::new(Scratch::new(problem)?)),
         };
-        let system = problem.system();
         if !self.in_use {
             scratch.seen.copy_from(start);
-            system.follow(&mut scratch.seen, Kinematics::Corotated);
-            problem.linearize(&scratch.seen, &mut scratch.forces, None);
+            problem.follow_and_linearize(&mut scratch.seen, Kinematics::Corotated, &mut scratch.forces, None);
             scratch.before.copy_from_slice(&scratch.forces.internal);
             self.checked = None;
         }
         let Scratch { seen, way, forces, before, .. } = &mut **scratch;
         seen.copy_from(end);
-        system.follow(seen, Kinematics::Corotated);
-        problem.linearize(seen, forces, None);
+        problem.follow_and_linearize(seen, Kinematics::Corotated, forces, None);
         combine(&mut way.displacement, [(1.0, &end.displacement), (-1.0, &start.displacement)]);
         let (stored, stiffness) = (problem.elastic_energy(end), 2.0 * problem.elastic_energy(way));
         let corotated = dot(&way.displacement, &forces.internal) - dot(&way.displacement, before);

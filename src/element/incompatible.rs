@@ -4,9 +4,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{Matrix2, Matrix4, Matrix4x2, Vector2};
 
-use super::isoparametric::{SMALLEST_STRETCH_TRACE, gather, scatter};
+use super::isoparametric::{SMALLEST_STRETCH_TRACE, gather};
+use super::matrix::ElementMatrix;
 use super::{
-    DiscreteGradient, ElementType, Elements, MatrixSum, QuadraturePoint, StrainRate, StrainVisitor, Tangent,
+    DiscreteGradient, ElementType, Elements, MatrixSum, QuadraturePoint, Rotations, StrainRate, StrainVisitor, Tangent,
     warped_strain,
 };
 use crate::material::Lame;
@@ -145,13 +146,10 @@ impl Condensed {
         let mut stiffness = Vec::with_capacity(points.len());
         let mut modes = Vec::with_capacity(points.len());
         for points in points {
-            // Stiffness of ξη and the two modes, by 2 × 2 blocks.
-            let mut blocks = [[Matrix2::zeros(); 3]; 3];
-            for point in points {
-                let add = |a: usize, b: usize, k: [f64; 4]| blocks[a][b] += Matrix2::from_row_slice(&k);
-                point.tangent_blocks(moduli, Rotation::IDENTITY, &Matrix2::zeros(), Tangent::WARPED, add);
-            }
-            let [[twist, ..], [first, inner, _], [second, cross, last]] = blocks;
+            // Stiffness of ξη (0) and the two modes (1, 2).
+            let block = |a, b| points.iter().map(|p| p.stiffness_block(moduli, a, b)).sum::<Matrix2<f64>>();
+            let (twist, inner, cross, last) = (block(0, 0), block(1, 1), block(2, 1), block(2, 2));
+            let (first, second) = (block(1, 0), block(2, 0));
             let mut own = Matrix4::zeros();
             own.fixed_view_mut::<2, 2>(0, 0).copy_from(&inner);
             own.fixed_view_mut::<2, 2>(2, 0).copy_from(&cross);
@@ -204,7 +202,7 @@ impl Twisted {
 /// s² = |z|/|θ_x|.
 #[inline]
 fn add_twist(
-    sum: &mut [[[f64; 4]; 4]; 4],
+    sum: &mut ElementMatrix<4>,
     quad: &Quad,
     k: &Matrix2<f64>,
     r: Rotation,
@@ -214,12 +212,10 @@ fn add_twist(
 ) {
     let turn = r.matrix();
     let turned = rows(&(turn * k * turn.transpose() * tangent.warped));
-    for (a, row) in sum.iter_mut().enumerate() {
-        for (b, block) in row[..=a].iter_mut().enumerate() {
-            let product = quad.gamma[a] * quad.gamma[b];
-            block.iter_mut().zip(turned).for_each(|(sum, k)| *sum += product * k);
-        }
-    }
+    sum.add_blocks(|a, b| {
+        let product = quad.gamma[a] * quad.gamma[b];
+        turned.map(|k| product * k)
+    });
     if tangent.geometric == 0.0 || inverse_trace == 0.0 {
         return;
     }
@@ -241,18 +237,16 @@ fn add_twist(
             *other = *follow * 0.25;
         }
     }
-    for (a, row) in sum.iter_mut().enumerate() {
-        for (b, block) in row[..=a].iter_mut().enumerate() {
-            let (fa, fb, oa, ob) = (follow[a], follow[b], other[a], other[b]);
-            let k = [
-                fa.x * ob.x + oa.x * fb.x,
-                fa.x * ob.y + oa.x * fb.y,
-                fa.y * ob.x + oa.y * fb.x,
-                fa.y * ob.y + oa.y * fb.y,
-            ];
-            block.iter_mut().zip(k).for_each(|(sum, k)| *sum += tangent.geometric * k);
-        }
-    }
+    sum.add_blocks(|a, b| {
+        let (fa, fb, oa, ob) = (follow[a], follow[b], other[a], other[b]);
+        let k = [
+            fa.x * ob.x + oa.x * fb.x,
+            fa.x * ob.y + oa.x * fb.y,
+            fa.y * ob.x + oa.y * fb.x,
+            fa.y * ob.y + oa.y * fb.y,
+        ];
+        k.map(|k| tangent.geometric * k)
+    });
 }
 
 impl IncompatibleQuads {
@@ -359,15 +353,16 @@ impl Elements for IncompatibleQuads {
         &self,
         moduli: Lame,
         u: &[Vector2<f64>],
-        r: &[Rotation],
+        mut rotations: Rotations<'_>,
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
         mut matrix: Option<MatrixSum<'_>>,
     ) {
         let condensed = self.condensed(moduli);
-        for (e, ((nodes, quad, k), &r)) in self.with_twist(&condensed).zip(r).enumerate() {
+        for (e, (nodes, quad, k)) in self.with_twist(&condensed).enumerate() {
             let u = gather(nodes, u);
             let h = quad.centre.displacement_gradient(&u);
+            let r = rotations.see(e, &h);
             let (strain, inverse_trace) = (warped_strain(r, &h), following(r, &h));
             let k = symmetric(k) * moduli.mu;
             let twisted = Twisted::new(&k, back(r, quad.twist(&u)));
@@ -379,10 +374,10 @@ impl Elements for IncompatibleQuads {
             }
             add_forces(nodes, own, force, magnitude);
             if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
-                let mut sum = [[[0.0; 4]; 4]; 4];
-                quad.centre.tangent_blocks(moduli, r, &strain, *tangent, |a, b, k| sum[a][b] = k);
+                let mut sum = ElementMatrix::ZERO;
+                sum.add(&quad.centre, r, quad.centre.tangent(moduli, strain.trace(), *tangent));
                 add_twist(&mut sum, quad, &k, r, &twisted, inverse_trace, *tangent);
-                scatter(&sum, slots.chunks_exact(36).nth(e).unwrap_or_default(), values);
+                sum.scatter(e, slots, values);
             }
         }
     }
@@ -427,12 +422,11 @@ impl Elements for IncompatibleQuads {
             }
             add_forces(nodes, own, force, magnitude);
             if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
-                let strain = Matrix2::identity() * (0.5 * between.trace);
-                let mut sum = [[[0.0; 4]; 4]; 4];
-                quad.centre.tangent_blocks(moduli, between.rotation, &strain, *tangent, |a, b, k| sum[a][b] = k);
+                let mut sum = ElementMatrix::ZERO;
+                sum.add(&quad.centre, between.rotation, quad.centre.tangent(moduli, between.trace, *tangent));
                 let twisted = Twisted::new(&k, sum_of_q * 0.5);
                 add_twist(&mut sum, quad, &k, middle, &twisted, 2.0 * inverse_sum, *tangent);
-                scatter(&sum, slots.chunks_exact(36).nth(e).unwrap_or_default(), values);
+                sum.scatter(e, slots, values);
             }
         }
     }
@@ -474,7 +468,7 @@ impl Elements for IncompatibleQuads {
     fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]) {
         let Lame { lambda, mu } = moduli;
         let condensed = self.condensed(moduli);
-        for ((nodes, quad, k), slots) in self.with_twist(&condensed).zip(slots.chunks_exact(36)) {
+        for (e, (nodes, quad, k)) in self.with_twist(&condensed).enumerate() {
             let own = gather(nodes, u);
             let (f, q) = (Matrix2::identity() + quad.centre.displacement_gradient(&own), quad.twist(&own));
             let k = symmetric(k) * mu;
@@ -486,17 +480,15 @@ impl Elements for IncompatibleQuads {
             for ((twist, g), gamma) in twist.iter_mut().zip(gradients).zip(&quad.gamma) {
                 *twist = g * q.transpose() + f.transpose() * *gamma;
             }
-            let mut sum = [[[0.0; 4]; 4]; 4];
-            for a in 0..4 {
-                let stiff = twist[a].transpose() * k;
-                for b in 0..=a {
-                    let (g, h) = (turned[a], turned[b]);
-                    let plane =
-                        g * h.transpose() * lambda + h * g.transpose() * mu + left * gradients[a].dot(&gradients[b]);
-                    sum[a][b] = rows(&(plane * quad.centre.area + stiff * twist[b]));
-                }
-            }
-            scatter(&sum, slots, values);
+            let stiff = twist.map(|twist| twist.transpose() * k);
+            let mut sum = ElementMatrix::<4>::ZERO;
+            sum.add_blocks(|a, b| {
+                let (g, h) = (turned[a], turned[b]);
+                let plane =
+                    g * h.transpose() * lambda + h * g.transpose() * mu + left * gradients[a].dot(&gradients[b]);
+                rows(&(plane * quad.centre.area + stiff[a] * twist[b]))
+            });
+            sum.scatter(e, slots, values);
         }
     }
 

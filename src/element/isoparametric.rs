@@ -3,7 +3,10 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{DiscreteGradient, ElementType, Elements, MatrixSum, StrainRate, StrainVisitor, Tangent, warped_strain};
+use super::matrix::{ElementMatrix, PointTangent};
+use super::{
+    DiscreteGradient, ElementType, Elements, MatrixSum, Rotations, StrainRate, StrainVisitor, Tangent, warped_strain,
+};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
@@ -38,7 +41,7 @@ impl<const N: usize> QuadraturePoint<N> {
     ///
     /// From displacements, not positions: small strains keep their digits however large the coordinates.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn displacement_gradient(&self, u: &[Vector2<f64>; N]) -> Matrix2<f64> {
         let mut h = Matrix2::zeros();
         for (u, g) in u.iter().zip(&self.gradients) {
@@ -47,22 +50,23 @@ impl<const N: usize> QuadraturePoint<N> {
         h
     }
 
-    /// The first Piola–Kirchhoff stress R T of the corotated energy times the point's area; its product with ∇Nₐ is the
-    /// force on node a, and Σ over points is R Ke (Rᵀ x − X).
-    #[must_use]
-    #[inline]
-    fn weighted_stress(&self, moduli: Lame, r: Rotation, strain: &Matrix2<f64>) -> Matrix2<f64> {
-        r.matrix() * moduli.stress(strain) * self.area
-    }
-
-    /// The warped element force R Ke (Rᵀ x − X), N, given the displacement gradient.
+    /// The warped element force R Ke (Rᵀ x − X), N, given the displacement gradient: the first Piola–Kirchhoff stress R T
+    /// of the corotated energy times the point's area, applied to ∇Nₐ.
     #[must_use]
     pub fn warped_force(&self, moduli: Lame, r: Rotation, h: &Matrix2<f64>) -> [Vector2<f64>; N] {
-        let stress = self.weighted_stress(moduli, r, &warped_strain(r, h));
+        let stress = r.matrix() * moduli.stress(&warped_strain(r, h)) * self.area;
         self.gradients.map(|g| stress * g)
     }
 
-    /// Calls `block(a, b, K_ab)` for b ≤ a with the blocks of this point's part of a tangent, N/m, row by row.
+    /// The block of nodes a and b in Ke, this point's part, N/m: v (λ g hᵀ + μ (g·h) I + μ h gᵀ) with g = ∇Nₐ, h = ∇N_b.
+    #[must_use]
+    pub fn stiffness_block(&self, moduli: Lame, a: usize, b: usize) -> Matrix2<f64> {
+        let (g, h) = (self.gradients[a], self.gradients[b]);
+        let shear = Matrix2::identity() * g.dot(&h) + h * g.transpose();
+        (g * h.transpose() * moduli.lambda + shear * moduli.mu) * self.area
+    }
+
+    /// What this point's part of a tangent is made of; `trace` is that of the strain.
     ///
     /// With g = R ∇Nₐ and h = R ∇N_b, the block of R Ke Rᵀ is K_ab = v (λ g hᵀ + μ (g·h) I + μ h gᵀ): turning the
     /// gradients is cheaper than turning the matrix, and gives the same.
@@ -70,34 +74,14 @@ impl<const N: usize> QuadraturePoint<N> {
     /// G, the derivative of the force through R, adds in F-space (tr T / tr S) τ τᵀ with τ = vec(R J)/√2, J a quarter
     /// turn, T the Biot stress: tension makes it positive, compression negative. In the plane a quarter turn exchanges
     /// the components of g, so that with s = ½ v tr T / tr S it turns μ into μ + s and μ − s, at no further cost.
-    #[inline]
-    pub fn tangent_blocks(
-        &self,
-        moduli: Lame,
-        r: Rotation,
-        strain: &Matrix2<f64>,
-        tangent: Tangent,
-        mut block: impl FnMut(usize, usize, [f64; 4]),
-    ) {
+    #[inline(always)]
+    pub(super) fn tangent(&self, moduli: Lame, trace: f64, tangent: Tangent) -> PointTangent {
         let Lame { lambda, mu } = moduli;
-        let stretch_trace = (2.0 + strain.trace()).max(SMALLEST_STRETCH_TRACE);
-        let ratio = (mu + lambda) * strain.trace() / stretch_trace;
+        let ratio = (mu + lambda) * trace / (2.0 + trace).max(SMALLEST_STRETCH_TRACE);
         let ratio = if tangent.definite { ratio.max(0.0) } else { ratio };
         let (lambda, mu, s) = (tangent.warped * lambda, tangent.warped * mu, tangent.geometric * ratio);
         let [axial, lambda, plus, minus] = [lambda + 2.0 * mu, lambda, mu + s, mu - s].map(|v| self.area * v);
-        let g = self.gradients.map(|g| r.apply(g));
-        for a in 0..N {
-            for b in 0..=a {
-                let [xx, yy, xy, yx] = [g[a].x * g[b].x, g[a].y * g[b].y, g[a].x * g[b].y, g[a].y * g[b].x];
-                let k = [
-                    axial * xx + plus * yy,
-                    lambda * xy + minus * yx,
-                    lambda * yx + minus * xy,
-                    axial * yy + plus * xx,
-                ];
-                block(a, b, k);
-            }
-        }
+        PointTangent { axial, lambda, plus, minus }
     }
 }
 
@@ -141,73 +125,68 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
         self.elements().zip(r.chunks_exact(Q)).map(|((nodes, points), r)| (gather(nodes, u), points, r))
     }
 
-    /// One sweep: `stress` gives every element's first Piola–Kirchhoff stresses times area, and `tangent` its matrix.
-    #[inline]
-    fn sweep(
+    /// One sweep: `look` finds what is to be known of an element's points, and `seen` makes of it how a point is seen.
+    ///
+    /// A batch of elements is looked at before the first of them is worked on: the divisions and roots of one rotation
+    /// overlap with those of the next, instead of every element waiting for its own.
+    #[inline(always)]
+    fn sweep<L: Copy>(
         &self,
-        mut stress: impl FnMut(usize, &[u32; N], &[QuadraturePoint<N>; Q]) -> [Matrix2<f64>; Q],
+        (mut look, none): (impl FnMut(usize, &[u32; N], &[QuadraturePoint<N>; Q]) -> [L; Q], L),
+        seen: impl Fn(&L) -> Seen,
+        moduli: Lame,
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
+        mut matrix: Option<MatrixSum<'_>>,
     ) {
-        for (e, (nodes, points)) in self.elements().enumerate() {
-            let mut sum = [Vector2::zeros(); N];
-            for (point, stress) in points.iter().zip(stress(e, nodes, points)) {
-                for (sum, g) in sum.iter_mut().zip(&point.gradients) {
-                    *sum += stress * g;
+        let batches = self.nodes.chunks(BATCH).zip(self.points.chunks(BATCH));
+        for (first, (nodes, points)) in (0..).step_by(BATCH).zip(batches) {
+            let mut looks = [[none; Q]; BATCH];
+            for (i, (looks, (nodes, points))) in looks.iter_mut().zip(nodes.iter().zip(points)).enumerate() {
+                *looks = look(first + i, nodes, points);
+            }
+            for (i, (looks, (nodes, points))) in looks.iter().zip(nodes.iter().zip(points)).enumerate() {
+                let mut own = [Vector2::zeros(); N];
+                let mut sum = ElementMatrix::ZERO;
+                for (point, look) in points.iter().zip(looks) {
+                    let Seen { rotation, trace, stress } = seen(look);
+                    let stress = stress * point.area;
+                    own.iter_mut().zip(&point.gradients).for_each(|(own, g)| *own += stress * g);
+                    if let Some(MatrixSum { tangent, .. }) = &matrix {
+                        sum.add(point, rotation, point.tangent(moduli, trace, *tangent));
+                    }
+                }
+                for (&node, f) in nodes.iter().zip(own) {
+                    force[node as usize] += f;
+                    magnitude[node as usize] += f.abs();
+                }
+                if let Some(MatrixSum { slots, values, .. }) = &mut matrix {
+                    sum.scatter(first + i, slots, values);
                 }
             }
-            for (&node, f) in nodes.iter().zip(sum) {
-                force[node as usize] += f;
-                magnitude[node as usize] += f.abs();
-            }
         }
     }
 }
 
-/// Scatters the tangents of elements one after the other.
-struct Scatter<'a, const N: usize> {
-    tangent: Tangent,
-    slots: std::slice::ChunksExact<'a, u32>,
-    values: &'a mut [f64],
+/// Elements of a batch; see [`Isoparametric::sweep`].
+const BATCH: usize = 8;
+
+/// How a sweep sees a quadrature point.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    /// R.
+    rotation: Rotation,
+    /// Trace of the strain.
+    trace: f64,
+    /// First Piola–Kirchhoff stress, times the thickness, N/m.
+    stress: Matrix2<f64>,
 }
 
-impl<'a, const N: usize> Scatter<'a, N> {
-    fn new(MatrixSum { tangent, slots, values }: MatrixSum<'a>) -> Self {
-        Self { tangent, slots: slots.chunks_exact(N * (2 * N + 1)), values }
-    }
-
-    /// Adds the next element's: `seen` are the rotation and the strain of every point.
-    #[inline]
-    fn add(&mut self, points: &[QuadraturePoint<N>], moduli: Lame, seen: &[(Rotation, Matrix2<f64>)]) {
-        let mut sum = [[[0.0; 4]; N]; N];
-        for (point, (r, strain)) in points.iter().zip(seen) {
-            point.tangent_blocks(moduli, *r, strain, self.tangent, |a, b, k| {
-                sum[a][b].iter_mut().zip(k).for_each(|(sum, k)| *sum += k);
-            });
-        }
-        scatter(&sum, self.slots.next().unwrap_or_default(), self.values);
-    }
-}
-
-#[inline]
+#[inline(always)]
 pub(super) fn gather<const N: usize>(nodes: &[u32; N], u: &[Vector2<f64>]) -> [Vector2<f64>; N] {
-    nodes.map(|node| u[node as usize])
-}
-
-/// Adds an element's lower node blocks to the entries they belong to.
-#[inline]
-pub(super) fn scatter<const N: usize>(sum: &[[[f64; 4]; N]; N], slots: &[u32], values: &mut [f64]) {
-    let mut slots = slots.iter();
-    let mut add = |value: f64| {
-        if let Some(&slot) = slots.next() {
-            values[slot as usize] += value;
-        }
-    };
-    for (a, row) in sum.iter().enumerate() {
-        row[..a].iter().flatten().for_each(|&k| add(k));
-        let [xx, _, yx, yy] = row[a];
-        [xx, yx, yy].into_iter().for_each(&mut add);
-    }
+    let mut own = [Vector2::zeros(); N];
+    own.iter_mut().zip(nodes).for_each(|(own, &node)| *own = u[node as usize]);
+    own
 }
 
 impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
@@ -244,27 +223,26 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         &self,
         moduli: Lame,
         u: &[Vector2<f64>],
-        r: &[Rotation],
+        mut rotations: Rotations<'_>,
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
     ) {
-        let mut scatter = matrix.map(Scatter::<N>::new);
-        let mut r = r.chunks_exact(Q);
-        let stress = |_, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
-            let (u, r) = (gather(nodes, u), r.next().unwrap_or_default());
-            let mut seen = [(Rotation::IDENTITY, Matrix2::zeros()); Q];
-            let mut stresses = [Matrix2::zeros(); Q];
-            for (((point, &r), seen), stress) in points.iter().zip(r).zip(&mut seen).zip(&mut stresses) {
-                *seen = (r, warped_strain(r, &point.displacement_gradient(&u)));
-                *stress = point.weighted_stress(moduli, r, &seen.1);
+        let none = (Rotation::IDENTITY, Matrix2::zeros());
+        let look = |e: usize, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
+            let u = gather(nodes, u);
+            let mut looks = [none; Q];
+            for (q, (look, point)) in looks.iter_mut().zip(points).enumerate() {
+                let h = point.displacement_gradient(&u);
+                *look = (rotations.see(e * Q + q, &h), h);
             }
-            if let Some(scatter) = &mut scatter {
-                scatter.add(points, moduli, &seen);
-            }
-            stresses
+            looks
         };
-        self.sweep(stress, force, magnitude);
+        let seen = |&(rotation, h): &(Rotation, Matrix2<f64>)| {
+            let strain = warped_strain(rotation, &h);
+            Seen { rotation, trace: strain.trace(), stress: rotation.matrix() * moduli.stress(&strain) }
+        };
+        self.sweep((look, none), seen, moduli, force, magnitude, matrix);
     }
 
     /// ψ = μ ‖S − I‖² + λ/2 tr²(S − I) depends on ‖F‖² and r = tr S only, and r² is quadratic in F. So with
@@ -279,23 +257,22 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
     ) {
-        let mut scatter = matrix.map(Scatter::<N>::new);
-        let stress = |e: usize, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
+        let none = DiscreteGradient::new([Matrix2::zeros(); 2], [Rotation::IDENTITY; 2]);
+        let look = |e: usize, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
             let (u0, u1) = (gather(nodes, u0), gather(nodes, u1));
-            let mut seen = [(Rotation::IDENTITY, Matrix2::zeros()); Q];
-            let mut stresses = [Matrix2::zeros(); Q];
-            for (q, point) in points.iter().enumerate() {
-                let h = [&u0, &u1].map(|u| point.displacement_gradient(u));
-                let between = DiscreteGradient::new(h, [r0[e * Q + q], r1[e * Q + q]]);
-                seen[q] = (between.rotation, Matrix2::identity() * (0.5 * between.trace));
-                stresses[q] = between.stress(moduli) * point.area;
+            let mut looks = [none; Q];
+            for (q, (look, point)) in looks.iter_mut().zip(points).enumerate() {
+                let h = [point.displacement_gradient(&u0), point.displacement_gradient(&u1)];
+                *look = DiscreteGradient::new(h, [r0[e * Q + q], r1[e * Q + q]]);
             }
-            if let Some(scatter) = &mut scatter {
-                scatter.add(points, moduli, &seen);
-            }
-            stresses
+            looks
         };
-        self.sweep(stress, force, magnitude);
+        let seen = |between: &DiscreteGradient| Seen {
+            rotation: between.rotation,
+            trace: between.trace,
+            stress: between.stress(moduli),
+        };
+        self.sweep((look, none), seen, moduli, force, magnitude, matrix);
     }
 
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {
@@ -327,25 +304,22 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
 
     fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]) {
         let Lame { lambda, mu } = moduli;
-        for ((nodes, points), slots) in self.elements().zip(slots.chunks_exact(N * (2 * N + 1))) {
+        for (e, (nodes, points)) in self.elements().enumerate() {
             let own = gather(nodes, u);
-            let mut sum = [[[0.0; 4]; N]; N];
+            let mut sum = ElementMatrix::<N>::ZERO;
             for point in points {
                 let f = Matrix2::identity() + point.displacement_gradient(&own);
                 let left = f * f.transpose();
                 // With g = F ∇Nₐ and h = F ∇N_b the block is λ g hᵀ + μ h gᵀ + μ (∇Nₐ·∇N_b) F Fᵀ.
                 let turned = point.gradients.map(|g| f * g);
-                for a in 0..N {
-                    for b in 0..=a {
-                        let (g, h) = (turned[a], turned[b]);
-                        let product = mu * point.gradients[a].dot(&point.gradients[b]);
-                        let block = g * h.transpose() * lambda + h * g.transpose() * mu + left * product;
-                        let rows = [block.m11, block.m12, block.m21, block.m22];
-                        sum[a][b].iter_mut().zip(rows).for_each(|(sum, k)| *sum += k * point.area);
-                    }
-                }
+                sum.add_blocks(|a, b| {
+                    let (g, h) = (turned[a], turned[b]);
+                    let product = mu * point.gradients[a].dot(&point.gradients[b]);
+                    let block = g * h.transpose() * lambda + h * g.transpose() * mu + left * product;
+                    [block.m11, block.m12, block.m21, block.m22].map(|k| k * point.area)
+                });
             }
-            scatter(&sum, slots, values);
+            sum.scatter(e, slots, values);
         }
     }
 

@@ -5,13 +5,14 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::material::Lame;
-use crate::rotation::Rotation;
+use crate::rotation::{Rotation, polar_or};
 use crate::scene::ElementKind;
 
 pub mod cell;
 mod discrete_gradient;
 mod incompatible;
 mod isoparametric;
+mod matrix;
 mod q4;
 mod side;
 mod t3;
@@ -191,6 +192,30 @@ pub struct MatrixSum<'a> {
     pub values: &'a mut [f64],
 }
 
+/// The rotations with which a sweep sees the elements.
+#[derive(Debug)]
+pub enum Rotations<'a> {
+    /// These.
+    Given(&'a [Rotation]),
+    /// The polar factors of F(x), which are written here; where one is undefined the old one stays.
+    Follow(&'a mut [Rotation]),
+}
+
+impl Rotations<'_> {
+    /// The rotation of this number, whose displacement gradient is H.
+    #[inline(always)]
+    fn see(&mut self, number: usize, h: &Matrix2<f64>) -> Rotation {
+        match self {
+            Self::Given(r) => r[number],
+            Self::Follow(r) => {
+                let rotation = polar_or(&(Matrix2::identity() + h), r[number]);
+                r[number] = rotation;
+                rotation
+            }
+        }
+    }
+}
+
 /// How fast Green's strain E = ½ (FᵀF − I) changes, 1/s.
 #[derive(Clone, Copy, Debug)]
 pub enum StrainRate<'a> {
@@ -224,17 +249,17 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
     /// Sets every R to the polar factor of F(x); where that is undefined R stays.
     fn rotations(&self, u: &[Vector2<f64>], r: &mut [Rotation]);
 
-    /// One sweep: adds the warped force Σ R Ke (Rᵀ x − X) to `force`, its elements' absolute values by component to
-    /// `magnitude`, N, and a tangent to `matrix` where one is wanted, N/m.
+    /// One sweep: finds the rotations where they are to follow `u`, adds the warped force Σ R Ke (Rᵀ x − X) to `force`,
+    /// its elements' absolute values by component to `magnitude`, N, and a tangent to `matrix` where one is wanted, N/m.
     ///
-    /// With the rotations that [`Self::rotations`] gives for `u` the force is the gradient of the energy, and A + G its
-    /// Hessian: an element whose energy R does not make stationary adds what R does as it follows x. With any others,
-    /// as in linear theory, the force is linear in `u`.
+    /// With the rotations of `u` the force is the gradient of the energy, and A + G its Hessian: an element whose energy
+    /// R does not make stationary adds what R does as it follows x. With any others, as in linear theory, the force is
+    /// linear in `u`.
     fn linearize(
         &self,
         moduli: Lame,
         u: &[Vector2<f64>],
-        r: &[Rotation],
+        rotations: Rotations<'_>,
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
@@ -276,7 +301,7 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
 /// With R the polar factor of F this is the Biot strain S − I. Written with c − 1 = −s²/(1 + c), so that small strains
 /// under small rotations keep their digits.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn warped_strain(r: Rotation, h: &Matrix2<f64>) -> Matrix2<f64> {
     let (c, s) = (r.c, r.s);
     let c_minus_1 = if c > 0.0 { -s * s / (1.0 + c) } else { c - 1.0 };

@@ -8,7 +8,7 @@ use super::{Mesh, MeshError, Segment};
 use crate::scene::{Beam, Diagonals};
 
 impl Mesh {
-    /// The rectangle [0, length] × [−height/2, height/2], two triangles or one quadrilateral a cell, with the edges `left`, `right`,
+    /// The rectangle [0, length] × [−height/2, height/2], or the arch it is bent to, two triangles or one quadrilateral a cell, with the edges `left`, `right`,
     /// `bottom` and `top`. Nodes are numbered column by column, from the left and from below.
     ///
     /// # Errors
@@ -25,7 +25,7 @@ impl Mesh {
             .map(|(i, j)| {
                 let along = i as f64 / columns as f64;
                 let across = j as f64 / rows as f64 - 0.5;
-                Vector2::new(beam.length * along, beam.height * across)
+                place(beam, along, beam.height * across)
             })
             .collect();
         // For every node of an element, the weights of its corners.
@@ -59,4 +59,16 @@ impl Mesh {
         ]);
         Self::new(nodes, beam.element, connectivity, edges)
     }
+}
+
+/// Where a point is: `along` from 0 to 1, `across` from the axis, m. The axis of an arch is a parabola, its sections are
+/// normal to it.
+fn place(beam: &Beam, along: f64, across: f64) -> Vector2<f64> {
+    let x = beam.length * along;
+    if beam.rise == 0.0 {
+        return Vector2::new(x, across);
+    }
+    let slope = 4.0 * beam.rise * (1.0 - 2.0 * along) / beam.length;
+    let axis = Vector2::new(x, 4.0 * beam.rise * along * (1.0 - along));
+    axis + Vector2::new(-slope, 1.0) * (across / slope.hypot(1.0))
 }

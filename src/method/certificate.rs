@@ -1,7 +1,7 @@
 //! What is known of a result whatever method found it: stability, and whether the warped iteration could have.
 
 use super::iteration::{Workspace, assemble};
-use crate::assembly::{Forces, Matrix, Problem};
+use crate::assembly::{Forces, Kinematics, Matrix, Problem};
 use crate::element::Tangent;
 use crate::lanczos::extreme_eigenvalues;
 use crate::state::State;
@@ -28,6 +28,60 @@ pub fn is_stable(
 ) -> bool {
     assemble(problem, state, forces, workspace, Tangent::EXACT, load_factor);
     workspace.factor.factorize(workspace.matrix.values()).is_ok()
+}
+
+/// How much harder the supports push along their way the farther they are on it, with the loads as they are, J: the
+/// derivative of their generalised force g = Σ r · ∂u/∂λ with respect to the part λ of their way. `None` where the body is
+/// unstable even as they hold it.
+///
+/// It is what is left of the exact tangent when everything but λ is eliminated (its Schur complement): let go, and
+/// pushed by g instead, the body is stable if the tangent is positive definite on the free unknowns and this is positive.
+pub fn support_stiffness(
+    problem: &Problem,
+    state: &State,
+    load_factor: f64,
+    forces: &mut Forces,
+    workspace: &mut Workspace,
+) -> Option<f64> {
+    /// Part of the way by which derivatives are taken: central differences, right to about its square.
+    const H: f64 = 1e-4;
+    let (system, supports) = (problem.system(), problem.supports());
+    let (mesh, pattern) = (system.mesh(), system.pattern());
+    if !is_stable(problem, state, load_factor, forces, workspace) {
+        return None;
+    }
+    let mut free = vec![0.0; system.dofs()];
+    let mut trial = state.clone();
+    // How the free unknowns follow: K du = −∂f_int/∂λ.
+    for h in [H, -H] {
+        trial.copy_from(state);
+        supports.put(mesh, load_factor + h, Kinematics::Corotated, &mut trial.displacement);
+        system.follow(&mut trial, Kinematics::Corotated);
+        problem.linearize(&trial, forces, None);
+        problem.balance(&trial, Kinematics::Corotated, load_factor, forces);
+        pattern.restrict(forces.residual(), &mut workspace.free);
+        free.iter_mut().zip(&workspace.free).for_each(|(sum, f)| *sum += f / (2.0 * h));
+    }
+    workspace.factor.solve_in_place(&mut free);
+    let mut stiffness = 0.0;
+    for h in [H, -H] {
+        trial.copy_from(state);
+        let mut way = trial.displacement.clone();
+        for (sign, u) in [(1.0, &mut way), (-1.0, &mut trial.displacement)] {
+            supports.put(mesh, load_factor + h + sign * H, Kinematics::Corotated, u);
+        }
+        way.iter_mut().zip(&trial.displacement).for_each(|(a, b)| *a = (*a - b) / (2.0 * H));
+        supports.put(mesh, load_factor + h, Kinematics::Corotated, &mut trial.displacement);
+        pattern.add_free(&free, h, &mut trial.displacement);
+        system.follow(&mut trial, Kinematics::Corotated);
+        problem.linearize(&trial, forces, None);
+        problem.balance(&trial, Kinematics::Corotated, load_factor, forces);
+        // Along the free unknowns it is in balance but for the error of `free`, which then counts by its square only.
+        pattern.add_free(&free, 1.0, &mut way);
+        let force: f64 = way.iter().zip(forces.residual()).map(|(way, residual)| -way.dot(residual)).sum();
+        stiffness += force / (2.0 * h);
+    }
+    stiffness.is_finite().then_some(stiffness)
 }
 
 /// What ρ means, in words.

@@ -97,6 +97,44 @@ impl Iteration<'_> {
         });
     }
 
+    /// Whether the supports are where they are at this load factor.
+    pub(super) fn supports_are_at(&self, load_factor: f64, kinematics: Kinematics) -> bool {
+        let system = self.problem.system();
+        self.problem.supports().are_at(system.mesh(), load_factor, kinematics, &self.state.displacement)
+    }
+
+    /// Whether nothing has been moved yet, and supports turn so far that they must be taken on in parts.
+    pub(super) fn supports_must_turn_in_steps(&self) -> bool {
+        let supports = self.problem.supports();
+        supports.largest_load_step() < 1.0 && supports.are_at_rest(&self.state.displacement)
+    }
+
+    /// Turns the body as a whole with its supports, where they are not yet where they are at this load factor; says
+    /// whether it did. What is left of their way is for [`Self::put_supports`].
+    pub(super) fn carry(&mut self, load_factor: f64) -> bool {
+        let carries = !self.supports_are_at(load_factor, Kinematics::Corotated)
+            && self.problem.supports().carry(self.problem.system().mesh(), load_factor, self.state);
+        if carries {
+            self.workspace.tangent = None;
+        }
+        carries
+    }
+
+    /// Puts the supports where they are at this load factor, if they are not: with the rotations as they are, so that
+    /// the residual force is f_ext − f_int − A v, v the way of the supports, and the next step moves the body as v asks.
+    pub(super) fn put_supports(&mut self, load_factor: f64, kinematics: Kinematics) {
+        if self.supports_are_at(load_factor, kinematics) {
+            return;
+        }
+        let Self { problem, forces, state, .. } = self;
+        let mesh = problem.system().mesh();
+        self.residual = timed(&mut self.timings.assemble, || {
+            problem.supports().put(mesh, load_factor, kinematics, &mut state.displacement);
+            problem.linearize(state, forces, None);
+            problem.balance(state, kinematics, load_factor, forces)
+        });
+    }
+
     /// Factorizes the workspace's matrix, which must be positive definite.
     pub(super) fn factorize(&mut self) -> Result<(), SolverError> {
         let Workspace { matrix, factor, .. } = &mut *self.workspace;
@@ -160,25 +198,28 @@ pub(crate) fn assemble(
     workspace.tangent = Some(tangent);
 }
 
-/// Measures a state that has the rotations of its displacement: its forces, and a tangent where one is wanted. Returns
-/// the relative residual.
+/// Measures a state: its forces, and a tangent where one is wanted. The displacement is new where rotations and turns of
+/// edges are to `follow` it, in the same sweep. Returns the relative residual.
 pub(crate) fn measure(
     problem: &Problem,
-    state: &State,
-    kinematics: Kinematics,
+    state: &mut State,
+    (kinematics, follow): (Kinematics, bool),
     (tangent, load_factor): (Option<Tangent>, f64),
     forces: &mut Forces,
     workspace: &mut Workspace,
     timings: &mut Timings,
 ) -> f64 {
     timed(&mut timings.assemble, || {
-        match tangent {
-            Some(tangent) => assemble(problem, state, forces, workspace, tangent, load_factor),
-            None => {
-                problem.linearize(state, forces, None);
-                workspace.tangent = None;
-            }
+        let matrix = tangent.map(|tangent| (tangent, &mut workspace.matrix));
+        if follow {
+            problem.follow_and_linearize(state, kinematics, forces, matrix);
+        } else {
+            problem.linearize(state, forces, matrix);
         }
+        if let Some(tangent) = tangent {
+            problem.add_load_stiffness(state, tangent, load_factor, &mut workspace.matrix);
+        }
+        workspace.tangent = tangent;
         problem.balance(state, kinematics, load_factor, forces)
     })
 }

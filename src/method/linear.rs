@@ -50,10 +50,14 @@ impl Method for Linear {
             it.forces.residual.copy_from_slice(&it.forces.external);
             self.solved = true;
         }
+        it.put_supports(1.0, Kinematics::Linear);
         it.step().map(|step| self.stall.steps.stepped(step))
     }
 
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+        if !it.supports_are_at(1.0, Kinematics::Linear) {
+            return Verdict::Continue;
+        }
         self.stall.judge(it.residual, it.tolerances.residual, farthest(it.system(), it.state))
     }
 }

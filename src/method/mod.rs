@@ -19,7 +19,7 @@ mod status;
 mod warped;
 
 pub use auto::{AutoReport, Decision};
-pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_words};
+pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_words, support_stiffness};
 pub(crate) use iteration::measure;
 pub use iteration::{Iteration, IterationError, Tolerances, Workspace};
 pub use status::Reason;

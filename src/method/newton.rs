@@ -4,9 +4,13 @@
 //! the energy would refuse both, and is what makes Newton slow here. Where full steps fail the load is put on in parts.
 //! Where no part is small enough, line-searched descent takes over: on A + G where that is positive definite, else on
 //! A + max(G, 0), which always is.
+//!
+//! Supports that move are put on with the load: the body is turned as a whole with them, and what is left of their way
+//! enters the first step of a load step as a force.
 
 use super::status::{LONGEST_STEP, ROUNDING, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, Reason, Restart, Verdict};
+use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
 use crate::state::State;
@@ -50,6 +54,8 @@ pub struct Newton {
     base: Option<State>,
     is_based: bool,
     load_step: f64,
+    /// The most that supports allow.
+    largest_load_step: f64,
     load_steps: u32,
     steps: u32,
     shortest: f64,
@@ -67,6 +73,7 @@ impl Default for Newton {
             base: None,
             is_based: false,
             load_step: 1.0,
+            largest_load_step: 1.0,
             load_steps: 1,
             steps: 0,
             shortest: f64::INFINITY,
@@ -80,7 +87,10 @@ impl Default for Newton {
 
 impl Newton {
     fn begin_load_step(&mut self) {
-        self.target = if self.descends { 1.0 } else { (self.reached + self.load_step).min(1.0) };
+        self.load_step = self.load_step.min(self.largest_load_step);
+        // Descent takes the whole load in one go, but not supports that turn far.
+        let step = if self.descends { self.largest_load_step } else { self.load_step };
+        self.target = (self.reached + step).min(1.0);
         self.load_steps += 1;
         self.steps = 0;
         self.shortest = f64::INFINITY;
@@ -108,6 +118,14 @@ impl Newton {
     /// A step that lowers the energy: on A + G where that is positive definite, else on A + max(G, 0), halved until the
     /// energy falls.
     fn descend(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+        if !it.supports_are_at(self.target, Kinematics::Corotated) {
+            it.carry(self.target);
+            it.assemble(Tangent::WARPED, self.target);
+            it.factorize()?;
+            it.put_supports(self.target, Kinematics::Corotated);
+            self.last_step = it.step()?;
+            return Ok(());
+        }
         it.assemble(Tangent::EXACT, self.target);
         if it.factorize().is_err() {
             it.assemble(Tangent::DEFINITE, self.target);
@@ -162,13 +180,21 @@ impl Method for Newton {
                 base => *base = Some(it.state.clone()),
             }
             self.is_based = true;
+            self.largest_load_step = it.problem.supports().largest_load_step();
+            if it.supports_must_turn_in_steps() {
+                self.load_step = self.largest_load_step;
+                self.target = self.load_step;
+                it.workspace.tangent = None;
+            }
         }
         self.steps += 1;
         if self.descends {
             return self.descend(it);
         }
+        it.carry(self.target);
         it.assemble(Tangent::EXACT, self.target);
         it.factorize_symmetric();
+        it.put_supports(self.target, Kinematics::Corotated);
         self.last_step = it.step()?;
         Ok(())
     }
@@ -177,7 +203,8 @@ impl Method for Newton {
         let (residual, tolerance) = (it.residual, it.tolerances.residual);
         if self.steps == 0 {
             // Nothing solved yet; a state without load is its own equilibrium.
-            return if residual <= tolerance && self.target == 1.0 { Verdict::Converged } else { Verdict::Continue };
+            let is_there = self.target == 1.0 && it.supports_are_at(1.0, Kinematics::Corotated);
+            return if residual <= tolerance && is_there { Verdict::Converged } else { Verdict::Continue };
         }
         let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
         if residual <= enough {
@@ -186,14 +213,15 @@ impl Method for Newton {
             if self.target == 1.0 && (stable || self.descends) {
                 return Verdict::Converged;
             }
-            if !stable {
+            if !stable && !self.descends {
                 return self.give_up_load_step(it.state);
             }
+            self.descends = false;
             if let Some(base) = &mut self.base {
                 base.copy_from(it.state);
             }
             self.reached = self.target;
-            self.load_step *= GROW;
+            self.load_step = GROW * self.load_step.max(SMALLEST_LOAD_STEP);
             self.begin_load_step();
             return Verdict::Changed;
         }

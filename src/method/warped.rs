@@ -2,9 +2,12 @@
 //!
 //! A fixed-point iteration x ← A(R)⁻¹ (f + R K X), R the polar factor of x. Where it converges the result is an exact
 //! equilibrium of the corotated energy; it converges while the load is small: for a cantilever up to about P L²/(E I) = 3.
+//!
+//! Supports that turn far are taken on in parts, an iteration each, and the load with them.
 
 use super::status::{StallDetector, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
+use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
 
@@ -12,13 +15,23 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Warped,
     id: "warped",
     about: "Warped stiffness: the article's iteration, every element seen turned back. Large rotations, but it diverges under large loads.",
-    colors: [[190, 20, 30], [255, 105, 97]],
+    colors: [[128, 50, 190], [202, 160, 255]],
     start: || Box::<Warped>::default(),
 };
 
 /// The article's iteration.
-#[derive(Clone, Debug, Default)]
-pub struct Warped(StallDetector);
+#[derive(Clone, Debug)]
+pub struct Warped {
+    stall: StallDetector,
+    load_factor: f64,
+    load_steps: u32,
+}
+
+impl Default for Warped {
+    fn default() -> Self {
+        Self { stall: StallDetector::default(), load_factor: 1.0, load_steps: 1 }
+    }
+}
 
 impl Method for Warped {
     fn restart(&mut self, _: Restart) {
@@ -29,17 +42,38 @@ impl Method for Warped {
         Some(Tangent::WARPED)
     }
 
+    fn load_factor(&self) -> f64 {
+        self.load_factor
+    }
+
+    fn load_steps(&self) -> u32 {
+        self.load_steps
+    }
+
     fn step_ratio(&self) -> Option<f64> {
-        self.0.steps.ratio()
+        self.stall.steps.ratio()
     }
 
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        it.assemble(Tangent::WARPED, 1.0);
+        if it.supports_must_turn_in_steps() {
+            (self.load_factor, self.load_steps) = (0.0, 0);
+        }
+        if self.load_factor < 1.0 {
+            self.load_factor = (self.load_factor + it.problem.supports().largest_load_step()).min(1.0);
+            self.load_steps += 1;
+            it.workspace.tangent = None;
+        }
+        it.carry(self.load_factor);
+        it.assemble(Tangent::WARPED, self.load_factor);
         it.factorize()?;
-        it.step().map(|step| self.0.steps.stepped(step))
+        it.put_supports(self.load_factor, Kinematics::Corotated);
+        it.step().map(|step| self.stall.steps.stepped(step))
     }
 
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
-        self.0.judge(it.residual, it.tolerances.residual, farthest(it.system(), it.state))
+        if self.load_factor < 1.0 || !it.supports_are_at(1.0, Kinematics::Corotated) {
+            return Verdict::Continue;
+        }
+        self.stall.judge(it.residual, it.tolerances.residual, farthest(it.system(), it.state))
     }
 }

@@ -3,7 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use nalgebra::Vector2;
 
-use super::{Camera, Gpu, colormap};
+use super::colormap::{self, ColorMap};
+use super::{Camera, Gpu};
 
 /// What is drawn of a body.
 #[derive(Clone, Copy, Debug)]
@@ -18,8 +19,14 @@ pub struct Frame<'a> {
     pub absent_color: [u8; 3],
     /// The values at the two ends of the colour map.
     pub range: [f64; 2],
+    /// The colour map.
+    pub map: ColorMap,
     /// Lines between nodes, over the triangles; empty for none.
     pub lines: &'a [[u32; 2]],
+    /// A triangle beside each line: lines that its height leaves too close to the next ones fade.
+    pub beside: &'a [u32],
+    /// Triangles across an element.
+    pub pieces: u32,
     /// Their colour, gamma space, straight alpha.
     pub line_color: [u8; 4],
     /// What is behind the body, gamma space.
@@ -242,14 +249,44 @@ impl BodyRenderer {
         let corners = [[-x, -y], [x, -y], [x, y], [-x, -y], [x, y], [-x, y]];
         self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255] }));
         for (triangle, &value) in frame.triangles.iter().zip(frame.values) {
-            let color = |value| colormap::color(colormap::position(value, frame.range));
+            let color = |value| frame.map.color(colormap::position(value, frame.range));
             let [r, g, b] = value.map_or(frame.absent_color, color);
             self.scratch.extend(triangle.map(|node| Vertex { position: position(node), color: [r, g, b, 255] }));
         }
         let triangle_vertices = self.scratch.len() as u32;
-        for line in frame.lines {
-            self.scratch.extend(line.map(|node| Vertex { position: position(node), color: frame.line_color }));
+        let at = |node: u32| frame.positions.get(node as usize).copied().unwrap_or_default();
+        let [r, g, b, opacity] = frame.line_color;
+        for (line, &beside) in frame.lines.iter().zip(frame.beside) {
+            let Some(corners) = frame.triangles.get(beside as usize) else { continue };
+            let [p, q, s] = corners.map(at);
+            let length = (at(line[1]) - at(line[0])).norm();
+            let height = (q - p).perp(&(s - p)).abs() / length * f64::from(frame.pieces);
+            let strength = line_strength(height * camera.scale);
+            if strength > 0.0 {
+                let color = [r, g, b, (f64::from(opacity) * strength) as u8];
+                self.scratch.extend(line.map(|node| Vertex { position: position(node), color }));
+            }
         }
         triangle_vertices
+    }
+}
+
+/// How much is seen of lines that are so far apart, points: denser ones would hide the body's colours.
+fn line_strength(spacing: f64) -> f64 {
+    /// From here on they are drawn in full, and below the second not at all.
+    const CLEAR: f64 = 6.0;
+    const GONE: f64 = 2.0;
+    // Not a number where a triangle has no extent: nothing to see.
+    if spacing > GONE { ((spacing - GONE) / (CLEAR - GONE)).min(1.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dense_lines_fade() {
+        assert_eq!([0.5, 2.0, 6.0, 60.0, f64::NAN].map(line_strength), [0.0, 0.0, 1.0, 1.0, 0.0]);
+        assert!((0.4..0.6).contains(&line_strength(4.0)));
     }
 }

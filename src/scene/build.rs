@@ -42,9 +42,24 @@ impl Scene {
         // Cells about as long as high.
         let along = (length / height).round().clamp(4.0, 100.0);
         let along = if along.is_finite() { along as u32 } else { 4 };
-        let beam =
-            Beam { length, height, cells: [along, 1], element: ElementKind::T6, diagonals: Diagonals::default() };
+        let beam = Beam {
+            length,
+            height,
+            rise: 0.0,
+            cells: [along, 1],
+            element: ElementKind::T6,
+            diagonals: Diagonals::default(),
+        };
         Self { beam: Some(beam), ..Self::named("Beam") }
+    }
+
+    /// Bent to an arch whose axis rises by so much, m, in its middle.
+    #[must_use]
+    pub fn with_rise(mut self, rise: f64) -> Self {
+        if let Some(beam) = &mut self.beam {
+            beam.rise = rise;
+        }
+        self
     }
 
     /// With so many cells along and across the beam.
@@ -86,7 +101,26 @@ impl Scene {
     /// Fixed here in these directions.
     #[must_use]
     pub fn support(mut self, place: impl Into<Place>, fix: &[Axis]) -> Self {
-        self.supports.push(Support { place: place.into(), fix: fix.to_vec() });
+        self.supports.push(Support::new(place, fix));
+        self
+    }
+
+    /// With the last support taken by this displacement, m, and turned about its middle by this angle, rad.
+    ///
+    /// ```
+    /// use warpbeam::{Scene, Simulation, Status};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").clamp("right").moved([0.0, -1.0], 0.0);
+    /// let mut beam = Simulation::new(&scene)?;
+    /// assert_eq!(*beam.solve(), Status::Converged);
+    /// assert!(beam.support_reactions()[1].force.y < 0.0, "the right end is pushed down");
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
+    #[must_use]
+    pub fn moved(mut self, displacement: [f64; 2], turn: f64) -> Self {
+        if let Some(support) = self.supports.last_mut() {
+            (support.displacement, support.turn) = (displacement, turn);
+        }
         self
     }
 
@@ -193,8 +227,26 @@ impl Scene {
         Ok(())
     }
 
-    /// Every load times `factor`.
+    /// Sets where a support takes its place, m, and how far it turns it, rad; `support` counts the supports from 0.
+    ///
+    /// # Errors
+    /// Where there is no such support. What is out of range is refused when the scene is simulated.
+    pub fn move_support(&mut self, support: usize, displacement: [f64; 2], turn: f64) -> Result<(), Invalid> {
+        let count = self.supports.len();
+        let Some(moved) = self.supports.get_mut(support) else {
+            let message = format!("expected one of {}, counted from 0", crate::words::count(count as u64, "support"));
+            return Err(Invalid::new(format!("support.{support}"), message));
+        };
+        (moved.displacement, moved.turn) = (displacement, turn);
+        Ok(())
+    }
+
+    /// Every load times `factor`, and supports taken as much of their way.
     pub fn scale_loads(&mut self, factor: f64) {
+        for support in &mut self.supports {
+            support.displacement = support.displacement.map(|u| u * factor);
+            support.turn *= factor;
+        }
         for load in &mut self.loads {
             match load {
                 Load::Force { force: v, .. } | Load::Gravity { acceleration: v, .. } => *v = v.map(|v| v * factor),

@@ -49,6 +49,8 @@ impl Limit {
 pub const LENGTH: Limit = Limit::new("m", 1e-6, 1e6);
 /// Beam height.
 pub const HEIGHT: Limit = Limit::new("m", 1e-6, 1e6);
+/// Rise of an arch.
+pub const RISE: Limit = Limit::new("m", -1e6, 1e6);
 /// Cells along one direction.
 pub const CELLS: Limit = Limit::new("", 1.0, 100_000.0);
 /// Cells in all: what fits in memory with its factor (about a million unknowns).
@@ -73,6 +75,8 @@ pub const DIRECTION: Limit = Limit::new("°", -180.0, 180.0);
 pub const ACCELERATION: Limit = Limit::new("m/s²", 0.0, 1e6);
 /// A coordinate.
 pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
+/// A turn of a support.
+pub const TURN: Limit = Limit::new("rad", -100.0, 100.0);
 /// Metres per unit of a mesh file.
 pub const MESH_SCALE: Limit = Limit::new("m", 1e-9, 1e6);
 /// Relative residual at which a solve is done.

@@ -77,7 +77,7 @@ pub enum Analysis {
     Dynamic,
 }
 
-/// A structured mesh of the rectangle [0, length] × [−height/2, height/2].
+/// A structured mesh of the rectangle [0, length] × [−height/2, height/2], or of the arch it is bent to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -86,6 +86,9 @@ pub struct Beam {
     pub length: f64,
     /// Height, m.
     pub height: f64,
+    /// How far its axis rises in the middle, along a parabola from end to end, m: a shallow arch, without stress.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rise: f64,
     /// Cells along and across; each is a quadrilateral, or is cut into two triangles.
     pub cells: [u32; 2],
     /// What every cell, or each of its triangles, becomes.
@@ -157,6 +160,11 @@ pub struct Material {
     /// Plane stress or plane strain.
     #[serde(default)]
     pub plane: Plane,
+}
+
+/// Whether nothing is said by writing it.
+fn is_zero<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 fn default_density() -> f64 {
@@ -256,9 +264,13 @@ impl Scene {
         }
         for (i, support) in self.supports.iter().enumerate() {
             let key = format!("support.{i}");
-            support.place.validate(&key)?;
-            if support.fix.is_empty() {
-                return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
+            support.validate(&key)?;
+            if dynamic && support.moves() {
+                let name = if support.turn == 0.0 { "displacement" } else { "turn" };
+                return Err(Invalid::new(
+                    format!("{key}.{name}"),
+                    "expected analysis = \"static\" beside it: supports do not move in time",
+                ));
             }
         }
         for (i, load) in self.loads.iter().enumerate() {
@@ -299,6 +311,7 @@ impl Beam {
     fn validate(&self) -> Result<(), Invalid> {
         check("beam.length", limits::LENGTH, self.length)?;
         check("beam.height", limits::HEIGHT, self.height)?;
+        check("beam.rise", limits::RISE, self.rise)?;
         for cells in self.cells {
             check("beam.cells", limits::CELLS, f64::from(cells))?;
         }

@@ -5,7 +5,8 @@ use thiserror::Error;
 
 use super::dynamics::Pulse;
 use super::error::Invalid;
-use super::limits;
+use super::{is_zero, limits};
+use crate::words::number;
 
 /// A whole edge or one point.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +50,15 @@ pub enum TableError {
     Moment,
 }
 
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Edge(edge) => f.write_str(edge),
+            Self::At([x, y]) => write!(f, "({}, {})", number(*x), number(*y)),
+        }
+    }
+}
+
 impl Place {
     /// From the two keys of a table, of which exactly one is given.
     fn new(edge: Option<String>, at: Option<[f64; 2]>) -> Result<Self, TableError> {
@@ -78,7 +88,7 @@ impl Place {
     }
 }
 
-/// Nodes that do not move.
+/// Nodes that stay where they are, or are taken somewhere else.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SupportTable", into = "SupportTable")]
 #[non_exhaustive]
@@ -87,6 +97,56 @@ pub struct Support {
     pub place: Place,
     /// The directions in which they are fixed.
     pub fix: Vec<Axis>,
+    /// Where the place is taken, m, in the directions in which it is fixed; put on in load steps, with the loads.
+    pub displacement: [f64; 2],
+    /// How far an edge is turned about its middle, rad, counter-clockwise, full turns included; put on in load steps.
+    pub turn: f64,
+}
+
+impl Support {
+    /// Fixed here in these directions, where it is.
+    #[must_use]
+    pub fn new(place: impl Into<Place>, fix: &[Axis]) -> Self {
+        Self { place: place.into(), fix: fix.to_vec(), displacement: [0.0; 2], turn: 0.0 }
+    }
+
+    /// Whether it takes its place somewhere else.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.displacement != [0.0; 2] || self.turn != 0.0
+    }
+
+    /// Whether both fix the same unknowns, wherever they take them.
+    pub(crate) fn fixes_as(&self, other: &Self) -> bool {
+        (&self.place, &self.fix) == (&other.place, &other.fix)
+    }
+
+    pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
+        self.place.validate(key)?;
+        if self.fix.is_empty() {
+            return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
+        }
+        let refuse = |name: &str, message: String| Err(Invalid::new(format!("{key}.{name}"), message));
+        for (axis, word, value) in [(Axis::X, "x", self.displacement[0]), (Axis::Y, "y", self.displacement[1])] {
+            limits::COORDINATE.check(value).or_else(|e| refuse("displacement", e.to_string()))?;
+            if value != 0.0 && !self.fix.contains(&axis) {
+                let message =
+                    format!("expected 0 along {word}, which this support does not fix, got {}", number(value));
+                return refuse("displacement", message);
+            }
+        }
+        limits::TURN.check(self.turn).or_else(|e| refuse("turn", e.to_string()))?;
+        if self.turn != 0.0 && !matches!(self.place, Place::Edge(_)) {
+            return refuse(
+                "turn",
+                "expected edge = \"…\" beside it: a single node has no direction to turn".to_owned(),
+            );
+        }
+        if self.turn != 0.0 && !(self.fix.contains(&Axis::X) && self.fix.contains(&Axis::Y)) {
+            return refuse("turn", "expected fix = [\"x\", \"y\"] beside it: a turn moves nodes both ways".to_owned());
+        }
+        Ok(())
+    }
 }
 
 /// A direction of the plane.
@@ -205,20 +265,24 @@ struct SupportTable {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     at: Option<[f64; 2]>,
     fix: Vec<Axis>,
+    #[serde(skip_serializing_if = "is_zero", default)]
+    displacement: [f64; 2],
+    #[serde(skip_serializing_if = "is_zero", default)]
+    turn: f64,
 }
 
 impl TryFrom<SupportTable> for Support {
     type Error = TableError;
 
-    fn try_from(SupportTable { edge, at, fix }: SupportTable) -> Result<Self, TableError> {
-        Ok(Self { place: Place::new(edge, at)?, fix })
+    fn try_from(SupportTable { edge, at, fix, displacement, turn }: SupportTable) -> Result<Self, TableError> {
+        Ok(Self { place: Place::new(edge, at)?, fix, displacement, turn })
     }
 }
 
 impl From<Support> for SupportTable {
     fn from(support: Support) -> Self {
         let (edge, at) = support.place.keys();
-        Self { edge, at, fix: support.fix }
+        Self { edge, at, fix: support.fix, displacement: support.displacement, turn: support.turn }
     }
 }
 

@@ -30,6 +30,9 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
     "column",
     "cook",
     "bracket",
+    "clip",
+    "snap",
+    "jump",
     "jelly",
     "swing",
     "flick",
@@ -42,6 +45,7 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
 const MESHES: &[(&str, &str)] = &[
     ("../meshes/cook.msh", include_str!("../../assets/meshes/cook.msh")),
     ("../meshes/bracket.msh", include_str!("../../assets/meshes/bracket.msh")),
+    ("../meshes/clip.msh", include_str!("../../assets/meshes/clip.msh")),
 ];
 
 /// A mesh file of a built-in scene.

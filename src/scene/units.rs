@@ -92,12 +92,15 @@ const PREFIXES: &[(&str, i32)] = &[
 const KEYS: &[(&str, Limit)] = &[
     ("beam.length", limits::LENGTH),
     ("beam.height", limits::HEIGHT),
+    ("beam.rise", limits::RISE),
     ("mesh.scale", limits::MESH_SCALE),
     ("material.young", limits::YOUNG),
     ("material.poisson", limits::POISSON_STRESS),
     ("material.density", limits::DENSITY),
     ("material.thickness", limits::THICKNESS),
     ("support.at", limits::COORDINATE),
+    ("support.displacement", limits::COORDINATE),
+    ("support.turn", limits::TURN),
     ("load.at", limits::COORDINATE),
     ("load.force", limits::FORCE),
     ("load.acceleration", limits::ACCELERATION),
@@ -126,6 +129,12 @@ pub enum UnitError {
         text: String,
         /// What would have been right.
         expected: Quantity,
+    },
+    /// A comma or a space in a number that parts no thousands: it may mean a decimal point.
+    #[error("`{text}` can be read in two ways: write a decimal point, or groups of three digits as in 30,000")]
+    Ambiguous {
+        /// What was typed.
+        text: String,
     },
     /// What follows the number is no unit.
     #[error("`{text}` has the unknown unit `{unit}`; expected {expected}")]
@@ -204,7 +213,9 @@ pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     let text = text.trim();
     let target = scale_of(unit).unwrap_or(Scale { dimension: NUMBER, factor: 1.0, tens: 0 });
     let expected = || Quantity { dimension: target.dimension, unit: Some(unit) };
-    let (number, rest) = split(text).ok_or_else(|| UnitError::NoNumber { text: shown(text), expected: expected() })?;
+    let plain = without_groups(text).ok_or_else(|| UnitError::Ambiguous { text: shown(text) })?;
+    let (number, rest) =
+        split(&plain).ok_or_else(|| UnitError::NoNumber { text: shown(text), expected: expected() })?;
     let rest = rest.trim();
     if rest.is_empty() {
         return Ok(number);
@@ -219,6 +230,41 @@ pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     // Powers of ten are exact as they are, their inverses are not.
     let tens = typed.tens - target.tens;
     Ok(if tens < 0 { value / 10f64.powi(-tens) } else { value * 10f64.powi(tens) })
+}
+
+/// The text with the thousands of its number run together, `30,000` and `30 000` as `30000`, and a typographic minus as
+/// what it means; `None` where a comma or a space parts anything but groups of three digits.
+fn without_groups(text: &str) -> Option<Cow<'_, str>> {
+    let text = text.trim();
+    let sign = text.chars().next().filter(|c| "+-\u{2212}".contains(*c));
+    let unsigned = text.get(sign.map_or(0, char::len_utf8)..)?;
+    let is_separator = |c: char| c == ',' || (c.is_whitespace() && c != '\n');
+    let end = unsigned.find(|c: char| !(c.is_ascii_digit() || is_separator(c))).unwrap_or(unsigned.len());
+    let mut whole = unsigned.get(..end)?;
+    if unsigned.get(end..)?.starts_with('/') {
+        // The 1 of 1/s is the unit's.
+        whole = whole.get(..whole.rfind(is_separator).unwrap_or(end))?;
+    }
+    let whole = whole.trim_end_matches(char::is_whitespace);
+    let rest = unsigned.get(whole.len()..)?;
+    let mut groups = whole.split(is_separator);
+    let first = groups.next().unwrap_or_default();
+    let mut separators = whole.chars().filter(|&c| is_separator(c));
+    let separator = separators.next();
+    let has_comma_later = rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.').starts_with(',');
+    let good = separators.all(|c| Some(c) == separator)
+        && groups.all(|group| group.len() == 3)
+        && (1..=3).contains(&first.len())
+        && !first.starts_with('0');
+    if has_comma_later || separator.is_some() && !good {
+        return None;
+    }
+    if separator.is_none() && sign != Some('\u{2212}') {
+        return Some(Cow::Borrowed(text));
+    }
+    let digits = whole.chars().filter(char::is_ascii_digit);
+    let sign = sign.map(|sign| if sign == '\u{2212}' { '-' } else { sign });
+    Some(Cow::Owned(sign.into_iter().chain(digits).chain(rest.chars()).collect()))
 }
 
 /// The number that a text begins with, and what follows.

@@ -80,7 +80,7 @@ pub(super) fn largest_principal(m: &Matrix2<f64>) -> f64 {
 }
 
 /// The von Mises stress of in-plane stresses and the normal stress out of the plane, Pa.
-fn von_mises(stress: &Matrix2<f64>, z: f64) -> f64 {
+pub(super) fn von_mises(stress: &Matrix2<f64>, z: f64) -> f64 {
     let (a, b, c) = (stress.m11 - stress.m22, stress.m22 - z, z - stress.m11);
     // Scaled, so that squares of very large or small stresses stay in range.
     let scale = a.abs().max(b.abs()).max(c.abs()).max(stress.m12.abs());

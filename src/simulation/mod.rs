@@ -20,13 +20,18 @@ use crate::timings::Timings;
 
 mod field;
 mod motion;
+mod point;
 mod results;
 mod search;
 mod status;
 
 pub use self::motion::Motion;
 pub use field::Field;
-pub use results::{Deformation, Energy, ProbeResult, Reaction, energy, probe_results, reaction};
+pub use point::PointState;
+use results::supports_work;
+pub use results::{
+    Deformation, Energy, ProbeResult, Reaction, SupportReaction, energy, probe_results, reaction, support_reactions,
+};
 pub use status::Status;
 
 /// Why a scene cannot be simulated.
@@ -69,8 +74,10 @@ pub struct Solution {
     pub probes: Vec<ProbeResult>,
     /// Energies.
     pub energy: Energy,
-    /// Support reactions.
+    /// Support reactions, all together.
     pub reaction: Reaction,
+    /// The reaction of each.
+    pub supports: Vec<SupportReaction>,
     /// Time since the last edit, by stage.
     pub time: Timings,
     /// What `auto` skipped; `None` for other methods.
@@ -126,9 +133,10 @@ struct Body {
 
 impl Body {
     /// Whether a solve that starts where the body is has a chance.
-    fn is_useful_start(&self) -> bool {
+    fn is_useful_start(&self, same_unknowns: bool) -> bool {
         let system = self.problem.system();
-        is_useful_start(system, &self.state) && system.pattern().are_fixed_at_rest(&self.state.displacement)
+        let holds = || same_unknowns || system.pattern().are_fixed_at_rest(&self.state.displacement);
+        is_useful_start(system, &self.state) && holds()
     }
 }
 
@@ -212,14 +220,15 @@ impl Simulation {
         self.judge();
     }
 
-    /// Starts over from this displacement, m, one vector a node of the mesh, at rest; what supports fix does not move.
+    /// Starts over from this displacement, m, one vector a node of the mesh, at rest; what supports fix is where they
+    /// take it.
     ///
     /// # Errors
     /// [`StateError`] where there are not as many vectors as nodes, or one is not finite. Nothing is changed then.
     pub fn start_from(&mut self, u: &[Vector2<f64>]) -> Result<(), StateError> {
         let system = self.body.problem.system();
         let mut state = system.at_rest().with_displacement(u.to_vec())?;
-        system.pattern().stop_fixed(&mut state.displacement);
+        self.body.problem.supports().put(system.mesh(), 1.0, Kinematics::Corotated, &mut state.displacement);
         self.body.state = state;
         self.begin();
         Ok(())
@@ -263,7 +272,7 @@ impl Simulation {
         let before = std::mem::replace(&mut body.scene, scene.clone());
         if scene.analysis != before.analysis {
             body.problem.set_time(0.0);
-            let useful = body.is_useful_start();
+            let useful = body.is_useful_start(false);
             body.state.stop();
             if !useful {
                 body.state = start_of(scene, &body.problem);
@@ -301,6 +310,16 @@ impl Simulation {
     /// Where there is no such gravity, or its size is out of range. Nothing is changed then.
     pub fn set_gravity(&mut self, load: usize, acceleration: [f64; 2]) -> Result<(), SimulationError> {
         self.edit(|scene| scene.set_gravity(load, acceleration))
+    }
+
+    /// Sets where a support takes its place, m, and how far it turns it about its middle, rad; `support` counts the
+    /// scene's supports from 0.
+    ///
+    /// # Errors
+    /// Where there is no such support, it does not fix what is to move, or a number is out of range. Nothing is changed
+    /// then.
+    pub fn move_support(&mut self, support: usize, displacement: [f64; 2], turn: f64) -> Result<(), SimulationError> {
+        self.edit(|scene| scene.move_support(support, displacement, turn))
     }
 
     /// Sets the material.
@@ -443,6 +462,7 @@ impl Simulation {
     pub fn solution(&self) -> Solution {
         let Body { problem, state, .. } = &self.body;
         let (load_factor, load_steps) = self.load_stepping();
+        let supports = self.support_reactions();
         Solution {
             dofs: problem.system().dofs(),
             status: self.status.clone(),
@@ -452,8 +472,12 @@ impl Simulation {
             certificate: self.certificate(),
             deformation: Deformation::of(problem, state),
             probes: probe_results(problem, state),
-            energy: energy(problem, state, load_factor),
+            energy: Energy {
+                supports: supports_work(problem, &supports, load_factor),
+                ..energy(problem, state, load_factor)
+            },
             reaction: reaction(problem, state, self.forces()),
+            supports,
             time: *self.timings(),
             auto: self.auto_report(),
             motion: self.motion().map(|motion| MotionResult {
@@ -561,6 +585,13 @@ impl Simulation {
     #[must_use]
     pub fn load_stepping(&self) -> (f64, u32) {
         self.search().map_or((1.0, 1), Search::load_stepping)
+    }
+
+    /// What each support does to the body, in the scene's order.
+    #[must_use]
+    pub fn support_reactions(&self) -> Vec<SupportReaction> {
+        let kinematics = if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated };
+        support_reactions(&self.body.problem, &self.body.state, kinematics, self.forces())
     }
 
     /// Whether the state is linear theory's; if not, its elements are turned back before their strain is measured.

@@ -3,8 +3,9 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::field::largest_principal;
-use crate::assembly::{Forces, Problem};
+use crate::assembly::{Forces, Kinematics, Problem};
 use crate::rotation::polar;
+use crate::scene::Place;
 use crate::state::State;
 
 /// What a probe sees.
@@ -27,6 +28,9 @@ pub struct Energy {
     pub elastic: f64,
     /// Work of the loads at their present size, from rest.
     pub external: f64,
+    /// Work of the supports that move, their reactions at their present size, from rest: force times way and moment
+    /// times turn.
+    pub supports: f64,
 }
 
 /// What the supports do to the body.
@@ -35,6 +39,20 @@ pub struct Reaction {
     /// Total force, N.
     pub force: Vector2<f64>,
     /// Total moment about the origin, with current lever arms, N m, counter-clockwise.
+    pub moment: f64,
+}
+
+/// What one support does to the body.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SupportReaction {
+    /// Where it is.
+    pub place: Place,
+    /// Where its middle is now, m.
+    pub middle: Vector2<f64>,
+    /// Its force, N.
+    pub force: Vector2<f64>,
+    /// Its moment about its middle, N m, counter-clockwise: of linear theory at rest, else where it is now.
     pub moment: f64,
 }
 
@@ -87,7 +105,8 @@ pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
 /// Energies of a state at a load factor.
 #[must_use]
 pub fn energy(problem: &Problem, state: &State, load_factor: f64) -> Energy {
-    Energy { elastic: problem.elastic_energy(state), external: -problem.loads().potential(state, load_factor) }
+    let external = -problem.loads().potential(state, load_factor);
+    Energy { elastic: problem.elastic_energy(state), external, supports: 0.0 }
 }
 
 /// f_int − f_ext on the fixed unknowns.
@@ -102,4 +121,41 @@ pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Reaction {
         total.moment += (x + u).perp(&force);
     }
     total
+}
+
+/// What each support does to the body: f_int − f_ext on the unknowns it fixes. An unknown that several fix is the first
+/// one's.
+#[must_use]
+pub fn support_reactions(
+    problem: &Problem,
+    state: &State,
+    kinematics: Kinematics,
+    forces: &Forces,
+) -> Vec<SupportReaction> {
+    let mesh = problem.system().mesh();
+    let place = |node: u32| match kinematics {
+        Kinematics::Linear => mesh.node(node),
+        Kinematics::Corotated => mesh.node(node) + state.displacement[node as usize],
+    };
+    let react = problem.supports().all().iter().map(|support| {
+        let middle: Vector2<f64> = support.weights.iter().map(|&(node, weight)| place(node) * weight).sum();
+        let (mut force, mut moment) = (Vector2::zeros(), 0.0);
+        for &(node, own) in &support.nodes {
+            let own = Vector2::from(own.map(|own| if own { 1.0 } else { 0.0 }));
+            let nodal = -forces.residual()[node as usize].component_mul(&own);
+            force += nodal;
+            moment += (place(node) - middle).perp(&nodal);
+        }
+        let moved: Vector2<f64> =
+            support.weights.iter().map(|&(n, weight)| state.displacement[n as usize] * weight).sum();
+        SupportReaction { place: support.place.clone(), middle: support.middle + moved, force, moment }
+    });
+    react.collect()
+}
+
+/// The work of supports that move, their reactions at their present size, J.
+pub(super) fn supports_work(problem: &Problem, reactions: &[SupportReaction], load_factor: f64) -> f64 {
+    let pairs = problem.supports().all().iter().zip(reactions);
+    let work: f64 = pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.turn).sum();
+    load_factor * work
 }

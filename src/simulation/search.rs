@@ -3,13 +3,13 @@
 use nalgebra::Vector2;
 
 use super::{Body, Status};
-use crate::assembly::{Change, Forces, Kinematics, Problem};
+use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
 use crate::element::Tangent;
 use crate::method::{
     AutoReport, Certificate, Iteration, IterationError, Method, Reason, Restart, Tolerances, Verdict, Workspace,
     fixed_point_rho, is_stable, measure,
 };
-use crate::scene::{Scene, SolverSettings};
+use crate::scene::{Scene, SolverSettings, Support};
 use crate::solver::SolverError;
 use crate::state::State;
 use crate::timings::{Timings, timed};
@@ -69,7 +69,11 @@ impl Search {
             self.workspace.tangent = None;
         }
         let same_method = body.scene.solver.method == before.solver.method;
-        let keeps_state = same_method && !matches!(self.status, Status::Diverged(_)) && body.is_useful_start();
+        let same_unknowns = change <= Change::Stiffness;
+        let keeps_state = same_method
+            && !matches!(self.status, Status::Diverged(_))
+            && self.can_follow(&before.supports, &body.scene.supports)
+            && body.is_useful_start(same_unknowns);
         if !same_method {
             self.method = (body.scene.solver.method.entry().start)();
         }
@@ -81,6 +85,14 @@ impl Search {
             self.restart(body, Restart::AtRest);
         }
         Ok(())
+    }
+
+    /// Whether the body can go on from where it is to where other supports take it: not where these turn far, or were
+    /// still turning. It would not be known how often they have gone round.
+    fn can_follow(&self, before: &[Support], after: &[Support]) -> bool {
+        let far = |angle: f64| angle.abs() > LARGEST_TURN;
+        let mut pairs = before.iter().zip(after);
+        before == after || !pairs.any(|(a, b)| far(b.turn - a.turn) || far(a.turn) && self.status != Status::Converged)
     }
 
     /// Forgets iterations and times, and measures the state it starts from.
@@ -98,9 +110,9 @@ impl Search {
         } else {
             if why == Restart::AtRest {
                 self.method.restart(why);
-                self.follow_displacement(body, &mut unmeasured);
             }
-            self.measure_forces(body, self.method.tangent(), self.method.load_factor(), &mut unmeasured);
+            let wanted = (self.method.tangent(), self.method.load_factor());
+            self.measure_forces(body, why == Restart::AtRest, wanted, &mut unmeasured);
         }
         let verdict = self.with_method(body, &mut unmeasured, |method, it| method.judge(it));
         self.follow(body, verdict, &mut unmeasured);
@@ -176,29 +188,24 @@ impl Search {
             self.status = Reason::IterationLimit(most).into();
             self.method.stop(&mut body.state);
             // What is missing to the whole load.
-            self.follow_displacement(body, timings);
-            self.measure_forces(body, None, 1.0, timings);
+            self.measure_forces(body, true, (None, 1.0), timings);
         }
     }
 
     /// Rotations, forces and residual of the current state under the load that is on the body at present, and the
     /// tangent that the next iteration needs.
     fn measure(&mut self, body: &mut Body, timings: &mut Timings) {
-        self.follow_displacement(body, timings);
-        self.measure_forces(body, self.method.tangent(), self.method.load_factor(), timings);
+        self.measure_forces(body, true, (self.method.tangent(), self.method.load_factor()), timings);
     }
 
-    fn follow_displacement(&mut self, body: &mut Body, timings: &mut Timings) {
-        let kinematics = self.method.kinematics();
-        timed(&mut timings.rotate, || body.problem.system().follow(&mut body.state, kinematics));
-    }
-
-    fn measure_forces(&mut self, body: &Body, tangent: Option<Tangent>, load_factor: f64, timings: &mut Timings) {
+    /// Forces and residual, and a tangent where one is wanted, under a load factor; rotations `follow` a displacement that
+    /// is new.
+    fn measure_forces(&mut self, body: &mut Body, follow: bool, wanted: (Option<Tangent>, f64), timings: &mut Timings) {
         self.residual = measure(
             &body.problem,
-            &body.state,
-            self.method.kinematics(),
-            (tangent, load_factor),
+            &mut body.state,
+            (self.method.kinematics(), follow),
+            wanted,
             &mut self.forces,
             &mut self.workspace,
             timings,

@@ -78,14 +78,9 @@ impl Chart<'_> {
         let times = self.points.iter().map(|p| p.time).chain(self.mark.iter().map(|m| m.time));
         let x = Axis::new(times, LEFT, SIZE[0] - LEFT - RIGHT);
         let y = Axis::new(self.points.iter().map(|p| p.error), SIZE[1] - BOTTOM, -(SIZE[1] - TOP - BOTTOM));
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" font-family=\"Ubuntu, sans-serif\" font-size=\"13\">\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{LEFT}\" y=\"28\" font-size=\"16\">{}</text>\n",
-            SIZE[0],
-            SIZE[1],
-            escape(&self.title)
-        );
-        self.axes(&mut svg, &x, &y);
+        let mut svg = head(&self.title);
+        grid(&mut svg, [&x, &y], [self.time_label, self.error_label]);
+        self.mark(&mut svg, &x);
         let mut front: Vec<&Point> = self.points.iter().filter(|p| p.front).collect();
         front.sort_by(|a, b| a.time.total_cmp(&b.time));
         let mut line = String::new();
@@ -104,27 +99,8 @@ impl Chart<'_> {
         svg
     }
 
-    fn axes(&self, svg: &mut String, x: &Axis, y: &Axis) {
-        let (right, bottom) = (SIZE[0] - RIGHT, SIZE[1] - BOTTOM);
-        for t in x.decades() {
-            let at = x.place(t);
-            let _ = writeln!(
-                svg,
-                "<line x1=\"{at}\" y1=\"{TOP}\" x2=\"{at}\" y2=\"{bottom}\" stroke=\"#ddd\"/><text x=\"{at}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                bottom + 18.0,
-                number(t)
-            );
-        }
-        for e in y.decades() {
-            let at = y.place(e);
-            let _ = writeln!(
-                svg,
-                "<line x1=\"{LEFT}\" y1=\"{at}\" x2=\"{right}\" y2=\"{at}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
-                LEFT - 8.0,
-                at + 4.0,
-                number(e)
-            );
-        }
+    fn mark(&self, svg: &mut String, x: &Axis) {
+        let bottom = SIZE[1] - BOTTOM;
         if let Some(mark) = &self.mark {
             let at = x.place(mark.time);
             let _ = writeln!(
@@ -135,16 +111,6 @@ impl Chart<'_> {
                 mark.label
             );
         }
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n\
-             <text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-            0.5 * (LEFT + right),
-            SIZE[1] - 14.0,
-            self.time_label,
-            0.5 * (TOP + bottom),
-            self.error_label
-        );
     }
 
     fn key(&self, svg: &mut String) {
@@ -179,6 +145,94 @@ impl Chart<'_> {
     }
 }
 
+/// The start of a picture.
+fn head(title: &str) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" font-family=\"Ubuntu, sans-serif\" font-size=\"13\">\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{LEFT}\" y=\"28\" font-size=\"16\">{}</text>\n",
+        SIZE[0],
+        SIZE[1],
+        escape(title)
+    )
+}
+
+/// The lines of the decades with their numbers, and what the axes mean.
+fn grid(svg: &mut String, [x, y]: [&Axis; 2], labels: [&str; 2]) {
+    let (right, bottom) = (SIZE[0] - RIGHT, SIZE[1] - BOTTOM);
+    for t in x.decades() {
+        let at = x.place(t);
+        let _ = writeln!(
+            svg,
+            "<line x1=\"{at}\" y1=\"{TOP}\" x2=\"{at}\" y2=\"{bottom}\" stroke=\"#ddd\"/><text x=\"{at}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+            bottom + 18.0,
+            number(t)
+        );
+    }
+    for e in y.decades() {
+        let at = y.place(e);
+        let _ = writeln!(
+            svg,
+            "<line x1=\"{LEFT}\" y1=\"{at}\" x2=\"{right}\" y2=\"{at}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
+            LEFT - 8.0,
+            at + 4.0,
+            number(e)
+        );
+    }
+    let _ = writeln!(
+        svg,
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n\
+         <text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+        0.5 * (LEFT + right),
+        SIZE[1] - 14.0,
+        labels[0],
+        0.5 * (TOP + bottom),
+        labels[1]
+    );
+}
+
+/// Lines over logarithmic axes, one an element.
+pub(super) struct LogLog<'a> {
+    pub title: String,
+    pub x_label: &'a str,
+    pub y_label: &'a str,
+    pub series: Vec<Series>,
+}
+
+/// The line of an element.
+pub(super) struct Series {
+    pub element: ElementKind,
+    pub color: [u8; 3],
+    pub points: Vec<(f64, f64)>,
+}
+
+impl LogLog<'_> {
+    pub fn svg(&self) -> String {
+        let points = || self.series.iter().flat_map(|s| &s.points);
+        let x = Axis::new(points().map(|p| p.0), LEFT, SIZE[0] - LEFT - RIGHT);
+        let y = Axis::new(points().map(|p| p.1), SIZE[1] - BOTTOM, -(SIZE[1] - TOP - BOTTOM));
+        let mut svg = head(&self.title);
+        grid(&mut svg, [&x, &y], [self.x_label, self.y_label]);
+        for (i, Series { element, color, points }) in self.series.iter().enumerate() {
+            let [r, g, b] = color;
+            let places: Vec<[f64; 2]> = points.iter().map(|p| [x.place(p.0), y.place(p.1)]).collect();
+            let line: String = places.iter().map(|[x, y]| format!("{x:.1},{y:.1} ")).collect();
+            let _ = writeln!(
+                svg,
+                "<polyline points=\"{line}\" fill=\"none\" stroke=\"#{r:02x}{g:02x}{b:02x}\" stroke-width=\"1.5\"/>"
+            );
+            for [x, y] in places {
+                let _ = writeln!(svg, "{}", shape(x, y, *element, *color, 4.5));
+            }
+            let row = TOP + 10.0 + ROW * i as f64;
+            let symbol = shape(SIZE[0] - RIGHT + 22.0, row, *element, *color, 5.0);
+            let at = [SIZE[0] - RIGHT + 36.0, row + 4.0];
+            let _ = writeln!(svg, "{symbol}<text x=\"{}\" y=\"{}\">{}</text>", at[0], at[1], element.id());
+        }
+        svg.push_str("</svg>\n");
+        svg
+    }
+}
+
 /// A mark for every element: as many corners as it has nodes.
 fn shape(x: f64, y: f64, element: ElementKind, [r, g, b]: [u8; 3], size: f64) -> String {
     let corners = element.entry().nodes.len();
@@ -191,6 +245,6 @@ fn shape(x: f64, y: f64, element: ElementKind, [r, g, b]: [u8; 3], size: f64) ->
     format!("<path d=\"M{}Z\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>", path.join("L"))
 }
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

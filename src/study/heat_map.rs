@@ -41,7 +41,7 @@ pub fn heat_map(entries: &[Entry]) -> String {
                 let cell = |alpha: &f64| {
                     let here = entries.iter().filter(|e| {
                         let c = &e.case;
-                        (c.element, c.method, c.start) == (element, method, *start)
+                        (c.element, c.method, c.start, c.moved) == (element, method, *start, false)
                             && c.alpha == *alpha
                             && c.slenderness == *slenderness
                     });

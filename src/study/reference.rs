@@ -1,13 +1,14 @@
 //! What errors are measured against, one truth for one scene everywhere: the exact beam of [`crate::truth`] where plane
 //! elasticity agrees with it, else a fine six-node solution.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
 
 use super::StudyError;
 use crate::assembly::System;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Segment};
 use crate::scene::{Analysis, ElementKind, MethodKind, Place, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
 use crate::truth::{BeamTruth, error_percent};
@@ -60,6 +61,11 @@ pub struct Reference {
     pub error_percent: f64,
     /// How far the exact beam is from the fine solution that had to replace it, percent.
     pub beam_off_by_percent: Option<f64>,
+    /// The true outline of the body, m: closed lines.
+    pub outline: Vec<Vec<Vector2<f64>>>,
+    /// What linear theory gives for the first probe without an error of its mesh, m: what is missing to the truth is the
+    /// theory's.
+    pub linear: Option<Vector2<f64>>,
 }
 
 impl std::fmt::Display for Reference {
@@ -87,6 +93,8 @@ const BEAM_AGREES: f64 = 0.5;
 /// A solution on a fine mesh and its estimated error.
 struct Fine {
     probes: Vec<Vector2<f64>>,
+    outline: Vec<Vec<Vector2<f64>>>,
+    linear: Option<Vector2<f64>>,
     error_percent: f64,
     source: TruthSource,
 }
@@ -105,7 +113,10 @@ impl Reference {
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
-        let beam = BeamTruth::of(scene).and_then(|t| t.tip_displacement());
+        let exact = BeamTruth::of(scene);
+        let beam = exact.and_then(|t| t.tip_displacement());
+        let height = scene.beam.as_ref().map_or(0.0, |beam| beam.height);
+        let beam_outline = || exact.and_then(|t| t.outline(height)).map(|line| vec![line]);
         let at_tip: Vec<bool> = scene.probes.iter().map(|p| p.place == Place::from("right")).collect();
         match (beam, fine(scene)) {
             (Some(beam), Ok(fine)) => {
@@ -121,6 +132,8 @@ impl Reference {
                     probes: probes.collect(),
                     error_percent: if first_is_beam { off.unwrap_or(0.0) } else { fine.error_percent },
                     beam_off_by_percent: off.filter(|_| !agrees),
+                    outline: beam_outline().filter(|_| first_is_beam).unwrap_or(fine.outline),
+                    linear: fine.linear,
                 })
             }
             // Extremely slender: nothing to compare with, and nothing better.
@@ -128,11 +141,15 @@ impl Reference {
                 probes: vec![ProbeTruth { displacement: beam, source: TruthSource::ExactBeam }; at_tip.len()],
                 error_percent: 0.0,
                 beam_off_by_percent: None,
+                outline: beam_outline().unwrap_or_default(),
+                linear: None,
             }),
-            (_, Ok(Fine { probes, error_percent, source })) => Ok(Self {
+            (_, Ok(Fine { probes, outline, linear, error_percent, source })) => Ok(Self {
                 probes: probes.into_iter().map(|displacement| ProbeTruth { displacement, source }).collect(),
                 error_percent,
                 beam_off_by_percent: None,
+                outline,
+                linear,
             }),
             (_, Err(error)) => Err(error),
         }
@@ -175,7 +192,7 @@ fn fine(scene: &Scene) -> Result<Fine, StudyError> {
                 if let Some(beam) = &mut scene.beam {
                     beam.cells = [along, across];
                 }
-                end(&scene, MethodKind::Newton, &system_of(&scene)?)
+                run_to_end(&scene, MethodKind::Newton, &system_of(&scene)?)
             };
             (solve(FINE / 2)?, solve(FINE)?, TruthSource::FineSolution)
         }
@@ -186,9 +203,9 @@ fn fine(scene: &Scene) -> Result<Fine, StudyError> {
             }
             let solve = |mesh: &Mesh| {
                 let system = System::with_mesh(&scene, mesh.clone()).map_err(SimulationError::from)?;
-                end(&scene, MethodKind::Newton, &Arc::new(system))
+                run_to_end(&scene, MethodKind::Newton, &Arc::new(system))
             };
-            let mut coarse = end(&scene, MethodKind::Newton, &system)?;
+            let mut coarse = run_to_end(&scene, MethodKind::Newton, &system)?;
             let mut mesh = system.mesh().refined();
             let mut fine = solve(&mesh)?;
             while mesh.element_count() < FINE_ELEMENTS {
@@ -198,9 +215,35 @@ fn fine(scene: &Scene) -> Result<Fine, StudyError> {
             (coarse, fine, TruthSource::RefinedMesh)
         }
     };
-    let first = |probes: &[Vector2<f64>]| probes.first().copied().unwrap_or_default();
-    let error_percent = error_percent(first(&coarse), first(&fine)).unwrap_or(0.0);
-    Ok(Fine { probes: fine, error_percent, source })
+    let probes = probe_displacements(&fine);
+    let first = probes.first().copied().unwrap_or_default();
+    let coarse = probe_displacements(&coarse).first().copied().unwrap_or_default();
+    let error_percent = error_percent(coarse, first).unwrap_or(0.0);
+    let linear = end(fine.scene(), MethodKind::Linear, fine.system())?.first().copied();
+    Ok(Fine { probes, outline: outline(&fine), linear, error_percent, source })
+}
+
+/// The closed lines around a body, m, node by node.
+fn outline(simulation: &Simulation) -> Vec<Vec<Vector2<f64>>> {
+    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
+    let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
+    for side in mesh.outline() {
+        sides.entry(side.ends()[0]).or_default().push(side);
+    }
+    let mut lines = Vec::new();
+    while let Some((&first, _)) = sides.first_key_value() {
+        let (mut line, mut corner) = (Vec::new(), first);
+        while let Some(own) = sides.get_mut(&corner) {
+            let Some(side) = own.pop() else { break };
+            if own.is_empty() {
+                sides.remove(&corner);
+            }
+            line.extend(side.nodes().iter().map(|&n| mesh.nodes()[n as usize] + u[n as usize]));
+            corner = side.ends()[1];
+        }
+        lines.push(line);
+    }
+    lines
 }
 
 /// The equations of a scene.
@@ -208,8 +251,8 @@ pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
     Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
 }
 
-/// Displacements of the probes where a method ends, given all the iterations it needs.
-pub(super) fn end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Vec<Vector2<f64>>, StudyError> {
+/// A method run to its end, given all the iterations it needs.
+fn run_to_end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Simulation, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
     scene.solver.max_iterations = scene.solver.max_iterations.max(200);
@@ -217,8 +260,17 @@ pub(super) fn end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Re
     if *simulation.solve() != Status::Converged && method == MethodKind::Newton {
         return Err(StudyError::NoTruth);
     }
+    Ok(simulation)
+}
+
+/// Displacements of the probes where a method ends, given all the iterations it needs.
+pub(super) fn end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Vec<Vector2<f64>>, StudyError> {
+    Ok(probe_displacements(&run_to_end(scene, method, system)?))
+}
+
+fn probe_displacements(simulation: &Simulation) -> Vec<Vector2<f64>> {
     let displacement = simulation.displacement();
-    Ok(simulation.problem().probes().iter().map(|p| p.mean(displacement)).collect())
+    simulation.problem().probes().iter().map(|p| p.mean(displacement)).collect()
 }
 
 /// Displacement of the first probe, m.

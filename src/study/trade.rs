@@ -4,10 +4,14 @@
 //! factor of the stiffness at rest that `auto` keeps) is there.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
-use super::pareto;
+use nalgebra::Vector2;
+
 use super::reference::{Reference, end, first_probe, system_of};
 use super::timing::times_from_rest;
+use super::{parallel, pareto};
+use crate::assembly::System;
 use crate::dynamics::StopReason;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
@@ -143,6 +147,9 @@ pub enum StudyError {
     /// The fine motion that would be the truth cannot go on.
     #[error("no truth: the fine motion of the scene stops: {0}")]
     NoPath(StopReason),
+    /// A mesh from a file cannot be made of other cells.
+    #[error("expected a scene with [beam]: this measures it on coarser and finer meshes")]
+    NoBeam,
     /// Nothing to compare.
     #[error("expected a scene with a probe that moves; errors are measured there")]
     NoProbe,
@@ -197,10 +204,16 @@ impl Study {
         let meshes = meshes(scene, extent);
         let all: f64 = meshes.iter().map(|m| m.weight).sum();
         let mut study = Self::begin(scene, observe)?;
+        // What is not timed first, on all cores: the timed part is then alone on the machine.
+        let ends = |mesh: &MeshChoice| MeshEnds::find(scene, mesh);
+        let ends = parallel::map(&meshes, ends, |_| {
+            observe(Progress { fraction: 0.0, now: "the ends of the methods", so_far: None })
+        });
         let mut done = 0.0;
-        for mesh in &meshes {
+        for (mesh, ends) in meshes.iter().zip(ends) {
             let fraction = done / all;
-            study.measure(scene, mesh, &mut |now| check(observe(Progress { fraction, now, so_far: None })))?;
+            let ends = ends.ok_or(StudyError::Cancelled)??;
+            study.measure(scene, mesh, &ends, &mut |now| check(observe(Progress { fraction, now, so_far: None })))?;
             done += mesh.weight;
             check(observe(Progress { fraction: done / all, now: "", so_far: Some(&study) }))?;
         }
@@ -227,24 +240,17 @@ impl Study {
         &mut self,
         scene: &Scene,
         mesh: &MeshChoice,
+        ends: &MeshEnds,
         say: &mut dyn FnMut(&str) -> Result<(), StudyError>,
     ) -> Result<(), StudyError> {
         let MeshChoice { element, cells, .. } = *mesh;
         let words = mesh_words(element, cells);
         let truth = self.reference.first().displacement;
         let percent = |a, b| self.reference.percent(a, b);
-        let with = |method| Setting { element, cells, method, iterations: 1 }.apply(scene);
-        let meshed = with(MethodKind::Newton);
-        say(&words)?;
-        let system = system_of(&meshed)?;
-        let first_end = |method| -> Result<_, StudyError> {
-            Ok(end(&meshed, method, &system)?.first().copied().unwrap_or_default())
-        };
-        let exact = first_end(MethodKind::Newton)?;
-        let linear = first_end(MethodKind::Linear)?;
+        let MeshEnds { system, exact, linear } = ends;
         for method in METHODS.iter().map(|m| m.kind) {
             say(&format!("{words}, {}", method.id()))?;
-            let mut simulation = Simulation::with_system(&with(method), system.clone())?;
+            let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` has no number of iterations to choose: it ends by itself.
             let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };
             let times = times_from_rest(&mut simulation, most);
@@ -257,7 +263,7 @@ impl Study {
                 }
                 let tip = first_probe(&simulation)?;
                 // Where a corotated method ends it is at the exact equilibrium; where not, there is no end.
-                let own_end = if simulation.is_linear() { linear } else { exact };
+                let own_end = *if simulation.is_linear() { linear } else { exact };
                 self.measurements.push(Measurement {
                     setting: Setting { element, cells, method, iterations },
                     dofs: simulation.system().dofs(),
@@ -265,9 +271,9 @@ impl Study {
                     time,
                     error: ErrorSplit {
                         total: percent(tip, truth),
-                        discretization: percent(exact, truth),
+                        discretization: percent(*exact, truth),
                         iteration: percent(tip, own_end),
-                        model: percent(own_end, exact),
+                        model: percent(own_end, *exact),
                     },
                     pareto: false,
                 });
@@ -311,6 +317,34 @@ pub(super) struct MeshChoice {
     pub cells: Option<[u32; 2]>,
     /// About how long it takes, over others.
     pub weight: f64,
+}
+
+impl MeshChoice {
+    fn with(&self, method: MethodKind) -> Setting {
+        Setting { element: self.element, cells: self.cells, method, iterations: 1 }
+    }
+}
+
+/// A mesh with where methods end on it: displacements of the first probe, m.
+#[derive(Clone, Debug)]
+pub(super) struct MeshEnds {
+    system: Arc<System>,
+    /// Its exact equilibrium …
+    exact: Vector2<f64>,
+    /// … and that of linear theory.
+    linear: Vector2<f64>,
+}
+
+impl MeshEnds {
+    pub fn find(scene: &Scene, mesh: &MeshChoice) -> Result<Self, StudyError> {
+        let meshed = mesh.with(MethodKind::Newton).apply(scene);
+        let system = system_of(&meshed)?;
+        let first_end = |method| -> Result<_, StudyError> {
+            Ok(end(&meshed, method, &system)?.first().copied().unwrap_or_default())
+        };
+        let (exact, linear) = (first_end(MethodKind::Newton)?, first_end(MethodKind::Linear)?);
+        Ok(Self { system, exact, linear })
+    }
 }
 
 /// The meshes of a scene, coarse to fine for each element.

@@ -1,6 +1,6 @@
 //! The cheapest setting that is good enough and fast enough: element, mesh and method chosen for a demand.
 
-use super::trade::{Extent, Measurement, MeshChoice, Observer, Progress, Study, StudyError, check, meshes};
+use super::trade::{Extent, Measurement, MeshChoice, MeshEnds, Observer, Progress, Study, StudyError, check, meshes};
 use crate::scene::Scene;
 
 /// What is asked of a solve. What is left out is not asked.
@@ -88,7 +88,8 @@ impl Tuning {
             let MeshChoice { weight, .. } = *mesh;
             let before = study.measurements.len();
             let fraction = done / all;
-            study.measure(scene, mesh, &mut |now| check(observe(Progress { fraction, now, so_far: None })))?;
+            let ends = MeshEnds::find(scene, mesh)?;
+            study.measure(scene, mesh, &ends, &mut |now| check(observe(Progress { fraction, now, so_far: None })))?;
             done += weight;
             let added = &study.measurements[before..];
             let met = demand.max_error_percent.is_some() && added.iter().any(|m| m.converged && study.meets(m, demand));

@@ -70,10 +70,11 @@ impl<'a> Choices<'a> {
     fn scene(&mut self) -> String {
         let edges = ["left", "right", "bottom", "top"];
         let mut text = format!(
-            "name = \"Random\"\n[beam]\nlength = {}\nheight = {}\ncells = [{}, {}]\nelement = \"{}\"\ndiagonals = \"{}\"\n\
+            "name = \"Random\"\n[beam]\nlength = {}\nheight = {}\nrise = {}\ncells = [{}, {}]\nelement = \"{}\"\ndiagonals = \"{}\"\n\
              [material]\nyoung = {}\npoisson = {:?}\ndensity = {}\nthickness = {}\nplane = \"{}\"\n",
             self.number(),
             self.number(),
+            if self.below(3) == 0 { self.number() } else { "0.0".to_owned() },
             1 + self.below(12),
             1 + self.below(4),
             self.of(&["t3", "t6"]),
@@ -87,6 +88,13 @@ impl<'a> Choices<'a> {
         for _ in 0..=self.below(2) {
             let fix = self.of(&["\"x\", \"y\"", "\"x\", \"y\"", "\"x\"", "\"y\""]);
             text += &format!("[[support]]\nedge = \"{}\"\nfix = [{fix}]\n", self.of(&edges));
+            text += &match self.below(12) {
+                0 if fix.len() > 3 => format!("displacement = [{}, {}]\n", self.number(), self.number()),
+                1 => format!("displacement = [0.0, {}]\n", self.number()),
+                2 => format!("displacement = [0.0, {}]\nturn = {}\n", self.number(), self.number()),
+                3 => format!("turn = {:e}\n", f64::from(self.byte()) / 25.0 - 5.0),
+                _ => String::new(),
+            };
         }
         for _ in 0..=self.below(2) {
             text += &match self.below(5) {

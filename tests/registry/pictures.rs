@@ -87,7 +87,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
             continue;
         }
         let [x, y] = [0, 1].map(|i| ((a[i] + b[i] + c[i]) / 3.0) as u32);
-        let expected = colormap::color(colormap::position(value.unwrap(), frame.range));
+        let expected = frame.map.color(colormap::position(value.unwrap(), frame.range));
         let got = pixel(&picture, x, y);
         if distance(expected, got) <= 2 {
             seen += 1;

@@ -1,14 +1,60 @@
-//! Material, mesh, element, method.
+//! Material and mesh.
 
-use egui::{ComboBox, Ui};
+use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, number_row};
 use crate::app::action::MOST_ITERATIONS;
 use crate::app::field::{NumberField, show_message};
-use crate::method::METHODS;
-use crate::scene::{Analysis, Plane, Scene, limits};
+use crate::scene::{Analysis, Material, Plane, Scene, limits};
+use crate::words::{count, engineering};
+
+/// A material with a name.
+struct Preset {
+    name: &'static str,
+    /// Young's modulus, Pa, and what of it still goes by the name.
+    young: f64,
+    range: std::ops::RangeInclusive<f64>,
+    poisson: f64,
+    /// kg/m³.
+    density: f64,
+}
+
+const PRESETS: [Preset; 4] = [
+    Preset { name: "Rubber", young: 1e6, range: 1e5..=5e7, poisson: 0.49, density: 1100.0 },
+    Preset { name: "Wood", young: 1.1e10, range: 8e9..=1.5e10, poisson: 0.35, density: 600.0 },
+    Preset { name: "Aluminium", young: 7e10, range: 6.5e10..=7.5e10, poisson: 0.33, density: 2700.0 },
+    Preset { name: "Steel", young: 2.1e11, range: 1.9e11..=2.2e11, poisson: 0.3, density: 7850.0 },
+];
+
+/// The material in a few words: `rubber, 1 MPa`.
+pub(super) fn material_summary(scene: &Scene) -> String {
+    let young = scene.material.young;
+    let name = PRESETS.iter().find(|preset| preset.range.contains(&young)).map(|p| p.name.to_lowercase());
+    name.into_iter().chain([engineering(young, "Pa")]).collect::<Vec<_>>().join(", ")
+}
+
+/// The mesh in a few words: `5 × 1, 24 unknowns`.
+pub(super) fn mesh_summary(input: &PanelInput<'_>) -> String {
+    let cells = input
+        .scene
+        .beam
+        .as_ref()
+        .map_or_else(|| "from a file".to_owned(), |beam| format!("{} × {}", beam.cells[0], beam.cells[1]));
+    format!("{cells}, {}", count(input.simulation.system().dofs() as u64, "unknown"))
+}
 
 pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        for Preset { name, young, poisson, density, .. } in PRESETS {
+            let preset = Material { young, poisson, density, ..scene.material };
+            let tip = format!("E {}, ν {poisson}, {}", engineering(young, "Pa"), engineering(density, "kg/m³"));
+            let chosen = preset == scene.material;
+            if ui.selectable_label(chosen, name).on_hover_text(tip).clicked() && !chosen {
+                actions.push(Action::Edit("Young E", Box::new(Scene { material: preset, ..scene.clone() })));
+            }
+        }
+    });
     let mut row = |field: NumberField, value: f64, set: fn(&mut Scene, f64)| {
         number_row(ui, scene, state, actions, (field, value), set);
     };
@@ -77,7 +123,7 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
     show_message(ui, &state.messages, "Plane");
 }
 
-pub(super) fn mesh_and_method(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+pub(super) fn mesh(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     for (axis, label, tooltip, most) in [
         (0, "Cells along", "Cells along the beam; each is two triangles or a quadrilateral.", 400.0),
@@ -100,38 +146,6 @@ pub(super) fn mesh_and_method(ui: &mut Ui, input: &PanelInput<'_>, state: &mut P
             actions.push(Action::Edit(label, scene));
         }
     }
-    ui.horizontal(|ui| {
-        let label = ui.label("Method");
-        ComboBox::from_id_salt("method")
-            .selected_text(scene.solver.method.id())
-            .show_ui(ui, |ui| {
-                for entry in METHODS {
-                    let selected = entry.kind == scene.solver.method;
-                    if ui.selectable_label(selected, entry.kind.id()).on_hover_text(entry.about).clicked() && !selected
-                    {
-                        let mut scene = Box::new(scene.clone());
-                        scene.solver.method = entry.kind;
-                        actions.push(Action::Edit("Method", scene));
-                    }
-                }
-            })
-            .response
-            .labelled_by(label.id)
-            .on_hover_text(scene.solver.method.entry().about);
-    });
-    show_message(ui, &state.messages, "Method");
-    ui.horizontal(|ui| {
-        ui.label("Element");
-        for element in scene.elements() {
-            let selected = scene.element() == element;
-            if ui.radio(selected, element.id()).on_hover_text(element.entry().about).clicked() && !selected {
-                let mut scene = Box::new(scene.clone());
-                scene.set_element(element);
-                actions.push(Action::Edit("Element", scene));
-            }
-        }
-    });
-    show_message(ui, &state.messages, "Element");
     if scene.analysis == Analysis::Dynamic {
         return;
     }

@@ -1,37 +1,55 @@
-//! The panel: parameters in, actions out. It never touches the simulation.
+//! The panel: parameters in, actions out. It never touches the simulation. Four controls are open; the rest is folded
+//! behind headers that say what is in them.
 
-use egui::{Button, ComboBox, RichText, ScrollArea, Ui};
+use egui::collapsing_header::{CollapsingState, paint_default_icon};
+use egui::scroll_area::ScrollBarVisibility;
+use egui::{Align2, ComboBox, FontId, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::action::{Action, ViewOptions};
-use super::field::{Messages, NumberField};
+use super::arrow::DOWN;
+use super::field::{Messages, NumberField, show_message};
+use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
-use crate::scene::{Analysis, Scene, registry};
+use super::toolbar::choice;
+use super::verdict::Errors;
+use crate::method::METHODS;
+use crate::scene::{Analysis, Scene};
 use crate::simulation::Simulation;
-use crate::study::Reference;
+use crate::study::{Jump, Reference};
 use crate::timings::Timings;
 
 mod body;
+mod edges;
 mod loads;
 mod motion;
 mod result;
+mod supports;
 mod view;
 
-pub(super) use result::status_words;
 pub(super) use view::range_of;
 
-/// What the panel shows.
+/// What toolbar, panel and headlines show.
+#[derive(Clone, Copy)]
 pub(super) struct PanelInput<'a> {
     pub scene: &'a Scene,
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
+    /// The same scene under linear theory.
+    pub linear: Option<&'a Simulation>,
     pub running: bool,
     pub playback: &'a Playback,
     /// Iterations a displayed frame.
     pub iterations: u32,
     /// Time of the last iterations made for one displayed frame.
     pub timings: &'a Timings,
+    /// The residual after every iteration since the last change.
+    pub residuals: &'a [f64],
+    pub can_undo: bool,
+    pub can_redo: bool,
     /// What errors are measured against, once it is known.
     pub truth: Option<&'a Reference>,
+    /// Where the body jumps on its way from rest, once it is known.
+    pub jump: Option<&'a Jump>,
     pub adapter: &'a str,
 }
 
@@ -49,48 +67,101 @@ impl PanelState {
     pub(super) fn clear(&mut self) {
         *self = Self::default();
     }
+
+    /// Direction of a force of zero, degrees.
+    pub(super) fn force_direction(&self) -> f64 {
+        self.force_direction.unwrap_or(DOWN)
+    }
+
+    /// Keeps the direction of a force that may become zero, degrees.
+    pub(super) fn keep_force_direction(&mut self, degrees: f64) {
+        self.force_direction = Some(degrees);
+    }
 }
 
 /// Shows the panel's contents.
 pub(super) fn show(
     ui: &mut Ui,
     input: &PanelInput<'_>,
+    errors: &Errors,
     state: &mut PanelState,
     view: &mut ViewOptions,
     actions: &mut Vec<Action>,
 ) {
-    // Always visible: in a low window one must see that there is more.
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
-    ScrollArea::vertical()
-        .auto_shrink([false, false])
-        .scroll_bar_visibility(egui::scroll_area::ScrollBarVisibility::AlwaysVisible)
-        .show(ui, |ui| {
-            ui.add_space(4.0);
-            scene_picker(ui, input, actions);
-            controls(ui, input, actions);
-            if input.scene.analysis == Analysis::Dynamic {
-                section(ui, "Time");
-                motion::show(ui, input, state, actions);
-            }
-            section(ui, "Load");
-            loads::force_and_gravity(ui, input, state, actions);
-            loads::moment(ui, input, state, actions);
-            section(ui, "Result");
-            result::show(ui, input);
-            section(ui, "Material");
-            body::material(ui, input.scene, state, actions);
-            section(ui, "Mesh and method");
-            body::mesh_and_method(ui, input, state, actions);
-            section(ui, "View");
-            view::options(ui, input, state, view, actions);
-            ui.separator();
-            ui.add(egui::Label::new(RichText::new(input.adapter).small().weak()).wrap());
-        });
+    // Said anew by what the pointer is on.
+    view.edge = None;
+    let scroll = ScrollArea::vertical().auto_shrink([false, false]);
+    scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
+        let palette = Palette::new(ui.visuals());
+        let about = RichText::new(&input.scene.about).small().color(palette.secondary);
+        ui.add(egui::Label::new(about).wrap());
+        ui.add_space(4.0);
+        method(ui, input, state, actions);
+        element(ui, input, state, actions);
+        ui.add_space(2.0);
+        loads::force(ui, input, state, actions);
+        ui.add_space(4.0);
+        if input.scene.analysis == Analysis::Dynamic {
+            fold(ui, "Time", &motion::summary(input), true, |ui| motion::show(ui, input, state, actions));
+        }
+        let summary = loads::summary(input.scene);
+        fold(ui, "Gravity, moment", &summary, false, |ui| loads::gravity_and_moment(ui, input, state, actions));
+        let summary = edges::summary(input.scene);
+        fold(ui, "Edges", &summary, false, |ui| edges::show(ui, input, state, view, actions));
+        if let Some(support) = supports::chosen(ui, input) {
+            let summary = supports::summary(input.scene, support);
+            fold(ui, "Moved support", &summary, true, |ui| supports::show(ui, input, support, state, actions));
+        }
+        let summary = body::material_summary(input.scene);
+        fold(ui, "Material", &summary, false, |ui| body::material(ui, input.scene, state, actions));
+        let summary = body::mesh_summary(input);
+        fold(ui, "Mesh", &summary, false, |ui| body::mesh(ui, input, state, actions));
+        let summary = view::summary(view, input.scene);
+        fold(ui, "View", &summary, false, |ui| view::options(ui, input, state, view, actions));
+        fold(ui, "File", "open, save, picture, movie", false, |ui| view::keep(ui, actions));
+        fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
+    });
 }
 
-fn section(ui: &mut Ui, title: &str) {
-    ui.separator();
-    ui.strong(title);
+/// A header that says what is folded behind it; a click shows that.
+fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
+    const HEIGHT: f32 = 28.0;
+    const ICON: f32 = 18.0;
+    let palette = Palette::new(ui.visuals());
+    let mut state = CollapsingState::load_with_default_open(ui.ctx(), ui.make_persistent_id(("fold", title)), open);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    if response.clicked() {
+        state.toggle(ui);
+    }
+    if ui.is_rect_visible(rect) {
+        ui.painter().hline(rect.x_range(), rect.top(), Stroke::new(1.0, palette.line));
+        if response.has_focus() {
+            ui.painter().rect_stroke(rect, 3.0, Stroke::new(1.5, palette.accent), egui::StrokeKind::Inside);
+        }
+        let icon = egui::Rect::from_center_size(rect.left_center() + vec2(7.0, 0.0), vec2(12.0, 12.0));
+        paint_default_icon(ui, state.openness(ui.ctx()), &response.clone().with_new_rect(icon));
+        let at = rect.left_center() + vec2(ICON, 0.0);
+        let font = FontId::proportional(BODY);
+        let title = ui.painter().text(at, Align2::LEFT_CENTER, title, font, palette.text);
+        let left = title.right() + 10.0;
+        let mut job = egui::text::LayoutJob::simple_singleline(
+            summary.to_owned(),
+            FontId::proportional(SMALL),
+            palette.secondary,
+        );
+        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left).max(0.0));
+        let galley = ui.painter().layout_job(job);
+        let at = egui::pos2(rect.right() - galley.size().x, rect.center().y - 0.5 * galley.size().y);
+        ui.painter().galley(at, galley, palette.secondary);
+    }
+    let words = format!("{title}: {summary}");
+    response.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, &words));
+    response.on_hover_cursor(egui::CursorIcon::PointingHand);
+    state.show_body_unindented(ui, |ui| {
+        contents(ui);
+        ui.add_space(6.0);
+    });
 }
 
 /// A row that edits a number of the scene.
@@ -109,48 +180,58 @@ fn number_row(
     }
 }
 
-fn scene_picker(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {
+/// A picker that says of each entry what it is: name, sentence. Returns the name that was picked.
+fn picker<'a>(
+    ui: &mut Ui,
+    label: &str,
+    chosen: (&str, &str),
+    entries: impl Iterator<Item = (&'a str, &'a str)>,
+) -> Option<&'a str> {
+    const LABEL_WIDTH: f32 = 74.0;
+    let palette = Palette::new(ui.visuals());
+    let mut picked = None;
     ui.horizontal(|ui| {
-        let label = ui.label("Scene");
-        ComboBox::from_id_salt("scene")
-            .selected_text(&input.scene.name)
+        let left = ui.cursor().left();
+        let name = ui.label(label);
+        ui.add_space((left + LABEL_WIDTH - name.rect.right() - ui.spacing().item_spacing.x).max(0.0));
+        ComboBox::from_id_salt(label)
+            .selected_text(chosen.0)
             .width(ui.available_width())
-            .height(480.0)
+            .height(420.0)
             .show_ui(ui, |ui| {
-                for built_in in registry::BUILT_IN {
-                    let selected = built_in.id == input.scene_name;
-                    if ui.selectable_label(selected, built_in.id).clicked() {
-                        actions.push(Action::Open(built_in.id));
+                for (id, about) in entries {
+                    if choice(ui, &palette, id == chosen.0, id, about, false).clicked() && id != chosen.0 {
+                        picked = Some(id);
                     }
                 }
             })
             .response
-            .labelled_by(label.id)
-            .on_hover_text("The built-in scenes; a file opens with `warpbeam run FILE`.");
+            .labelled_by(name.id)
+            .on_hover_text(chosen.1);
     });
-    ui.add(egui::Label::new(RichText::new(&input.scene.about).small().weak()).wrap());
+    picked
 }
 
-fn controls(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {
-    ui.add_space(2.0);
-    ui.horizontal(|ui| {
-        let (word, tip) = if input.running { ("Pause", "Stop") } else { ("Run", "Go on") };
-        if ui.button(word).on_hover_text(format!("{tip} (Space)")).clicked() {
-            actions.push(Action::ToggleRun);
-        }
-        let can_step = !input.simulation.is_at_rest();
-        let step = ui.add_enabled(can_step, Button::new("Step"));
-        if step.on_hover_text("Pause, and make one iteration or time step (N)").clicked() {
-            actions.push(Action::Step);
-        }
-        if ui.button("Reset").on_hover_text("Back to rest, or to the start of the motion (R)").clicked() {
-            actions.push(Action::Reset);
-        }
-        if ui.button("Fit").on_hover_text("Show the whole body (F)").clicked() {
-            actions.push(Action::Fit);
-        }
-        if ui.button("Theme").on_hover_text("Light or dark (T)").clicked() {
-            actions.push(Action::ToggleTheme);
-        }
-    });
+fn method(ui: &mut Ui, input: &PanelInput<'_>, state: &PanelState, actions: &mut Vec<Action>) {
+    let chosen = input.scene.solver.method.entry();
+    let entries = METHODS.iter().map(|entry| (entry.id, entry.about));
+    let picked = picker(ui, "Method", (chosen.id, chosen.about), entries);
+    if let Some(entry) = METHODS.iter().find(|entry| Some(entry.id) == picked) {
+        let mut scene = Box::new(input.scene.clone());
+        scene.solver.method = entry.kind;
+        actions.push(Action::Edit("Method", scene));
+    }
+    show_message(ui, &state.messages, "Method");
+}
+
+fn element(ui: &mut Ui, input: &PanelInput<'_>, state: &PanelState, actions: &mut Vec<Action>) {
+    let chosen = input.scene.element().entry();
+    let entries = input.scene.elements().map(|element| (element.id(), element.entry().about));
+    let picked = picker(ui, "Element", (chosen.id, chosen.about), entries);
+    if let Some(element) = input.scene.elements().find(|element| Some(element.id()) == picked) {
+        let mut scene = Box::new(input.scene.clone());
+        scene.set_element(element);
+        actions.push(Action::Edit("Element", scene));
+    }
+    show_message(ui, &state.messages, "Element");
 }

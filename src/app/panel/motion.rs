@@ -1,15 +1,21 @@
 //! Time: integrator, step, solves a step, damping; speed; the other integrators beside.
 
-use egui::{ComboBox, Ui};
+use egui::Ui;
 
-use super::{Action, PanelInput, PanelState, number_row};
+use super::{Action, PanelInput, PanelState, number_row, picker};
 use crate::app::field::{NumberField, show_message};
-use crate::app::format;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::{Scene, limits};
+use crate::words::{engineering, three_digits};
 
 /// Speeds that can be chosen, with their words.
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
+
+/// Integrator and time step in a few words.
+pub(super) fn summary(input: &PanelInput<'_>) -> String {
+    let settings = &input.scene.dynamics;
+    format!("{}, {}", settings.integrator.id(), engineering(settings.time_step, "s"))
+}
 
 pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let settings = &input.scene.dynamics;
@@ -22,30 +28,22 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
                 actions.push(Action::Speed(speed));
             }
         }
+    });
+    ui.horizontal(|ui| {
         let marked = input.playback.is_marked();
         let tip = "Reset goes to where the body is now, in place of the start; again: to the start (H)";
         if ui.selectable_label(marked, "Reset to here").on_hover_text(tip).clicked() {
             actions.push(Action::Mark);
         }
     });
-    ui.horizontal(|ui| {
-        let label = ui.label("Integrator");
-        ComboBox::from_id_salt("integrator")
-            .selected_text(settings.integrator.id())
-            .show_ui(ui, |ui| {
-                for entry in INTEGRATORS {
-                    let selected = entry.kind == settings.integrator;
-                    if ui.selectable_label(selected, entry.id).on_hover_text(entry.about).clicked() && !selected {
-                        let mut scene = Box::new(input.scene.clone());
-                        scene.dynamics.integrator = entry.kind;
-                        actions.push(Action::Edit("Integrator", scene));
-                    }
-                }
-            })
-            .response
-            .labelled_by(label.id)
-            .on_hover_text(settings.integrator.entry().about);
-    });
+    let chosen = settings.integrator.entry();
+    let entries = INTEGRATORS.iter().map(|entry| (entry.id, entry.about));
+    let picked = picker(ui, "Integrator", (chosen.id, chosen.about), entries);
+    if let Some(entry) = INTEGRATORS.iter().find(|entry| Some(entry.id) == picked) {
+        let mut scene = Box::new(input.scene.clone());
+        scene.dynamics.integrator = entry.kind;
+        actions.push(Action::Edit("Integrator", scene));
+    }
     show_message(ui, &state.messages, "Integrator");
     ui.horizontal_wrapped(|ui| {
         ui.label("Beside it")
@@ -111,7 +109,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
         |s, v| s.dynamics.damping.stiffness = v,
     );
     if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {
-        let words = format!("The longest stable step about rest is {} s.", format::short(critical));
+        let words = format!("The longest stable step about rest is {}.", engineering(critical, "s"));
         if settings.time_step > critical {
             let set = |step: f64| {
                 let mut scene = Box::new(input.scene.clone());
@@ -121,7 +119,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             ui.horizontal_wrapped(|ui| {
                 ui.colored_label(ui.visuals().error_fg_color, words);
                 if ui.button("Use 0.9 of it").clicked() {
-                    actions.push(set(format::round_to_slider(0.9 * critical)));
+                    actions.push(set(three_digits(0.9 * critical)));
                 }
             });
         } else {

@@ -2,132 +2,102 @@
 
 use egui::{Grid, RichText, Ui};
 
-use super::PanelInput;
-use crate::app::format;
+use super::{PanelInput, supports};
+use crate::app::headline::UNKNOWN;
+use crate::app::palette::Palette;
+use crate::app::verdict::{Errors, rho, sentence, stability};
 use crate::method::rho_words;
-use crate::simulation::{Motion, Simulation, Status, probe_results};
-use crate::words::count;
+use crate::simulation::{Motion, Simulation, energy};
+use crate::words::{count, engineering, engineering_pair, percent, three_digits};
 
-/// The status as a sentence, and whether it is a bad one.
-pub(in crate::app) fn status_words(simulation: &Simulation, running: bool) -> (String, bool) {
-    let moves = simulation.motion().is_some();
-    match simulation.status() {
-        Status::Running | Status::Finished if !running => ("Paused".to_owned(), false),
-        // The duration is for runs without a window: here a motion goes on.
-        Status::Running | Status::Finished if moves && simulation.is_at_rest() => ("At rest".to_owned(), false),
-        Status::Running | Status::Finished if moves => ("Running".to_owned(), false),
-        Status::Running | Status::Finished => ("Iterating".to_owned(), false),
-        Status::Converged => ("Converged".to_owned(), false),
-        Status::NotConverged(reason) => (format!("Not converged: {reason}."), true),
-        Status::Diverged(reason) => (format!("Diverged: {reason}. Shown is the last finite state."), true),
-        Status::Stopped(reason) => (format!("Stopped: {reason}. Shown is the last finite state."), true),
-    }
+/// Room for what a row is, points.
+const NAME_WIDTH: f32 = 84.0;
+
+/// What is behind the fold, in a few words.
+pub(super) fn summary(input: &PanelInput<'_>) -> String {
+    if input.simulation.motion().is_some() { "energy, steps, times" } else { "certificate, reactions, times" }
+        .to_owned()
 }
 
-/// Room for three lines of status, points.
-const STATUS_HEIGHT: f32 = 50.0;
-/// In place of a number that is not known.
-const UNKNOWN: &str = "\u{2013}";
-
-/// The error of the first probe, and what it is measured against.
-fn error_words(input: &PanelInput<'_>) -> Option<(String, String)> {
-    let (reference, simulation) = (input.truth?, input.simulation);
-    // The truth knows of no hand.
-    if simulation.hand().is_some() {
-        return None;
-    }
-    let truth = reference.first();
-    let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
-    let percent = truth.error_percent(&probe)?;
-    let length = truth.displacement.norm();
-    Some((format!("{} % of {} m", format::short(percent), format::short(length)), reference.to_string()))
-}
-
-/// With a capital and a full stop.
-fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
-}
-
-pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>) {
+pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, errors: &Errors) {
     let simulation = input.simulation;
-    let (words, bad) = status_words(simulation, input.running);
-    let color = if bad { ui.visuals().error_fg_color } else { ui.visuals().strong_text_color() };
-    // Nothing here may change its height: a slider further down would move away under the pointer that drags it.
-    ui.allocate_ui(egui::vec2(ui.available_width(), STATUS_HEIGHT), |ui| {
-        ui.set_min_height(STATUS_HEIGHT);
-        ui.add(egui::Label::new(RichText::new(words).color(color)).wrap());
-    });
-    Grid::new("result").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
-        let mut row = |name: &str, value: String, tip: &str| {
-            ui.label(name).on_hover_text(tip);
-            ui.monospace(value).on_hover_text(tip);
-            ui.end_row();
-        };
-        if let Some(motion) = simulation.motion() {
-            motion_rows(&mut row, input, motion);
-            probe_row(&mut row, simulation);
-            frame_row(&mut row, input, "a time step");
-            return;
-        }
-        row(
-            "Iterations",
-            format!("{}, residual {:.2e}", simulation.iterations(), simulation.residual()),
-            "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
-        );
+    let secondary = Palette::new(ui.visuals()).secondary;
+    ui.spacing_mut().item_spacing.y = 3.0;
+    let mut row = |name: &str, value: String, tip: &str| {
+        ui.horizontal_top(|ui| {
+            let left = ui.cursor().left();
+            let label = ui.label(RichText::new(name).small().color(secondary)).on_hover_text(tip);
+            ui.add_space((left + NAME_WIDTH - label.rect.right() - ui.spacing().item_spacing.x).max(0.0));
+            ui.add(egui::Label::new(RichText::new(value).size(13.0)).wrap()).on_hover_text(tip);
+        });
+    };
+    if let Some(motion) = simulation.motion() {
+        motion_rows(&mut row, input, motion);
         probe_row(&mut row, simulation);
-        let (error, truth) = error_words(input).unwrap_or_else(|| (UNKNOWN.to_owned(), "a truth".to_owned()));
-        row("Error", error, &format!("Distance of the first probe from {truth}, over its displacement"));
-        let (factor, steps) = simulation.load_stepping();
-        let percent = format::short(100.0 * factor);
-        row("Load steps", format!("{steps}, at {percent} % of the load"), "Parts in which the load is put on");
-        let certificate = simulation.certificate().unwrap_or_default();
-        let certified = certificate.stable.filter(|_| *simulation.status() == Status::Converged);
-        let word = certified.map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
-        row("Equilibrium", word.to_owned(), "Certified: whether the exact tangent A + G is positive definite");
-        let auto = simulation.auto_report();
-        let words = auto.map_or_else(|| UNKNOWN.to_owned(), |t| sentence(&t.decision.to_string()));
-        let tip = auto.filter(|t| t.estimated_error.is_finite()).map_or_else(
-            || "What method auto skips".to_owned(),
-            |t| {
-                let error = format::short(100.0 * t.estimated_error);
-                let [solves, factors] =
-                    [count(t.solves, "back substitution"), count(t.factorizations, "factorization")];
-                format!("Estimated error {error} %, {solves}, {factors}")
-            },
-        );
-        row("Auto", words, &tip);
-        frame_row(&mut row, input, "the iterations of one displayed frame");
-    });
-    if simulation.motion().is_none() {
-        rho_line(ui, simulation);
+        frame_row(&mut row, input, "a time step");
+    } else {
+        search_rows(&mut row, input, errors);
     }
     stages(ui, input);
+    ui.add(egui::Label::new(RichText::new(input.adapter).small().color(secondary)).wrap());
+}
+
+fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
+    let simulation = input.simulation;
+    row(
+        "Iterations",
+        format!("{}, residual {:.2e}", simulation.iterations(), simulation.residual()),
+        "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
+    );
+    probe_row(row, simulation);
+    let truth = input.truth.map_or_else(|| "a truth".to_owned(), ToString::to_string);
+    let words = errors.own.zip(input.truth).map_or_else(
+        || UNKNOWN.to_owned(),
+        |(error, truth)| format!("{} of {}", percent(error), engineering(truth.first().displacement.norm(), "m")),
+    );
+    row("Error", words, &format!("Distance of the first probe from {truth}, over its displacement"));
+    let (factor, steps) = simulation.load_stepping();
+    row("Load steps", format!("{steps}, at {:.3} % of the load", 100.0 * factor), "Parts in which the load is put on");
+    let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
+    row("Equilibrium", word.to_owned(), "Certified: whether the exact tangent A + G is positive definite");
+    let words = rho(simulation).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&rho_words(rho)));
+    let tip =
+        "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended";
+    row("ρ", words, tip);
+    // Sums over all elements: not while something moves.
+    if simulation.is_at_rest() {
+        let (problem, state) = (simulation.problem(), simulation.state());
+        row("Energy", engineering(energy(problem, state, factor).elastic, "J"), "Stored in the body");
+        supports::reaction_rows(row, simulation);
+    }
+    if let Some(auto) = simulation.auto_report() {
+        let [solves, factors] = [count(auto.solves, "back substitution"), count(auto.factorizations, "factorization")];
+        let error = match auto.estimated_error {
+            error if error.is_finite() => format!("Estimated error {}, ", percent(100.0 * error)),
+            _ => String::new(),
+        };
+        row("Auto", sentence(&auto.decision.to_string()), &format!("{error}{solves}, {factors}"));
+    }
+    frame_row(row, input, "the iterations of one displayed frame");
 }
 
 /// A row of the result: what it is, its value, and more about it.
 type Row<'a> = dyn FnMut(&str, String, &str) + 'a;
 
-fn us(duration: std::time::Duration) -> String {
-    format!("{:.0} µs", duration.as_secs_f64() * 1e6)
+fn time(duration: std::time::Duration) -> String {
+    engineering(three_digits(duration.as_secs_f64()), "s")
 }
 
 fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
     for probe in simulation.problem().probes().iter().take(1) {
         let u = probe.mean(simulation.displacement());
-        // Beside a component of ordinary size, rounding is no number to show.
-        let [x, y] = [u.x, u.y].map(|v| if v.abs() < 1e-12 * u.norm() { 0.0 } else { v });
-        row(
-            &format!("{} x, y", probe.name),
-            format!("{}, {} m", format::short(x), format::short(y)),
-            "Displacement of the probe",
-        );
+        row(&format!("{} x, y", probe.name), engineering_pair(u.into(), "m"), "Displacement of the probe");
     }
 }
 
 fn frame_row(row: &mut Row<'_>, input: &PanelInput<'_>, what: &str) {
-    let unknowns = input.simulation.system().dofs();
-    row("Frame", format!("{}, {unknowns} unknowns", us(input.timings.total())), &format!("Time of {what}"));
+    let unknowns = count(input.simulation.system().dofs() as u64, "unknown");
+    row("Frame", format!("{}, {unknowns}", time(input.timings.total())), &format!("Time of {what}"));
 }
 
 /// Time, pace, steps and energy of a motion.
@@ -155,43 +125,36 @@ fn motion_rows(row: &mut Row<'_>, input: &PanelInput<'_>, motion: &Motion) {
         row("Auto", sentence(&auto.decision.to_string()), &tip);
     }
     let ledger = motion.ledger();
-    let joules = |value: f64| format!("{} J", format::short(value));
+    let joules = |value: f64| engineering(value, "J");
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
     row(
         "Drift",
-        format!("{} %", format::short(100.0 * ledger.drift())),
+        percent(100.0 * ledger.drift()),
         "Energy that the integrator has added, over the largest kinetic energy",
     );
-    let force =
-        input.simulation.hand().map_or_else(|| UNKNOWN.to_owned(), |(_, f)| format!("{} N", format::short(f.norm())));
-    row("Hand", force, "Force of the hand that pulls the body");
-}
-
-fn rho_line(ui: &mut Ui, simulation: &Simulation) {
-    let rho = simulation.certificate().and_then(|c| c.fixed_point_rho);
-    let words = rho.map_or_else(|| format!("ρ {UNKNOWN}"), |rho| sentence(&rho_words(rho)));
-    ui.add(egui::Label::new(RichText::new(words).small()).truncate()).on_hover_text(
-        "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended",
-    );
+    if let Some((_, force)) = input.simulation.hand() {
+        row("Hand", engineering(force.norm(), "N"), "Force of the hand that pulls the body");
+    }
 }
 
 /// Where the time of a frame went.
 fn stages(ui: &mut Ui, input: &PanelInput<'_>) {
-    let time = input.timings;
+    let times = input.timings;
+    let secondary = Palette::new(ui.visuals()).secondary;
     let stages = [
-        ("rotate", time.rotate, "Element maps and polar decompositions"),
-        ("assemble", time.assemble, "Stiffness of the turned elements, forces, residual"),
-        ("factorize", time.factorize, "Sparse Cholesky"),
-        ("solve", time.solve, "Forward and back substitution"),
+        ("rotate", times.rotate, "Rotations found apart, at the end of time steps"),
+        ("assemble", times.assemble, "One sweep: rotations, stiffness of the turned elements, forces and the residual"),
+        ("factorize", times.factorize, "Sparse Cholesky"),
+        ("solve", times.solve, "Forward and back substitution"),
     ];
-    Grid::new("stages").num_columns(stages.len()).min_col_width(62.0).spacing([14.0, 0.0]).show(ui, |ui| {
+    Grid::new("stages").num_columns(stages.len()).min_col_width(58.0).spacing([10.0, 0.0]).show(ui, |ui| {
         for (name, _, tip) in stages {
-            ui.label(RichText::new(name).small()).on_hover_text(tip);
+            ui.label(RichText::new(name).small().color(secondary)).on_hover_text(tip);
         }
         ui.end_row();
         for (_, duration, tip) in stages {
-            ui.label(RichText::new(us(duration)).monospace().small()).on_hover_text(tip);
+            ui.label(RichText::new(time(duration)).small()).on_hover_text(tip);
         }
     });
 }

@@ -3,9 +3,8 @@
 use egui::{ComboBox, Ui};
 
 use super::{Action, PanelInput, PanelState, ViewOptions};
-use crate::app::action::{Drawer, Toggle};
 use crate::app::field::NumberField;
-use crate::scene::{Analysis, limits};
+use crate::scene::{Analysis, Scene, limits};
 use crate::simulation::{Field, Simulation};
 
 pub(super) fn options(
@@ -40,13 +39,16 @@ pub(super) fn options(
     }
     if let Some(range) = view.fixed_range {
         let span = limits::Limit { unit: view.field.unit(), min: -1e30, max: 1e30 };
-        let reach = range[0].abs().max(range[1].abs()).max(f64::MIN_POSITIVE);
+        // What the body has now, and as much again: the scale stays where it is while an end of it is dragged.
+        let [low, high] = value_range(input.simulation, view.field);
+        let span_now = high - low;
+        let slider = low - 0.5 * span_now..=high + 0.5 * span_now;
         for (end, label) in ["Lowest", "Highest"].into_iter().enumerate() {
             let field = NumberField {
                 label,
                 tooltip: "An end of the colour map",
                 limit: span,
-                slider: 0.0..=2.0 * reach,
+                slider: slider.clone(),
                 logarithmic: None,
                 whole: false,
             };
@@ -67,43 +69,44 @@ pub(super) fn options(
         if input.scene.analysis == Analysis::Dynamic {
             ui.checkbox(&mut view.trail, "Trail").on_hover_text("Where the tip has been (Y)");
         } else {
+            ui.checkbox(&mut view.exact, "Exact").on_hover_text("Outline of the exact solution, where it is known (X)");
             ui.checkbox(&mut view.ghost, "Linear").on_hover_text("Outline of the linear solution (G)");
         }
-    });
-    ui.horizontal(|ui| {
-        if ui.button("Screenshot").on_hover_text("Save this picture as a PNG file here (S)").clicked() {
-            actions.push(Action::Screenshot);
-        }
-        let tip = "Record the scene from its start as a GIF here; again: stop (V)";
-        if ui.button("Record").on_hover_text(tip).clicked() {
-            actions.push(Action::Record);
-        }
-        if ui
-            .button("Copy scene")
-            .on_hover_text("Copy the scene as TOML, with the command that solves it (C)")
-            .clicked()
-        {
-            actions.push(Action::Copy);
+        if ui.button("Fit").on_hover_text("Show the whole body (F)").clicked() {
+            actions.push(Action::Fit);
         }
     });
-    ui.horizontal(|ui| {
-        for (drawer, word, tip) in [
-            (Drawer::Curve, "Load curve", "Load against deflection (L)"),
-            (Drawer::Budget, "Budget", "Error against time, and the fastest setting within limits (B)"),
-            (Drawer::Motion, "Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),
+}
+
+/// What the picture shows, in a few words.
+pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
+    let moves = scene.analysis == Analysis::Dynamic;
+    let field = view.field.name().trim_end_matches(" stress");
+    let shown = [
+        (view.wireframe, "wires"),
+        (view.rest_outline, "rest"),
+        (view.exact && !moves, "exact"),
+        (view.ghost && !moves, "linear"),
+        (view.trail && moves, "trail"),
+    ];
+    let shown = shown.into_iter().filter_map(|(on, word)| on.then_some(word));
+    std::iter::once(field).chain(shown).collect::<Vec<_>>().join(", ")
+}
+
+/// What can be taken away.
+pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        for (name, tip, action) in [
+            ("Open…", "Open a scene file; dropping one on the window does too (Ctrl+O)", Action::OpenFile),
+            ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
+            ("Save as…", "Save the scene to another file (Ctrl+Shift+S)", Action::SaveAs),
+            ("Screenshot", "Save this picture as a PNG file here (S)", Action::Screenshot),
+            ("Record", "Record the scene from its start as a GIF here; again: stop (V)", Action::Record),
+            ("Copy scene", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
         ] {
-            // Each for the scenes that have it.
-            let moves = input.scene.analysis == Analysis::Dynamic;
-            if moves != (drawer == Drawer::Motion) {
-                continue;
+            if ui.button(name).on_hover_text(tip).clicked() {
+                actions.push(action);
             }
-            let open = view.drawer == Some(drawer);
-            if ui.selectable_label(open, word).on_hover_text(tip).clicked() {
-                actions.push(Action::Toggle(Toggle::Drawer(drawer)));
-            }
-        }
-        if ui.button("Help").on_hover_text("Keys and mouse (F1)").clicked() {
-            actions.push(Action::Toggle(Toggle::Help));
         }
     });
 }

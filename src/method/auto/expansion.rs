@@ -107,8 +107,7 @@ impl Expansion {
                     let terms = first.iter().zip(second.iter());
                     let displacement = probe.displacement.iter_mut().zip(terms);
                     displacement.for_each(|(p, (u, v))| *p = u * scale + v * (scale * scale));
-                    system.follow(probe, Kinematics::Corotated);
-                    problem.linearize(probe, forces, None);
+                    problem.follow_and_linearize(probe, Kinematics::Corotated, forces, None);
                     problem.balance(probe, Kinematics::Corotated, scale, forces);
                     let weight = 0.5 / scale.powi(power);
                     sum.iter_mut().zip(forces.residual()).for_each(|(s, f)| *s += f * weight);

@@ -96,7 +96,7 @@ impl Auto {
     /// Tries linear theory. Where the state is at rest, or linear theory's, its solution is also the first of Newton's
     /// steps, and taken; returns whether a step was made.
     fn try_linear(&mut self, it: &mut Iteration<'_>) -> Result<bool, IterationError> {
-        if it.problem.hand().is_some() {
+        if it.problem.hand().is_some() || it.problem.supports().move_the_body() {
             // The expansion knows dead loads and moments only.
             self.linear = false;
             return Ok(false);
@@ -131,7 +131,8 @@ impl Auto {
     /// One corotated step, with the old factor if that serves.
     fn step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         self.step.resize(it.state.displacement.len(), Vector2::zeros());
-        if self.tangent.as_ref().is_some_and(|t| t.serves) {
+        let is_put = it.supports_are_at(1.0, Kinematics::Corotated);
+        if is_put && self.tangent.as_ref().is_some_and(|t| t.serves) {
             self.solve_for_step(it)?;
             let step = relative_size(it.problem, &self.step, &it.state.displacement);
             if step <= LONG {
@@ -139,6 +140,7 @@ impl Auto {
                 return Ok(());
             }
         }
+        it.carry(1.0);
         it.assemble(Tangent::EXACT, 1.0);
         let mut factor = match self.tangent.take() {
             Some(tangent) => tangent.factor,
@@ -149,6 +151,7 @@ impl Auto {
         self.report.factorizations += 1;
         self.report.decision = Decision::NewFactor;
         self.tangent = Some(OldTangent { factor, definite, trusted: it.residual <= TRUSTED, serves: false });
+        it.put_supports(1.0, Kinematics::Corotated);
         self.solve_for_step(it)?;
         let step = relative_size(it.problem, &self.step, &it.state.displacement);
         self.advance(it, step, true);
@@ -267,6 +270,11 @@ impl Method for Auto {
         if self.steps == 1 && self.try_linear(it)? {
             return Ok(());
         }
+        if it.supports_must_turn_in_steps() {
+            self.hand_over(it.state);
+            it.workspace.tangent = None;
+            return self.iterate(it);
+        }
         if self.report.decision == Decision::Undecided {
             self.report.decision = Decision::OldFactor;
         }
@@ -284,6 +292,9 @@ impl Method for Auto {
             };
         }
         if self.steps == 0 {
+            if !it.supports_are_at(1.0, self.kinematics()) {
+                return Verdict::Continue;
+            }
             let same = self
                 .accepted
                 .as_ref()

@@ -1,0 +1,38 @@
+// A spring clip, mm: a base, a half ring, an arm with a nose.
+// Mesh: gmsh -2 -order 2 -format msh41 clip.geo
+SetFactory("Built-in");
+Mesh.MeshSizeMin = 0.7;
+Mesh.MeshSizeMax = 1.0;
+Point(1) = {0, -7, 0};
+Point(2) = {30, -7, 0};
+Point(3) = {30, -5, 0};
+Point(4) = {0, -5, 0};
+Point(5) = {-5, 0, 0};
+Point(6) = {0, 5, 0};
+Point(7) = {32, 5, 0};
+Point(8) = {32, 6, 0};
+Point(9) = {29, 8.5, 0};
+Point(10) = {27, 8.5, 0};
+Point(11) = {27, 7, 0};
+Point(12) = {0, 7, 0};
+Point(13) = {-7, 0, 0};
+Point(14) = {0, 0, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Circle(4) = {4, 14, 5};
+Circle(5) = {5, 14, 6};
+Line(6) = {6, 7};
+Line(7) = {7, 8};
+Line(8) = {8, 9};
+Line(9) = {9, 10};
+Line(10) = {10, 11};
+Line(11) = {11, 12};
+Circle(12) = {12, 14, 13};
+Circle(13) = {13, 14, 1};
+Curve Loop(1) = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
+Plane Surface(1) = {1};
+Physical Curve("base") = {1};
+Physical Curve("nose") = {9};
+Physical Curve("back") = {12, 13};
+Physical Surface("clip") = {1};

@@ -1,0 +1,133 @@
+//! Supports that move: where they take the body, and what they do to it.
+
+use egui::{ComboBox, Id, Ui};
+
+use super::{Action, PanelInput, PanelState};
+use crate::app::field::NumberField;
+use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
+use crate::simulation::Simulation;
+use crate::words::{engineering, engineering_pair};
+
+/// Number of the support that the sliders move; `None` where none of this scene has been moved.
+pub(super) fn chosen(ui: &Ui, input: &PanelInput<'_>) -> Option<usize> {
+    if input.scene.analysis == Analysis::Dynamic {
+        return None;
+    }
+    // One that has been dragged back to rest is still the one.
+    let id = Id::unique(("support", input.scene_name));
+    let first = input.scene.supports.iter().position(Support::moves);
+    let remembered = ui.data(|data| data.get_temp::<usize>(id));
+    let chosen = remembered.or(first).filter(|&i| i < input.scene.supports.len());
+    if let Some(chosen) = chosen {
+        ui.data_mut(|data| data.insert_temp(id, chosen));
+    }
+    chosen
+}
+
+/// Where a support takes its place, in a few words.
+pub(super) fn summary(scene: &Scene, number: usize) -> String {
+    scene.supports.get(number).map_or_else(String::new, |support| {
+        let way = engineering_pair(support.displacement, "m");
+        if support.turn == 0.0 { way } else { format!("{way}, {}", engineering(support.turn, "rad")) }
+    })
+}
+
+/// The sliders of a support: its displacement where it is fixed, and its turn where it is an edge.
+pub(super) fn show(
+    ui: &mut Ui,
+    input: &PanelInput<'_>,
+    number: usize,
+    state: &mut PanelState,
+    actions: &mut Vec<Action>,
+) {
+    let scene = input.scene;
+    let Some(support) = scene.supports.get(number) else { return };
+    if scene.supports.len() > 1 {
+        ui.horizontal(|ui| {
+            let label = ui.label("Support");
+            ComboBox::from_id_salt("support")
+                .selected_text(support.place.to_string())
+                .show_ui(ui, |ui| {
+                    for (i, other) in scene.supports.iter().enumerate() {
+                        if ui.selectable_label(i == number, other.place.to_string()).clicked() {
+                            ui.data_mut(|data| data.insert_temp(Id::unique(("support", input.scene_name)), i));
+                        }
+                    }
+                })
+                .response
+                .labelled_by(label.id)
+                .on_hover_text("The support that the sliders move");
+        });
+    }
+    let reach = reach(0.1 * input.simulation.system().size());
+    for (axis, label, tooltip) in [
+        (
+            Axis::X,
+            "Move x",
+            "Where the support takes its place, m, to the right. Type a number with a unit, such as 3 mm.",
+        ),
+        (Axis::Y, "Move y", "Where the support takes its place, m, up. Type a number with a unit, such as -3 mm."),
+    ] {
+        if !support.fix.contains(&axis) {
+            continue;
+        }
+        let component = usize::from(axis == Axis::Y);
+        let field = NumberField {
+            label,
+            tooltip,
+            limit: limits::COORDINATE,
+            slider: -reach..=reach,
+            logarithmic: None,
+            whole: false,
+        };
+        if let Some(new) = field.show(ui, &mut state.messages, support.displacement[component]) {
+            let edit = |support: &mut Support| support.displacement[component] = new;
+            actions.push(Action::Edit(label, edited(scene, number, edit)));
+        }
+    }
+    if matches!(support.place, Place::Edge(_)) && support.fix.contains(&Axis::X) && support.fix.contains(&Axis::Y) {
+        let field = NumberField {
+            label: "Turn",
+            tooltip: "How far the support turns its edge about its middle, rad, counter-clockwise; 30° may be typed.",
+            limit: limits::TURN,
+            slider: -std::f64::consts::PI..=std::f64::consts::PI,
+            logarithmic: None,
+            whole: false,
+        };
+        if let Some(new) = field.show(ui, &mut state.messages, support.turn) {
+            actions.push(Action::Edit("Turn", edited(scene, number, |support| support.turn = new)));
+        }
+    }
+}
+
+fn edited(scene: &Scene, number: usize, edit: impl FnOnce(&mut Support)) -> Box<Scene> {
+    let mut scene = Box::new(scene.clone());
+    if let Some(support) = scene.supports.get_mut(number) {
+        edit(support);
+    }
+    scene
+}
+
+/// A round length of about this size.
+fn reach(length: f64) -> f64 {
+    let decade = 10f64.powf(length.max(1e-12).log10().floor());
+    [1.0, 2.0, 5.0].map(|m| m * decade).into_iter().find(|r| *r >= 0.9 * length).unwrap_or(10.0 * decade)
+}
+
+/// A row for every support of a body at rest: its reaction.
+pub(super) fn reaction_rows(row: &mut dyn FnMut(&str, String, &str), simulation: &Simulation) {
+    for (i, reaction) in simulation.support_reactions().into_iter().enumerate() {
+        let force = engineering_pair(reaction.force.into(), "N");
+        let (name, tip) = match &reaction.place {
+            Place::Edge(edge) => (
+                format!("From {edge}"),
+                format!(
+                    "Force of this support on the body; its moment about the edge's middle is {}",
+                    engineering(reaction.moment, "N m")
+                ),
+            ),
+            place @ Place::At(_) => (format!("Support {i}"), format!("Force of the support at {place} on the body")),
+        };
+        row(&name, force, &tip);
+    }
+}

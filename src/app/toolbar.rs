@@ -1,0 +1,226 @@
+//! The bar along the top: scene, run, modes, theme, help.
+
+use std::sync::LazyLock;
+
+use egui::text::LayoutJob;
+use egui::{
+    Align, Align2, Button, ComboBox, FontId, Layout, Painter, Pos2, Rect, Response, RichText, Role, Sense, Shape,
+    Stroke, StrokeKind, TextFormat, Ui, WidgetInfo, pos2, vec2,
+};
+
+use super::action::{Action, Toggle, ViewOptions};
+use super::mode::MODES;
+use super::palette::{BODY, Palette, SMALL};
+use super::panel::PanelInput;
+use crate::scene::{Scene, registry};
+
+/// What each built-in scene is, by its name.
+static ABOUTS: LazyLock<Vec<(&'static str, String)>> = LazyLock::new(|| {
+    let about = |toml: &str| Scene::from_toml(toml).map(|scene| scene.about).unwrap_or_default();
+    registry::BUILT_IN.iter().map(|built_in| (built_in.id, about(built_in.toml))).collect()
+});
+
+/// Below this width, points, buttons show no words.
+const WORDS: f32 = 900.0;
+
+/// Shows the bar.
+pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, actions: &mut Vec<Action>) {
+    let wide = ui.available_width() >= WORDS;
+    ui.horizontal_centered(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        scene_picker(ui, input, wide, actions);
+        divide(ui);
+        run(ui, input, wide, actions);
+        divide(ui);
+        history(ui, input, actions);
+        divide(ui);
+        for entry in MODES.iter().filter(|entry| (entry.serves)(input.scene)) {
+            let chosen = view.mode == entry.mode;
+            if ui.selectable_label(chosen, entry.name).on_hover_text(entry.about).clicked() && !chosen {
+                actions.push(Action::Toggle(Toggle::Mode(entry.mode)));
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let mut button = |icon: Icon, name: &str, chosen: bool, tip: &str, action: Action| {
+                let response = ui.add(|ui: &mut Ui| icon_button(ui, icon, name, None, chosen));
+                if response.on_hover_text(tip).clicked() {
+                    actions.push(action);
+                }
+            };
+            button(Icon::Help, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
+            button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
+            let tip = "Show or hide the controls (P)";
+            button(Icon::Panel, "Panel", view.shows_panel(), tip, Action::Toggle(Toggle::Panel));
+        });
+    });
+}
+
+fn divide(ui: &mut Ui) {
+    ui.add(egui::Separator::default().vertical().spacing(10.0));
+}
+
+/// What is drawn on a button: the fonts have no such letters.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Icon {
+    Play,
+    Pause,
+    Step,
+    Reset,
+    Undo,
+    Redo,
+    Theme,
+    Help,
+    Panel,
+    Open,
+    Close,
+}
+
+/// A button with an icon, before a word where there is room for one; its name is for who cannot see it.
+pub(super) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, word: Option<&str>, chosen: bool) -> Response {
+    const SIDE: f32 = 28.0;
+    const GAP: f32 = 5.0;
+    const PADDING: f32 = 8.0;
+    let font = FontId::proportional(BODY);
+    let galley = word.map(|word| ui.painter().layout_no_wrap(word.to_owned(), font, egui::Color32::PLACEHOLDER));
+    let width = galley.as_ref().map_or(SIDE, |galley| 2.0 * PADDING + 14.0 + GAP + galley.size().x);
+    let (rect, response) = ui.allocate_exact_size(vec2(width, ui.spacing().interact_size.y), Sense::click());
+    let style = ui.style().interact_selectable(&response, chosen);
+    ui.painter().rect(rect, style.corner_radius, style.weak_bg_fill, style.bg_stroke, StrokeKind::Inside);
+    let color = style.fg_stroke.color;
+    let center = match &galley {
+        Some(_) => rect.left_center() + vec2(PADDING + 7.0, 0.0),
+        None => rect.center(),
+    };
+    paint(ui.painter(), icon, center, color);
+    if let Some(galley) = galley {
+        let at = pos2(rect.right() - PADDING - galley.size().x, rect.center().y - 0.5 * galley.size().y);
+        ui.painter().galley(at, galley, color);
+    }
+    response.widget_info(|| WidgetInfo::selected(Role::Button, response.enabled(), chosen, name));
+    response
+}
+
+fn paint(painter: &Painter, icon: Icon, center: Pos2, color: egui::Color32) {
+    let at = |x: f32, y: f32| center + vec2(x, y);
+    let stroke = Stroke::new(1.6, color);
+    let polygon = |points: Vec<Pos2>| _ = painter.add(Shape::convex_polygon(points, color, Stroke::NONE));
+    let bar = |x: f32| _ = painter.rect_filled(Rect::from_center_size(at(x, 0.0), vec2(3.0, 11.0)), 0.5, color);
+    let arc = |from: f32, to: f32| -> Vec<Pos2> {
+        let angles = (0..=20u8).map(|i| from + (to - from) * f32::from(i) / 20.0);
+        angles.map(|a| at(5.5 * a.cos(), 5.5 * a.sin())).collect()
+    };
+    match icon {
+        Icon::Play => polygon(vec![at(-4.0, -6.0), at(6.0, 0.0), at(-4.0, 6.0)]),
+        Icon::Pause => [-3.0, 3.0].into_iter().for_each(bar),
+        Icon::Step => {
+            polygon(vec![at(-6.0, -5.5), at(2.0, 0.0), at(-6.0, 5.5)]);
+            bar(4.5);
+        }
+        Icon::Reset => {
+            painter.add(Shape::line(arc(-0.6, 4.6), stroke));
+            polygon(vec![at(0.5, -9.0), at(0.5, -2.0), at(-4.5, -5.5)]);
+        }
+        Icon::Undo | Icon::Redo => {
+            let side = if icon == Icon::Undo { 1.0 } else { -1.0 };
+            let turn = arc(-2.9, 1.2).into_iter().map(|p| pos2(center.x + side * (p.x - center.x), p.y));
+            painter.add(Shape::line(turn.collect(), stroke));
+            polygon([(-9.0, -2.0), (-2.0, -2.0), (-6.0, 3.0)].map(|(x, y)| at(side * x, y)).to_vec());
+        }
+        Icon::Theme => {
+            painter.circle_stroke(center, 5.5, stroke);
+            polygon(arc(-std::f32::consts::FRAC_PI_2, std::f32::consts::FRAC_PI_2));
+        }
+        Icon::Help => {
+            painter.text(center, Align2::CENTER_CENTER, "?", FontId::proportional(BODY), color);
+        }
+        Icon::Panel => {
+            painter.rect_stroke(Rect::from_center_size(center, vec2(14.0, 11.0)), 1.5, stroke, StrokeKind::Middle);
+            painter.line_segment([at(2.5, -5.0), at(2.5, 5.0)], stroke);
+        }
+        Icon::Open => polygon(vec![at(-4.5, 2.5), at(0.0, -3.0), at(4.5, 2.5)]),
+        Icon::Close => polygon(vec![at(-4.5, -2.5), at(4.5, -2.5), at(0.0, 3.0)]),
+    }
+}
+
+fn run(ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action>) {
+    let simulation = input.simulation;
+    let moves = simulation.motion().is_some();
+    let ended = simulation.is_at_rest() && !input.playback.companions_move();
+    let mut button = |icon: Icon, name: &str, tip: &str, enabled: bool, action: Action| {
+        let word = wide.then_some(name);
+        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, false));
+        if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
+            actions.push(action);
+        }
+    };
+    match (input.running, ended) {
+        (true, false) => button(Icon::Pause, "Pause", "Stop here (Space)", true, Action::ToggleRun),
+        (false, _) => button(Icon::Play, "Run", "Go on (Space)", true, Action::ToggleRun),
+        (true, true) => button(Icon::Play, "Run", "Nothing to run: it has come to its end", false, Action::ToggleRun),
+    }
+    let tip = match (moves, ended) {
+        (true, _) => "One time step (N)",
+        (false, true) => "Again from rest, one iteration at a time (N)",
+        (false, false) => "One iteration (N)",
+    };
+    button(Icon::Step, "Step", tip, !(moves && ended), Action::Step);
+    button(Icon::Reset, "Reset", "Back to rest, or to the start of the motion (R)", true, Action::Reset);
+}
+
+fn history(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {
+    for (icon, name, tip, enabled, action) in [
+        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.can_undo, Action::Undo),
+        (Icon::Redo, "Redo", "Redo it (Ctrl+Shift+Z)", input.can_redo, Action::Redo),
+    ] {
+        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, None, false));
+        if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
+            actions.push(action);
+        }
+    }
+}
+
+fn scene_picker(ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action>) {
+    let palette = Palette::new(ui.visuals());
+    let label = ui.label(RichText::new("Scene").color(palette.secondary));
+    ComboBox::from_id_salt("scene")
+        .selected_text(&input.scene.name)
+        .width(if wide { 190.0 } else { 120.0 })
+        .height(520.0)
+        .truncate()
+        .show_ui(ui, |ui| {
+            let width = (ui.ctx().content_rect().width() - 60.0).clamp(160.0, 600.0);
+            ui.set_width(width);
+            for (id, about) in ABOUTS.iter() {
+                let selected = *id == input.scene_name;
+                if choice(ui, &palette, selected, id, about, true).clicked() {
+                    actions.push(Action::Open(id));
+                }
+            }
+        })
+        .response
+        .labelled_by(label.id)
+        .on_hover_text(&input.scene.about);
+}
+
+/// Where the sentences of a list begin, points.
+const NAMES_WIDTH: f32 = 76.0;
+
+/// An entry of a picker: its name, and what it is; in one line, or under the name.
+pub(super) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, about: &str, line: bool) -> Response {
+    let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
+    let mut job = LayoutJob::default();
+    job.append(id, 0.0, format(BODY, palette.text));
+    let mut lead = 0.0;
+    if line {
+        let name = ui.painter().layout_no_wrap(id.to_owned(), FontId::proportional(BODY), palette.text);
+        lead = (NAMES_WIDTH - name.size().x).max(8.0);
+    } else {
+        job.append("\n", 0.0, format(BODY, palette.text));
+    }
+    let secondary = if selected { palette.text } else { palette.secondary };
+    job.append(about, lead, format(SMALL, secondary));
+    let button = Button::selectable(selected, job);
+    let response = ui.add(if line { button.truncate() } else { button.wrap() });
+    response.widget_info(|| WidgetInfo::selected(Role::Button, response.enabled(), selected, id));
+    response
+}

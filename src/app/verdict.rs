@@ -1,0 +1,239 @@
+//! What the lab makes of a result: its error and where that comes from, its status in words, and what would mend it.
+
+use super::panel::PanelInput;
+use crate::method::rho_words;
+use crate::scene::{ElementKind, MethodKind, Scene, limits};
+use crate::simulation::{Simulation, Status, probe_results};
+use crate::words::{count, engineering, number, percent};
+
+/// Where most of an error comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ErrorSource {
+    Mesh,
+    Iteration,
+    Theory,
+}
+
+impl ErrorSource {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Mesh => "mesh",
+            Self::Iteration => "iteration",
+            Self::Theory => "theory",
+        }
+    }
+}
+
+/// The errors at the first probe, percent of the true displacement, where they are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Errors {
+    pub own: Option<f64>,
+    pub linear: Option<f64>,
+    pub source: Option<ErrorSource>,
+}
+
+/// Compares the state, and linear theory's, with the truth; nothing while something moves: a picture of one instant has no
+/// error of another.
+pub(super) fn errors(input: &PanelInput<'_>) -> Errors {
+    let simulation = input.simulation;
+    let at_rest = simulation.is_at_rest() && simulation.hand().is_none();
+    let Some(reference) = input.truth.filter(|_| at_rest) else { return Errors::default() };
+    let truth = reference.first();
+    let percent_of = |simulation: &Simulation| {
+        let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
+        Some((truth.error_percent(&probe)?, probe.u))
+    };
+    let own = percent_of(simulation);
+    let source = own.filter(|(error, _)| percent(*error) != percent(0.0)).map(|(_, u)| {
+        if !simulation.status().is_success() {
+            return ErrorSource::Iteration;
+        }
+        let theory = reference.linear.filter(|_| simulation.is_linear());
+        let [of_theory, of_mesh] =
+            theory.map_or([0.0, 1.0], |fine| [(fine - truth.displacement).norm(), (u - fine).norm()]);
+        if of_theory > of_mesh { ErrorSource::Theory } else { ErrorSource::Mesh }
+    });
+    let linear = input.linear.and_then(percent_of).map(|(error, _)| error);
+    Errors { own: own.map(|(error, _)| error), linear, source }
+}
+
+/// Whether the picture is of another load than the one that is set: an edit while paused.
+pub(super) fn is_stale(input: &PanelInput<'_>) -> bool {
+    let simulation = input.simulation;
+    !input.running
+        && simulation.motion().is_none()
+        && *simulation.status() == Status::Running
+        && simulation.iterations() == 0
+        && simulation.displacement().iter().any(|u| u.norm() > 0.0)
+}
+
+/// The status as a sentence, and whether it is a bad one.
+pub(super) fn status_words(simulation: &Simulation, running: bool) -> (String, bool) {
+    let moves = simulation.motion().is_some();
+    match simulation.status() {
+        Status::Running | Status::Finished if !running => ("Paused".to_owned(), false),
+        // The duration is for runs without a window: here a motion goes on.
+        Status::Running | Status::Finished if moves && simulation.is_at_rest() => ("At rest".to_owned(), false),
+        Status::Running | Status::Finished if moves => ("Running".to_owned(), false),
+        Status::Running | Status::Finished => ("Iterating".to_owned(), false),
+        Status::Converged => ("Converged".to_owned(), false),
+        Status::NotConverged(reason) => (format!("Not converged: {reason}."), true),
+        Status::Diverged(reason) => (format!("Diverged: {reason}. Shown is the last finite state."), true),
+        Status::Stopped(reason) => (format!("Stopped: {reason}. Shown is the last finite state."), true),
+    }
+}
+
+/// The status in a line: `Converged · stable · 21 iterations`; and whether it is a bad one.
+pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
+    let simulation = input.simulation;
+    let (mut words, bad) = status_words(simulation, input.running);
+    if bad {
+        return (words, true);
+    }
+    if is_stale(input) {
+        return ("Paused: the picture is older than the load".to_owned(), false);
+    }
+    let mut add = |part: String| {
+        words.push_str(" · ");
+        words.push_str(&part);
+    };
+    if simulation.motion().is_some() {
+        add(format!("{:.2} s", simulation.state().time()));
+        return (words, false);
+    }
+    if let Some(stable) = stability(simulation) {
+        add(if stable { "stable" } else { "unstable" }.to_owned());
+    }
+    add(count(simulation.iterations(), "iteration"));
+    if let Some(jump) = input.jump.filter(|_| simulation.status().is_success()) {
+        add(jump.to_string());
+    }
+    (words, stability(simulation) == Some(false))
+}
+
+/// Whether a converged equilibrium is stable, where that is certified.
+pub(super) fn stability(simulation: &Simulation) -> Option<bool> {
+    let certificate = simulation.certificate()?;
+    certificate.stable.filter(|_| *simulation.status() == Status::Converged)
+}
+
+/// ρ of the warped iteration where the body is.
+pub(super) fn rho(simulation: &Simulation) -> Option<f64> {
+    simulation.certificate().and_then(|c| c.fixed_point_rho)
+}
+
+/// With a capital and a full stop.
+pub(super) fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+/// Why the status is what it is, sentence by sentence.
+pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
+    let simulation = input.simulation;
+    let mut lines = Vec::new();
+    if let Some(motion) = simulation.motion() {
+        let counts = motion.counts();
+        lines.push(format!("{} so far, with {}.", count(counts.steps, "step"), count(counts.solves, "solve")));
+        lines.push(
+            "A step that does not converge is halved; what its integrator adds to the energy is the drift.".into(),
+        );
+        return lines;
+    }
+    let residual = number(significant_residual(simulation.residual()));
+    let asked = number(input.scene.solver.tolerance);
+    lines.push(match simulation.status() {
+        Status::Converged => {
+            format!("The forces balance: what is left is {residual} of them, and {asked} is asked for.")
+        }
+        _ => format!("The forces are out of balance by {residual} of them; {asked} is asked for."),
+    });
+    match stability(simulation) {
+        Some(true) => {
+            lines.push("Stable: pushed a little, the body comes back (the exact tangent is positive definite).".into())
+        }
+        Some(false) => {
+            lines.push(
+                "Unstable: pushed a little, the body leaves (the exact tangent is not positive definite).".into(),
+            );
+        }
+        None => {}
+    }
+    if let Some(rho) = rho(simulation) {
+        lines.push(sentence(&rho_words(rho)));
+        let converged = *simulation.status() == Status::Converged;
+        if rho > 1.0 && converged {
+            lines.push(match input.scene.solver.method {
+                MethodKind::Warped => {
+                    "It did converge, because this load never pushes the body in the direction that would grow: a bar \
+                     pulled along its axis stays straight. A small push aside would not be undone by the iteration."
+                        .to_owned()
+                }
+                other => format!("That does not touch this result: it comes from {}.", other.id()),
+            });
+        }
+    }
+    lines
+}
+
+/// A residual needs no more than two digits.
+fn significant_residual(residual: f64) -> f64 {
+    format!("{residual:.1e}").parse().unwrap_or(residual)
+}
+
+/// Something that would make a result better, in words, and the scene that has it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Remedy {
+    /// What is wrong.
+    pub words: String,
+    /// What the button says.
+    pub offer: String,
+    /// What it edits: the label of a control.
+    pub edits: &'static str,
+    pub scene: Box<Scene>,
+}
+
+/// What would help most, if something is wrong that an edit can mend.
+pub(super) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> {
+    /// Errors above this, percent, ask for a remedy.
+    const LARGE: f64 = 5.0;
+    let (simulation, scene) = (input.simulation, input.scene);
+    if simulation.motion().is_some() || !simulation.is_at_rest() {
+        return None;
+    }
+    let with_newton = |words: String| {
+        let mut scene = Box::new(scene.clone());
+        scene.solver.method = MethodKind::Newton;
+        Remedy { words, offer: "Use newton".to_owned(), edits: "Method", scene }
+    };
+    if !simulation.status().is_success() {
+        let words = rho(simulation).filter(|&rho| rho > 1.0).map_or_else(
+            || format!("The {} iteration does not get there.", scene.solver.method.id()),
+            |rho| format!("Cannot converge: ρ = {} > 1.", rho_number(rho)),
+        );
+        return (scene.solver.method != MethodKind::Newton).then(|| with_newton(words));
+    }
+    let off = errors.own.filter(|&error| error > LARGE)?;
+    let off = percent(off);
+    if errors.source == Some(ErrorSource::Theory) {
+        return Some(with_newton(format!("{off} off: linear theory does not turn with the body.")));
+    }
+    if scene.element() == ElementKind::T3 {
+        let better = [ElementKind::T6, ElementKind::Q4].into_iter().find(|e| scene.elements().any(|own| own == *e))?;
+        let mut scene = Box::new(scene.clone());
+        scene.set_element(better);
+        let words = format!("{off} off: three-node triangles lock in bending.");
+        return Some(Remedy { words, offer: format!("Try {}", better.id()), edits: "Element", scene });
+    }
+    let mut scene = Box::new(scene.clone());
+    let beam = scene.beam.as_mut()?;
+    beam.cells = beam.cells.map(|n| n.saturating_mul(2));
+    let fits = f64::from(beam.cells[0]) * f64::from(beam.cells[1]) <= limits::TOTAL_CELLS.max;
+    let words = format!("{off} off: the mesh is coarse.");
+    fits.then_some(Remedy { words, offer: "Halve its cells".to_owned(), edits: "Cells along", scene })
+}
+
+/// ρ as it is shown: two digits, three above one tenth.
+pub(super) fn rho_number(rho: f64) -> String {
+    engineering(format!("{rho:.1e}").parse().unwrap_or(rho), "")
+}

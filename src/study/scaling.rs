@@ -1,0 +1,252 @@
+//! How the time of an iteration and the memory it takes grow with the number of unknowns.
+
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+use super::chart::{LogLog, Series};
+use super::{Extent, Observer, Progress, StudyError};
+use crate::method::METHODS;
+use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::simulation::Simulation;
+
+/// A mesh of the study.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScalingPoint {
+    /// Element.
+    pub element: ElementKind,
+    /// Cells along and across.
+    pub cells: [u32; 2],
+    /// Free unknowns.
+    pub dofs: usize,
+    /// Time of an iteration of `newton`, ms: the median of some.
+    pub milliseconds: f64,
+    /// Most memory that meshing, setting up and iterating took, MiB; `None` where the system does not say (it is read from
+    /// Linux's `/proc`), or where it is too little to be seen.
+    pub peak_mib: Option<f64>,
+}
+
+/// A power law fitted to the larger half of an element's meshes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exponents {
+    /// Element.
+    pub element: ElementKind,
+    /// p of time ∝ unknownsᵖ.
+    pub time: f64,
+    /// p of memory ∝ unknownsᵖ, where memory is known.
+    pub memory: Option<f64>,
+}
+
+/// The whole study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scaling {
+    /// The scene's name.
+    pub scene: String,
+    /// By element, coarse to fine.
+    pub points: Vec<ScalingPoint>,
+    /// Whether it was called off before everything was measured.
+    pub is_partial: bool,
+}
+
+/// Unknowns of the meshes, about.
+const UNKNOWNS: [f64; 11] = [1e2, 2e2, 5e2, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5];
+/// How many of them are quick.
+const QUICK: usize = 5;
+/// Time that is given to the iterations of a mesh …
+const ENOUGH: Duration = Duration::from_millis(500);
+/// … of which there are no more than these …
+const MOST: usize = 101;
+/// … and no fewer than these.
+const FEWEST: usize = 3;
+/// Less memory than this cannot be told from what the process has anyway, MiB.
+const RESOLVED: f64 = 1.0;
+
+impl Scaling {
+    /// Measures a scene with a beam at rest, alone on the machine. Called off, it keeps what it has.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+        let Some(beam) = &scene.beam else { return Err(StudyError::NoBeam) };
+        if scene.analysis == crate::scene::Analysis::Dynamic {
+            return Err(StudyError::InMotion);
+        }
+        let unknowns = if extent == Extent::Quick { &UNKNOWNS[..QUICK] } else { &UNKNOWNS[..] };
+        let all: f64 = unknowns.iter().sum::<f64>() * ElementKind::all().count() as f64;
+        let mut study = Self { scene: scene.name.clone(), points: Vec::new(), is_partial: false };
+        let mut done = 0.0;
+        for (element, &unknowns) in ElementKind::all().flat_map(|e| unknowns.iter().map(move |n| (e, n))) {
+            let cells = cells(element, beam.length / beam.height, unknowns);
+            let now = super::trade::mesh_words(element, Some(cells));
+            if observe(Progress { fraction: done / all, now: &now, so_far: None }).is_break() {
+                study.is_partial = true;
+                break;
+            }
+            study.points.push(measure(scene, element, cells)?);
+            done += unknowns;
+        }
+        if study.points.is_empty() { Err(StudyError::Cancelled) } else { Ok(study) }
+    }
+
+    fn of(&self, element: ElementKind) -> Vec<&ScalingPoint> {
+        self.points.iter().filter(|p| p.element == element).collect()
+    }
+
+    /// The exponents of every element that has enough meshes.
+    #[must_use]
+    pub fn exponents(&self) -> Vec<Exponents> {
+        let fit = |element| {
+            let points = self.of(element);
+            let larger = &points[points.len() / 2..];
+            let of = |value: fn(&ScalingPoint) -> Option<f64>| {
+                slope(larger.iter().filter_map(|p| Some(((p.dofs as f64).ln(), value(p)?.ln()))).collect())
+            };
+            Some(Exponents { element, time: of(|p| Some(p.milliseconds))?, memory: of(|p| p.peak_mib) })
+        };
+        ElementKind::all().filter_map(fit).collect()
+    }
+
+    /// The study as CSV.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let mut text = String::from("element,cells_along,cells_across,dofs,iteration_ms,peak_mib\n");
+        for p in &self.points {
+            let [along, across] = p.cells;
+            let memory = p.peak_mib.map_or_else(String::new, |m| format!("{m:.1}"));
+            let _ = writeln!(text, "{},{along},{across},{},{:.5},{memory}", p.element.id(), p.dofs, p.milliseconds);
+        }
+        text
+    }
+
+    /// The study for people.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let mut text = format!("{}: an iteration of `newton`, by unknowns\n\n", self.scene);
+        text.push_str("element   unknowns  iteration, ms   µs an unknown   memory, MiB\n");
+        for p in &self.points {
+            let memory = p.peak_mib.map_or_else(|| "–".to_owned(), |m| format!("{m:.1}"));
+            let each = p.milliseconds * 1e3 / p.dofs as f64;
+            let _ = writeln!(
+                text,
+                "{:7} {:>10} {:>14.4} {each:>15.3} {memory:>13}",
+                p.element.id(),
+                p.dofs,
+                p.milliseconds
+            );
+        }
+        text.push('\n');
+        for e in self.exponents() {
+            let memory = e.memory.map_or_else(String::new, |m| format!(", memory ∝ unknowns^{m:.2}"));
+            let _ = writeln!(text, "{}: time ∝ unknowns^{:.2}{memory} (larger half)", e.element.id(), e.time);
+        }
+        text
+    }
+
+    /// The study as a picture (SVG): time over unknowns, both logarithmic.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        let series = |element: ElementKind| Series {
+            element,
+            // Colours of methods, which differ in brightness too, serve for elements here.
+            color: METHODS[element as usize % METHODS.len()].color(false),
+            points: self.of(element).iter().map(|p| (p.dofs as f64, p.milliseconds)).collect(),
+        };
+        let plot = LogLog {
+            title: format!("{}: time of an iteration", self.scene),
+            x_label: "unknowns",
+            y_label: "time of an iteration, ms",
+            series: ElementKind::all().map(series).collect(),
+        };
+        plot.svg()
+    }
+}
+
+/// Cells of a beam this slender that have about so many unknowns.
+fn cells(element: ElementKind, slenderness: f64, unknowns: f64) -> [u32; 2] {
+    let pieces = element.entry().sides[0].len() as f64 - 1.0;
+    let across = (0.5 * unknowns / slenderness).sqrt();
+    // Of nodes, one more than pieces across: a thin beam has more than its share.
+    let across = ((across - 0.5) / pieces).round().max(1.0);
+    let along = (0.5 * unknowns / (across * pieces + 1.0) / pieces).round().max(1.0);
+    [along as u32, across as u32]
+}
+
+fn measure(scene: &Scene, element: ElementKind, cells: [u32; 2]) -> Result<ScalingPoint, StudyError> {
+    let setting = super::Setting { element, cells: Some(cells), method: MethodKind::Newton, iterations: 1 };
+    let memory = PeakMemory::watch();
+    let mut simulation = Simulation::new(&setting.apply(scene))?;
+    let mut times = Vec::new();
+    let began = Instant::now();
+    // The first warms up.
+    while times.len() <= FEWEST || (times.len() <= MOST && began.elapsed() < ENOUGH) {
+        simulation.reset();
+        let start = Instant::now();
+        simulation.step();
+        times.push(start.elapsed());
+    }
+    times.remove(0);
+    times.sort_unstable();
+    let milliseconds = times[times.len() / 2].as_secs_f64() * 1e3;
+    let peak_mib = memory.and_then(|memory| memory.taken()).filter(|&mib| mib >= RESOLVED);
+    Ok(ScalingPoint { element, cells, dofs: simulation.system().dofs(), milliseconds, peak_mib })
+}
+
+/// The most memory that the process holds while this is watched: Linux's `VmHWM`, set back at the start.
+struct PeakMemory {
+    before: f64,
+}
+
+impl PeakMemory {
+    fn watch() -> Option<Self> {
+        std::fs::write("/proc/self/clear_refs", "5").ok()?;
+        Some(Self { before: status_mib("VmRSS:")? })
+    }
+
+    fn taken(&self) -> Option<f64> {
+        Some(status_mib("VmHWM:")? - self.before)
+    }
+}
+
+/// A size in `/proc/self/status`, MiB.
+fn status_mib(key: &str) -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix(key))?;
+    let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib / 1024.0)
+}
+
+/// The slope of the line nearest to some points; `None` of fewer than two.
+fn slope(points: Vec<(f64, f64)>) -> Option<f64> {
+    let n = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
+    let (top, below) =
+        points.iter().fold((0.0, 0.0), |(top, below), p| (top + (p.0 - x) * (p.1 - y), below + (p.0 - x) * (p.0 - x)));
+    (below > 0.0).then(|| top / below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meshes_have_about_the_unknowns_that_are_asked() {
+        for element in ElementKind::all() {
+            for unknowns in UNKNOWNS {
+                let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]);
+                let cells = cells(element, 10.0, unknowns);
+                let setting =
+                    super::super::Setting { element, cells: Some(cells), method: MethodKind::Newton, iterations: 1 };
+                if unknowns <= 2e4 {
+                    let dofs = Simulation::new(&setting.apply(&scene)).map(|s| s.system().dofs());
+                    assert!(dofs.is_ok_and(|n| (0.6..1.7).contains(&(n as f64 / unknowns))), "{element:?} {cells:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_power_law_has_its_exponent() {
+        let points = [1.0f64, 3.0, 10.0, 40.0].map(|x| (x.ln(), (0.2 * x.powf(1.3)).ln()));
+        assert!(slope(points.to_vec()).is_some_and(|p| (p - 1.3).abs() < 1e-12));
+        assert_eq!(slope(vec![(1.0, 2.0)]), None);
+    }
+}
