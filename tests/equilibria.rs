@@ -321,6 +321,13 @@ fn supports_fix_what_they_say() {
     pattern.add_free(&free, 1.0, &mut spread);
     let product: f64 = nodal.iter().zip(&spread).map(|(a, b)| a.dot(b)).sum();
     assert!((pattern.dot(&nodal, &free) / product - 1.0).abs() < 1e-12 && product > 1.0);
+    // Its norm, whatever its size.
+    let plain = pattern.norm(&spread);
+    assert!((plain / free.iter().map(|v| v * v).sum::<f64>().sqrt() - 1.0).abs() < 1e-12);
+    for size in [1e-250, 1e-160, 1e160, 1e250] {
+        let scaled: Vec<_> = spread.iter().map(|v| v * size).collect();
+        assert!((pattern.norm(&scaled) / (plain * size) - 1.0).abs() < 1e-12, "{size:e}");
+    }
     assert_eq!(pattern.fixed(mesh.nodes().len() as u32), [true, true], "no node moves where there is none");
 }
 
@@ -457,4 +464,22 @@ fn the_warped_iteration_says_why_it_ends() {
     assert!(residual > 1e-3 && iterations < 60, "{residual} {iterations}");
     let (status, iterations, _) = end(1e8, 1e-8);
     assert!(matches!(status, Status::Diverged(Reason::RanAway(_))) && iterations == 1, "{status:?} {iterations}");
+}
+
+/// A new support that holds, in one direction, what has moved away in it lets the body start at rest; one that holds what
+/// has not moved in it does not.
+#[test]
+fn a_support_on_what_has_moved_starts_over() {
+    let scene = Scene::beam(10.0, 1.0).with_cells(10, 2).clamp("left").force("right", [50.0, -300.0]);
+    let mut scene = scene.with_method(MethodKind::Newton);
+    scene.solver.max_iterations = 100;
+    for axis in [Axis::X, Axis::Y] {
+        let mut simulation = solved(&scene);
+        assert!(simulation.displacement().iter().any(|u| u.x.abs() > 1e-3 && u.y.abs() > 1e-3));
+        simulation.change_scene(&scene.clone().support([10.0, 0.5], &[axis])).unwrap();
+        assert!(simulation.displacement().iter().all(|u| u.norm() == 0.0), "{axis:?}");
+    }
+    let mut simulation = solved(&scene);
+    simulation.change_scene(&scene.clone().support([0.0, 0.5], &[Axis::X])).unwrap();
+    assert!(simulation.displacement().iter().any(|u| u.norm() > 0.0), "it holds what was held");
 }

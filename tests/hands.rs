@@ -173,6 +173,23 @@ fn a_hand_pulls_down_the_gradient_of_its_energy() {
     }
 }
 
+/// The energy of a hand goes on smoothly where its force stops growing.
+#[test]
+fn a_hands_energy_is_smooth_at_its_reach() {
+    let scene = Scene::beam(4.0, 1.0).with_cells(4, 1).clamp("left").with_method(MethodKind::Newton);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    assert!(simulation.grab(simulation.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap()));
+    let (hand, _) = simulation.hand().unwrap();
+    let (k, target, reach) = (hand.stiffness(), hand.target(), hand.largest_force() / hand.stiffness());
+    let mut energy = |part: f64| {
+        simulation.pull_to(target + Vector2::new(0.6, -0.8) * (part * reach)).unwrap();
+        simulation.problem().energy(&simulation.system().at_rest(), 1.0) / (k * reach * reach)
+    };
+    for (part, expected) in [(0.5, 0.125), (1.0 - 1e-9, 0.5), (1.0 + 1e-9, 0.5), (3.0, 2.5)] {
+        assert!((energy(part) - expected).abs() < 1e-8, "{part}: {}", energy(part));
+    }
+}
+
 /// How firm a hand is: it makes the whole mass of a body that nothing else holds swing at 5 Hz, damped by 0.7 of what is
 /// critical; where a body is held, and stiffer, it is ten times as stiff as that where it takes hold. In linear theory
 /// one solve finds where that settles.
