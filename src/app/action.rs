@@ -121,6 +121,8 @@ pub(super) struct ViewOptions {
     pub field: Field,
     /// Fixed ends of the colour map, or `None` for those of the current values.
     pub fixed_range: Option<[f64; 2]>,
+    /// Values as the elements have them, not recovered at the nodes.
+    pub raw: bool,
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
@@ -149,6 +151,7 @@ impl Default for ViewOptions {
         Self {
             field: Field::default(),
             fixed_range: None,
+            raw: false,
             wireframe: true,
             rest_outline: true,
             ghost: true,
@@ -169,6 +172,11 @@ impl Default for ViewOptions {
 }
 
 impl ViewOptions {
+    /// Whether the field is drawn from what has been recovered at the nodes.
+    pub(super) fn is_smooth(&self) -> bool {
+        !self.raw && !self.field.is_of_elements()
+    }
+
     /// Shows what was hidden and hides what was shown; a drawer opens in the place of another.
     pub(super) fn toggle(&mut self, what: Toggle) {
         match what {

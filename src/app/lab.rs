@@ -24,6 +24,7 @@ use super::panel::{self, PanelInput, PanelState};
 use super::playback::Playback;
 use super::plot::Curve;
 use super::pointer::{Look, Pointer, Reach};
+use super::quality::Quality;
 use super::recorder::Recorder;
 use super::settings::Settings;
 use super::verdict::{self, Errors};
@@ -36,6 +37,7 @@ use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
+use crate::stress::{NodalStress, RecoveryScratch};
 use crate::study::{Jump, LoadPath, Reference, Study};
 use crate::timings::Timings;
 
@@ -110,6 +112,7 @@ pub struct Lab {
     /// Of a body in motion: all that it has swept, m.
     swept: Option<[Vector2<f64>; 2]>,
     recorder: Option<Recorder>,
+    quality: Quality,
     /// Iterations a displayed frame.
     iterations: u32,
     /// Time of the last iterations made for one displayed frame.
@@ -134,8 +137,12 @@ enum OpenError {
 struct Shape {
     nodes: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
-    at_points: Vec<Option<f64>>,
-    values: Vec<Option<f64>>,
+    nodal: Option<NodalStress>,
+    scratch: RecoveryScratch,
+    /// At quadrature points or nodes.
+    known: Vec<Option<f64>>,
+    /// At the corners of what is drawn.
+    values: Vec<[Option<f64>; 3]>,
     range: [f64; 2],
     /// What the range is of.
     field: Option<Field>,
@@ -181,6 +188,7 @@ impl Lab {
             playback: Playback::default(),
             swept: None,
             recorder: None,
+            quality: Quality::default(),
             iterations: 1,
             timings: Timings::default(),
             residuals: Vec::new(),
@@ -402,6 +410,7 @@ impl Lab {
             return;
         }
         self.simulation.certify();
+        self.quality.follow(&self.simulation);
         self.truth.settle(&self.scene);
         self.jump.settle(&self.scene);
         if self.view.drawer == Some(Drawer::Curve) {
@@ -465,10 +474,16 @@ impl Lab {
         shape.nodes.extend(rest.iter().zip(simulation.displacement()).map(|(x, u)| x + u));
         let nodes = &shape.nodes;
         self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
-        simulation.field(self.view.field, &mut shape.at_points);
-        self.drawing.values(&shape.at_points, &mut shape.values);
-        let [mut low, mut high] = panel::range_of(&shape.at_points);
-        if palette::has_sign(self.view.field) {
+        let field = self.view.field;
+        if self.view.is_smooth() {
+            simulation.smooth_field(field, (&mut shape.nodal, &mut shape.scratch), &mut shape.known);
+            self.drawing.nodal_values(&shape.known, field.period(), &mut shape.values);
+        } else {
+            simulation.field(field, &mut shape.known);
+            self.drawing.values(&shape.known, &mut shape.values);
+        }
+        let [mut low, mut high] = panel::range_of(&shape.known);
+        if palette::has_sign(field) {
             let reach = high.abs().max(low.abs());
             (low, high) = (-reach, reach);
         }
@@ -492,6 +507,7 @@ impl Lab {
         PanelInput {
             truth: self.truth.get(),
             jump: self.jump.get(),
+            quality: &self.quality,
             scene: &self.scene,
             scene_name: self.document.source.name.to_str().unwrap_or_default(),
             simulation: &self.simulation,
@@ -621,6 +637,7 @@ impl Lab {
             return;
         }
         self.simulation.certify();
+        self.quality.follow(&self.simulation);
         self.truth.ask(&self.scene, ctx);
         self.jump.ask(&self.scene, ctx);
         if self.view.drawer == Some(Drawer::Curve) {
@@ -820,7 +837,12 @@ impl Lab {
 
     /// The value of the field that colours the body, at a material point.
     fn field_at(&self, point: MaterialPoint) -> (Field, Option<f64>) {
-        (self.view.field, Field::at(self.simulation.system().mesh(), &self.shape.at_points, point))
+        let (field, mesh, shape) = (self.view.field, self.simulation.system().mesh(), &self.shape);
+        let value = match &shape.nodal {
+            Some(nodal) if self.view.is_smooth() => field.smooth_at(mesh, nodal, point),
+            _ => Field::raw_at(mesh, &shape.known, point),
+        };
+        (field, value)
     }
 
     /// Shows the values under the pointer, and those at the point that is kept.

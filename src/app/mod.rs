@@ -34,6 +34,7 @@ mod playback;
 mod plot;
 mod pointer;
 mod probe;
+mod quality;
 mod record;
 mod recorder;
 mod settings;

@@ -81,7 +81,8 @@ pub(super) fn show_card(
                 row("u", metres(point.displacement), "Displacement");
                 let angle = point.rotation.angle().to_degrees();
                 row("θ", engineering(three_digits(angle), "°"), "Angle of the rotation R");
-                row("σ", value(Field::VonMises, point.von_mises), "Von Mises stress");
+                let stress = point.cauchy.map_or_else(|| "none".to_owned(), |s| value(Field::VonMises, s.von_mises()));
+                row("σ", stress, "Von Mises stress of the Cauchy stress, recovered at the nodes");
                 row(
                     "ε",
                     engineering(three_digits(100.0 * point.largest_strain()), "%"),

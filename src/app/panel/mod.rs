@@ -10,6 +10,7 @@ use super::arrow::DOWN;
 use super::field::{Messages, NumberField, show_message};
 use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
+use super::quality::Quality;
 use super::toolbar::choice;
 use super::verdict::Errors;
 use crate::method::METHODS;
@@ -50,6 +51,8 @@ pub(super) struct PanelInput<'a> {
     pub truth: Option<&'a Reference>,
     /// Where the body jumps on its way from rest, once it is known.
     pub jump: Option<&'a Jump>,
+    /// How far the result is to be trusted.
+    pub quality: &'a Quality,
     pub adapter: &'a str,
 }
 
