@@ -352,8 +352,8 @@ fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
     }
 }
 
-/// Every field of a body that is stretched uniformly and turned, in closed form: the strain is S − I, and the von Mises
-/// stress that of the deviator in space, with what plane strain adds across the plane.
+/// The fields of a body that is stretched uniformly and turned, in closed form: the strain is S − I, and the von Mises
+/// stress of the Biot stress that of its deviator in space, with what plane strain adds across the plane.
 fn fields_of_a_uniform_stretch(kind: ElementKind) {
     let degrees = -70.0f64;
     let turn = Rotation::from_angle(degrees.to_radians());
@@ -375,13 +375,13 @@ fn fields_of_a_uniform_stretch(kind: ElementKind) {
         let deviator = (sx - mean).powi(2) + (sy - mean).powi(2) + (z - mean).powi(2) + 2.0 * t * t;
         let largest = strain.symmetric_eigenvalues().amax();
         for (field, expected) in [
-            (Field::VonMises, (1.5 * deviator).sqrt()),
+            (Field::BiotVonMises, (1.5 * deviator).sqrt()),
             (Field::EnergyDensity, 0.5 * (sx * xx + sy * yy) + t * xy),
             (Field::LargestStrain, largest),
             (Field::RotationAngle, degrees),
         ] {
             let mut values = Vec::new();
-            field.values(&problem, &state, &mut values);
+            field.values(&problem, &state, Kinematics::Corotated, &mut values);
             assert_eq!(values.len(), problem.system().elements().point_count());
             for value in values {
                 let value = value.unwrap();
