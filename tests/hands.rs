@@ -233,6 +233,10 @@ fn a_hand_is_as_firm_as_it_says() {
     let expected = c * (c + Matrix2::identity() / stiffness).try_inverse().unwrap() * pull;
     let found = held.hand().unwrap().0.position(held.displacement()) - corner;
     assert!((found - expected).norm() < 1e-6 * pull.norm(), "{found} {expected}");
+    held.release();
+    assert!(held.hand().is_none());
+    assert_eq!(*held.solve(), Status::Converged);
+    assert!(held.displacement().iter().all(|u| u.norm() < 1e-12), "let go, it goes back");
 }
 
 /// A pointer that moves on steadily takes a free body along: after a while the body goes with it, the spring slack, at
