@@ -87,3 +87,25 @@ impl<T: Send + 'static> Finder<T> {
         self.found.is_none()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_found_before_stays_until_the_next_is_known() {
+        let scene = Scene::beam(2.0, 1.0);
+        let mut finder = Finder::new(|scene: &Scene| scene.beam.as_ref().map(|beam| beam.length));
+        finder.settle(&scene);
+        assert_eq!((finder.get(), finder.latest()), (Some(&2.0), Some(&2.0)));
+        finder.forget();
+        finder.forget();
+        assert_eq!((finder.get(), finder.latest(), finder.is_open()), (None, Some(&2.0), true));
+        finder.settle(&Scene::beam(3.0, 1.0));
+        assert_eq!(finder.latest(), Some(&3.0));
+        // What is known not to be has nothing of before.
+        finder.forget();
+        finder.settle(&Scene { beam: None, ..scene });
+        assert_eq!((finder.latest(), finder.is_open()), (None, false));
+    }
+}

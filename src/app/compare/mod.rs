@@ -409,7 +409,7 @@ impl Compare {
             let mut setting = pane.setting;
             let close = self.panes.len() > *PANES.start() && input.view.bars;
             let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
-            let widths = [0.38, 0.25, 0.37].map(|share| (share * room).min(120.0));
+            let widths = [0.38, 0.25, 0.37].map(|share| (share * room).clamp(30.0, 120.0));
             let method = METHODS.iter().map(|entry| (entry.kind, entry.id, entry.about));
             let panels = (input.scene.solver.method.id(), "the panel's");
             pick(ui, &palette, (&name, "method"), widths[0], (&mut setting.method, panels), method);

@@ -20,6 +20,9 @@ const MOST_DOTS: usize = 500;
 /// Dots nearer to each other than this, parts of their load, are one.
 const SAME_LOAD: f64 = 2e-3;
 
+/// So many times smaller than what the plot reaches, a load would not be seen.
+const TINY: f64 = 50.0;
+
 /// The load that is traced: the first force, else the first moment, else the weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Axis {
@@ -90,7 +93,7 @@ pub(super) struct Trace {
     exact: Finder<Vec<[f64; 2]>>,
     /// The exact curve that was found last.
     line: Vec<[f64; 2]>,
-    /// What is true of the loads that were there: of a scene without such a curve.
+    /// What is true of the loads that were there: plane elasticity may differ from the exact beam.
     truths: Vec<[f64; 2]>,
     /// The load at the right edge.
     reach: f64,
@@ -174,14 +177,13 @@ impl Trace {
 
     /// Whether the exact curve that is known ends before the load, or is too coarse for it.
     fn needs_exact(&self) -> bool {
-        const COARSE: f64 = 20.0;
         let (Some(end), Some(axis)) = (self.exact.get().and_then(|line| line.last()), self.axis) else { return false };
-        axis.magnitude > end[0] || axis.magnitude > 0.0 && COARSE * axis.magnitude < end[0]
+        axis.magnitude > end[0] || axis.magnitude > 0.0 && TINY * axis.magnitude < end[0]
     }
 
-    /// Notes what is true of the present load, where no exact curve is known.
+    /// Notes what is true of the present load.
     pub(super) fn record_truth(&mut self, truth: Option<&Reference>) {
-        let (Some(axis), Some(truth), true) = (self.axis, truth, self.line.is_empty()) else { return };
+        let (Some(axis), Some(truth)) = (self.axis, truth) else { return };
         let dot = [axis.magnitude, truth.first().displacement.norm()];
         self.truths.retain(|other| (other[0] - dot[0]).abs() > SAME_LOAD * dot[0]);
         self.truths.push(dot);
@@ -190,11 +192,12 @@ impl Trace {
         }
     }
 
-    /// The exact deflection under a load, where that is known.
+    /// The true deflection under a load, where that is known; else that of the exact beam.
     fn exact_at(&self, load: f64) -> Option<f64> {
-        let piece = self.line.windows(2).find(|w| (w[0][0]..=w[1][0]).contains(&load));
-        let between = piece.map(|w| w[0][1] + (load - w[0][0]) / (w[1][0] - w[0][0]) * (w[1][1] - w[0][1]));
-        between.or_else(|| self.truths.iter().find(|dot| dot[0] == load).map(|dot| dot[1]))
+        let truth = self.truths.iter().find(|dot| dot[0] == load).map(|dot| dot[1]);
+        let piece = || self.line.windows(2).find(|w| (w[0][0]..=w[1][0]).contains(&load));
+        let between = |w: &[[f64; 2]]| w[0][1] + (load - w[0][0]) / (w[1][0] - w[0][0]) * (w[1][1] - w[0][1]);
+        truth.or_else(|| piece().map(between))
     }
 
     /// Notes what a pane has answered to the present load. Says whether that is new.
@@ -248,7 +251,7 @@ impl Trace {
         let palette = Palette::new(ui.visuals());
         // A picture whose edge moved under a pointer that scrubs in it would run away.
         let pressed = ui.input(|i| i.pointer.any_down());
-        let settled = axis.magnitude > 0.9 * self.reach || 8.0 * axis.magnitude < self.reach;
+        let settled = axis.magnitude > 0.9 * self.reach || TINY * axis.magnitude < self.reach;
         if axis.magnitude > self.reach || settled && !pressed && axis.magnitude > 0.0 {
             self.reach = 1.25 * axis.magnitude;
         }
@@ -273,13 +276,10 @@ impl Trace {
             plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [reach, top]));
             let now = VLine::new("now", axis.magnitude).color(palette.load.gamma_multiply(0.7)).width(1.0);
             plot.vline(now.allow_hover(false));
-            let line_is_unknown = line.is_empty();
-            if !line_is_unknown {
-                plot.line(Line::new("exact", PlotPoints::from(line)).color(palette.exact).width(2.0));
+            if !line.is_empty() {
+                plot.line(Line::new("exact beam", PlotPoints::from(line)).color(palette.exact).width(2.0));
             }
-            if line_is_unknown {
-                plot.points(Points::new("exact", truths).color(palette.exact).radius(5.0).shape(MarkerShape::Plus));
-            }
+            plot.points(Points::new("exact", truths).color(palette.exact).radius(5.0).shape(MarkerShape::Plus));
             // Dots in the same place lie in each other.
             for (setting, smaller) in settings.iter().copied().zip([0.0, 1.0, 2.0, 3.0]) {
                 let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
