@@ -85,6 +85,8 @@ pub struct Lab {
     view: ViewOptions,
     panel: PanelState,
     eye: Eye,
+    /// What it keeps free around the body.
+    margins: Margins,
     /// Whether the view takes its time on the way to where it looks.
     eases: bool,
     view_rect: Rect,
@@ -149,6 +151,7 @@ impl Lab {
             view: ViewOptions::default(),
             panel: PanelState::default(),
             eye: Eye::new([low, high]),
+            margins: FIT_MARGINS,
             eases: false,
             view_rect: Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1.0, 1.0)),
             pointer: Pointer::default(),
@@ -916,6 +919,7 @@ impl Lab {
             include(&mut self.exact().iter().flatten().copied());
             self.swept = Some([low, high]).filter(|_| self.moves());
             self.eye.follow([low, high]);
+            self.margins = self.with_room_for_arrows(Camera::fit(low, high, size, FIT_MARGINS), size);
         }
         let [low, high] = self.eye.whole();
         let fitted = self.fit(low, high, size);
@@ -938,8 +942,7 @@ impl Lab {
                 (low, high) = (ghost_low, ghost_high);
             }
         }
-        let margins = self.with_room_for_arrows(Camera::fit(low, high, view, FIT_MARGINS), view);
-        Camera::fit(low, high, view, margins)
+        Camera::fit(low, high, view, self.margins)
     }
 
     /// What is kept free around the body: also what the loads' arrows need beyond the view of this camera.
