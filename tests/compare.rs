@@ -8,6 +8,7 @@ mod common;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use common::lab::pick;
 use common::pictures::{difference, distance, pixel, read_png};
 use common::{scene, scene_with, stderr, warpbeam};
 use egui::Key;
@@ -314,10 +315,7 @@ fn compare_fits_small_windows() {
 #[test]
 fn pickers_change_their_pane_alone() {
     let mut harness = compared("article", "linear,newton");
-    harness.get_by_role_and_label(Role::ComboBox, "Pane 2 mesh").click();
-    harness.run();
-    harness.get_by_role_and_label(Role::Button, "20×4").click();
-    harness.step();
+    pick(&mut harness, "Pane 2 mesh", "20×4");
     wait(&mut harness, "the panes", are_judged);
     let settings: Vec<PaneSetting> = harness.state().panes().iter().map(|pane| *pane.setting()).collect();
     assert_eq!(settings, parse_panes("linear,newton:20x4").unwrap());
