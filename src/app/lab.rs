@@ -11,6 +11,7 @@ use super::budget::{Budget, question};
 use super::drawing::Drawing;
 use super::finder::{Finder, LISTEN};
 use super::intro::Intro;
+use super::learn::{self, Learn, Shown, Start};
 use super::mode::Mode;
 use super::overlay::{self, Overlay};
 use super::palette::{self, Palette};
@@ -28,7 +29,7 @@ use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{Jump, LoadPath, Reference, Study};
+use crate::study::{Extent, Jump, LoadPath, Reference, Study};
 use crate::timings::Timings;
 
 /// Width of the panel, points.
@@ -100,6 +101,10 @@ pub struct Lab {
     residuals: Vec<f64>,
     /// The first seconds, while they last.
     intro: Option<Intro>,
+    /// The cards, in the mode that has them.
+    learn: Option<Box<Learn>>,
+    /// The card that was shown last, from 0.
+    card: usize,
 }
 
 /// Why a scene is not shown.
@@ -160,6 +165,8 @@ impl Lab {
             timings: Timings::default(),
             residuals: Vec::new(),
             intro: None,
+            learn: None,
+            card: 0,
         };
         lab.solve_linear();
         lab
@@ -185,9 +192,24 @@ impl Lab {
         self.view.drawer = Some(Drawer::Curve);
     }
 
+    /// Shows a card of the mode Learn, which count from 1; the lab as it is comes back at the end of the mode.
+    pub fn show_card(&mut self, number: usize) {
+        self.card = number.saturating_sub(1);
+        self.view.mode = Mode::Learn;
+        self.enter_or_leave();
+    }
+
+    /// The number of the card that is shown, from 1, and of how many; `None` in other modes.
+    #[must_use]
+    pub fn card(&self) -> Option<(usize, usize)> {
+        self.learn.as_ref().map(|_| (self.card + 1, learn::CARDS.len()))
+    }
+
     /// Shows a study under the body.
     pub fn show_study(&mut self, study: Study) {
-        self.view.mode = Mode::Budget;
+        if self.learn.is_none() {
+            self.view.mode = Mode::Budget;
+        }
         self.budget.set(&self.scene, study);
     }
 
@@ -549,6 +571,70 @@ impl Lab {
         drawer_panel(ui).show(ui, |ui| self.budget.show(ui, &self.scene, self.iterations, actions));
     }
 
+    /// The cards, under the body.
+    pub(super) fn learn(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        // What cards remember is apart from what they show.
+        let Some(mut learn) = self.learn.take() else { return };
+        let shown = Shown { input: self.input(), study: self.budget.study(), progress: self.budget.progress() };
+        learn.show(ui, &shown, !self.view.help, actions);
+        self.learn = Some(learn);
+    }
+
+    /// Puts the lab aside for another with the article's beam where the mode asks for cards, and takes it back after.
+    fn enter_or_leave(&mut self) {
+        match (self.view.mode == Mode::Learn, self.learn.take()) {
+            (true, None) => {
+                let article = learn::article()
+                    .and_then(|(source, scene)| Some(Self::new(source, scene.clone(), Simulation::new(&scene).ok()?)));
+                let Some(mut lab) = article else {
+                    self.view.mode = Mode::Explore;
+                    return;
+                };
+                lab.adapter.clone_from(&self.adapter);
+                let (bars, panel, narrow) = (self.view.bars, self.view.panel, self.view.narrow);
+                lab.view = ViewOptions { mode: Mode::Learn, bars, panel, narrow, ghost: false, ..ViewOptions::default() };
+                (lab.view_rect, lab.card) = (self.view_rect, self.card);
+                self.intro = None;
+                self.view.mode = Mode::Explore;
+                let before = Box::new(std::mem::replace(self, lab));
+                self.learn = Some(Box::new(Learn::new(before, self.card)));
+                self.set_card_up();
+            }
+            (false, Some(learn)) => {
+                let (mode, drawer) = (self.view.mode, self.view.drawer);
+                let (before, card) = learn.leave();
+                *self = *before;
+                self.card = card;
+                self.view.mode = if (mode.entry().serves)(&self.scene) { mode } else { Mode::Explore };
+                // Plots that were asked for from a card are shown.
+                self.view.drawer = drawer.map(|_| Drawer::of(&self.scene)).or(self.view.drawer);
+            }
+            (_, same) => self.learn = same,
+        }
+    }
+
+    /// Makes scene and view what the card wants.
+    fn set_card_up(&mut self) {
+        let Some(setup) = self.learn.as_ref().map(|learn| learn.card().setup) else { return };
+        let Some((source, mut scene)) = learn::article() else { return };
+        (setup.edit)(&mut scene);
+        // The article's beam has every card's scene.
+        if self.set_scene(scene).is_err() {
+            return;
+        }
+        self.source = source;
+        self.panel.clear();
+        self.view.color_with(setup.field);
+        self.view.fixed_range = None;
+        (self.view.exact, self.view.rest_outline, self.view.ghost) = (setup.exact, setup.rest, false);
+        self.camera = None;
+        self.iterations = 1;
+        self.running = setup.start != Start::Waiting;
+        if setup.start != Start::Now {
+            self.reset();
+        }
+    }
+
     /// Takes a scene that should be as good as the present one; says so where it is not.
     fn edit(&mut self, ctx: &egui::Context, scene: Scene) {
         if let Err(error) = self.set_scene(scene) {
@@ -561,8 +647,13 @@ impl Lab {
         self.view_rect = rect;
         // What is pressed is what was seen: the last picture.
         let reach = Reach { camera: self.camera(), positions: &self.shape.nodes, outline: &self.drawing.boundary };
-        let holds = pointer::hold(ui, &response, &reach, &mut self.simulation, &mut self.playback);
+        // Elements that are drawn elsewhere cannot be pulled.
+        let apart = self.learn.as_ref().is_some_and(|learn| learn.is_apart());
+        let holds = !apart && pointer::hold(ui, &response, &reach, &mut self.simulation, &mut self.playback);
         self.update_shape(ui.visuals());
+        if let Some(learn) = &self.learn {
+            learn.place(&self.simulation, &self.drawing, &mut self.shape.points);
+        }
         self.follow(rect);
         match pointer::look(ui, &response, self.camera(), holds) {
             Look::Same => {}
@@ -582,6 +673,7 @@ impl Lab {
             options: &self.view,
             camera: self.camera(),
             positions: &self.shape.nodes,
+            apart,
             ghost: self.ghost(),
             exact: if self.intro.is_some() { &[] } else { self.exact() },
             errors: if self.intro.is_some() { Errors::default() } else { errors },
@@ -594,6 +686,20 @@ impl Lab {
             warning: (bad && !self.view.bars).then_some(&words),
         };
         overlay::paint(&painter, rect, &overlay, ui.visuals());
+        if let Some(learn) = &mut self.learn {
+            let view = learn::View {
+                simulation: &self.simulation,
+                drawing: &self.drawing,
+                points: &self.shape.points,
+                camera: self.camera.unwrap_or(self.fitted),
+                rect,
+                palette: Palette::new(ui.visuals()),
+            };
+            if let (true, Some(at)) = (response.clicked(), response.interact_pointer_pos()) {
+                learn.pick(&view, at);
+            }
+            learn.paint(&painter, &view);
+        }
         if self.view.bars && self.intro.is_none() {
             let mut free = rect;
             if self.view.narrow && self.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
@@ -629,7 +735,9 @@ impl Lab {
                     }
                 });
             }
-            if let Some(remedy) = verdict::remedy(&input, errors) {
+            // A card has its own way on.
+            let remedy = verdict::remedy(&input, errors).filter(|_| self.learn.is_none());
+            if let Some(remedy) = remedy {
                 chip(palette.error_chip).show(ui, |ui| {
                     ui.horizontal_wrapped(|ui| {
                         ui.colored_label(palette.error, &remedy.words);
@@ -748,7 +856,19 @@ impl Lab {
             Action::Compare(integrator) => self.compare_with(integrator),
             Action::Iterations(iterations) => self.iterations = iterations.clamp(1, MOST_ITERATIONS),
             Action::Fit => self.camera = None,
-            Action::Toggle(what) => self.view.toggle(what),
+            Action::Toggle(what) => {
+                self.view.toggle(what);
+                self.enter_or_leave();
+                ctx.request_repaint();
+            }
+            Action::Card(card) => {
+                if let Some(learn) = &mut self.learn {
+                    learn.go_to(card);
+                    self.card = card;
+                    self.set_card_up();
+                    ctx.request_repaint();
+                }
+            }
             Action::Color(field) => self.view.color_with(field),
             Action::ToggleTheme => {
                 let dark = ctx.theme() == egui::Theme::Dark;
@@ -757,7 +877,10 @@ impl Lab {
             Action::Screenshot => requests.push(Request::Screenshot),
             Action::Record => self.record(ctx),
             Action::Copy => self.copy(ctx),
-            Action::Measure(true) => self.budget.measure(&self.scene),
+            Action::Measure(true) => {
+                let extent = if self.learn.is_some() { Extent::Quick } else { Extent::Full };
+                self.budget.measure(&self.scene, extent);
+            }
             Action::Measure(false) => self.budget.cancel(),
             Action::Apply(setting) => {
                 self.edit(ctx, setting.apply(&self.scene));
@@ -768,6 +891,7 @@ impl Lab {
 
     fn reset(&mut self) {
         self.playback.reset(&mut self.simulation);
+        self.residuals.clear();
         self.swept = None;
     }
 

@@ -12,6 +12,8 @@ pub(super) enum Mode {
     /// The body, its load and its numbers.
     #[default]
     Explore,
+    /// The article on a row of cards.
+    Learn,
     /// Error against time, and the settings within limits.
     Budget,
 }
@@ -35,6 +37,13 @@ pub(super) const MODES: &[ModeEntry] = &[
         about: "The body, its load, and how far from the truth it is",
         serves: |_| true,
         show: Lab::plots,
+    },
+    ModeEntry {
+        mode: Mode::Learn,
+        name: "Learn",
+        about: "The article's method, walked through on eight cards; your own scene comes back at the end",
+        serves: |_| true,
+        show: Lab::learn,
     },
     ModeEntry {
         mode: Mode::Budget,

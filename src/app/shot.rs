@@ -28,6 +28,8 @@ pub struct ShotOptions {
     pub curve: bool,
     /// Whether error against time is, measured now; in the place of the load curve.
     pub study: bool,
+    /// A card of the mode Learn, from 1: with the article's beam, whatever the scene.
+    pub learn: Option<usize>,
     /// Whether the plot of a motion's energy is, and the integrators that are shown beside the scene's.
     pub motion: Option<Vec<IntegratorKind>>,
     /// Light or dark.
@@ -36,7 +38,7 @@ pub struct ShotOptions {
 
 impl Default for ShotOptions {
     fn default() -> Self {
-        Self { size: [1280, 800], panel: true, curve: false, study: false, motion: None, theme: ThemeChoice::default() }
+        Self { size: [1280, 800], panel: true, curve: false, study: false, learn: None, motion: None, theme: ThemeChoice::default() }
     }
 }
 
@@ -58,8 +60,12 @@ pub fn shot(
     if options.curve {
         lab.show_curve();
     }
+    if let Some(card) = options.learn {
+        lab.show_card(card);
+    }
     if options.study {
-        match Study::new(lab.scene(), Extent::Full, &mut |_| ControlFlow::Continue(())) {
+        let extent = if options.learn.is_some() { Extent::Quick } else { Extent::Full };
+        match Study::new(lab.scene(), extent, &mut |_| ControlFlow::Continue(())) {
             Ok(study) => lab.show_study(study),
             Err(error) => log::error!("no study: {error}"),
         }
