@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use warpbeam::study::{Extent, Study};
-use warpbeam::{Field, Scene, Simulation, Status};
+use warpbeam::{Scene, Simulation, Status};
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("{}", report(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").as_path())?);
@@ -23,12 +23,10 @@ pub fn report(folder: &Path) -> Result<String, Box<dyn Error>> {
         return Err(format!("{:?}", bracket.status()).into());
     }
     let stable = bracket.certify().stable;
-    let mut stresses = Vec::new();
-    bracket.field(Field::VonMises, &mut stresses);
-    let largest = stresses.iter().flatten().copied().fold(0.0, f64::max);
+    let largest = bracket.stress_result().largest.map_or(0.0, |largest| largest.von_mises);
     let study = Study::new(&scene, Extent::Quick, &mut |_| ControlFlow::Continue(()))?;
     Ok(format!(
-        "{}: stable {stable:?}, largest von Mises stress {largest:.0} Pa, end moved by {:.4} m\n\n{}",
+        "{}: stable {stable:?}, largest von Mises (Cauchy) stress {largest:.0} Pa, end moved by {:.4} m\n\n{}",
         scene.name,
         bracket.probe("end").map_or(0.0, |u| u.norm()),
         study.summary()

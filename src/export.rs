@@ -261,13 +261,83 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
 }
 
 fn csv(simulation: &Simulation) -> String {
-    let mut text = String::from("node,rest_x,rest_y,x,y,u_x,u_y\n");
-    let nodes = simulation.system().mesh().nodes().iter().zip(simulation.displacement());
-    for (i, (rest, u)) in nodes.enumerate() {
+    let mut text = String::from("node,rest_x,rest_y,x,y,u_x,u_y,rotation_deg");
+    for name in ["strain", "stress"] {
+        let _ = write!(text, ",{name}_xx,{name}_yy,{name}_zz,{name}_xy");
+    }
+    text.push_str(",von_mises");
+    let mesh = simulation.system().mesh();
+    let has_file = mesh.is_from_file();
+    text.push_str(if has_file { ",file_node\n" } else { "\n" });
+    let nodal = simulation.nodal_stress();
+    let nodes = mesh.nodes().iter().zip(simulation.displacement());
+    for (node, ((rest, u), (local, stress))) in (0..).zip(nodes.zip(nodal.nodes().iter().zip(nodal.cauchy()))) {
         let x = rest + u;
-        let _ = writeln!(text, "{i},{},{},{},{},{},{}", rest.x, rest.y, x.x, x.y, u.x, u.y);
+        let _ = write!(text, "{node},{},{},{},{},{},{}", rest.x, rest.y, x.x, x.y, u.x, u.y);
+        let strain = local.strain(nodal.material()).components().map(Some);
+        let stresses = stress.map_or([None; 4], |s| s.components().map(Some));
+        let others = strain.into_iter().chain(stresses).chain([stress.map(|s| s.von_mises())]);
+        for value in std::iter::once(Some(local.rotation.angle().to_degrees())).chain(others) {
+            // What is not known is empty.
+            let value = value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string());
+            let _ = write!(text, ",{value}");
+        }
+        if has_file {
+            let tag = mesh.node_name(node).map_or_else(String::new, |tag| tag.to_string());
+            let _ = write!(text, ",{tag}");
+        }
+        text.push('\n');
     }
     text
+}
+
+/// A `DataArray` with its values, a row a line; nothing where there are none, as VTK has no word for a value that is
+/// absent.
+fn data_array<T: std::fmt::Display, const K: usize>(
+    text: &mut String,
+    kind: &str,
+    name: &str,
+    rows: Option<Vec<[T; K]>>,
+) {
+    let Some(rows) = rows else { return };
+    let name = xml_attribute(name);
+    let _ = writeln!(text, r#"<DataArray type="{kind}" Name="{name}" NumberOfComponents="{K}" format="ascii">"#);
+    for row in rows {
+        let _ = writeln!(text, "{}", row.map(|v| v.to_string()).join(" "));
+    }
+    let _ = writeln!(text, "</DataArray>");
+}
+
+/// What is recovered at the nodes, as tensors of nine components; the nodes' numbers in their file, −1 for those it lacks;
+/// and the nodes of every named edge, 1 or 0.
+fn nodal_data(text: &mut String, simulation: &Simulation) {
+    let (mesh, nodal) = (simulation.system().mesh(), simulation.nodal_stress());
+    let strains = nodal.nodes().iter().map(|local| local.strain(nodal.material()));
+    let strains: Option<Vec<_>> = strains.map(|s| s.is_finite().then(|| s.rows())).collect();
+    data_array(text, "Float64", "strain (Biot)", strains);
+    let stresses: Option<Vec<_>> = nodal.cauchy().collect();
+    data_array(
+        text,
+        "Float64",
+        "stress (Cauchy) [Pa]",
+        stresses.as_ref().map(|s| s.iter().map(|s| s.rows()).collect()),
+    );
+    let mut values = Vec::new();
+    Field::VonMises.nodal_values(&nodal, &mut values);
+    let values = values.into_iter().map(|v| v.map(|v| [v])).collect();
+    data_array(text, "Float64", &title(Field::VonMises), values);
+    let numbers = (0..mesh.nodes().len() as u32).map(|n| mesh.node_name(n).map_or(-1, |tag| tag as i64));
+    data_array(text, "Int64", "node", Some(numbers.map(|n| [n]).collect()));
+    for name in mesh.edges().keys() {
+        let mut on_edge = vec![[0]; mesh.nodes().len()];
+        mesh.edge_nodes(name).unwrap_or_default().iter().for_each(|&n| on_edge[n as usize] = [1]);
+        data_array(text, "UInt8", name, Some(on_edge));
+    }
+}
+
+/// A field's name with its unit.
+fn title(field: Field) -> String {
+    if field.unit().is_empty() { field.name().to_owned() } else { format!("{} [{}]", field.name(), field.unit()) }
 }
 
 fn vtu(simulation: &Simulation) -> String {
@@ -308,18 +378,17 @@ fn vtu(simulation: &Simulation) -> String {
         }
         let _ = writeln!(text, "</DataArray>");
     }
+    nodal_data(&mut text, simulation);
     let _ = writeln!(text, "</PointData>\n<CellData>");
     let mut values = Vec::new();
-    for field in Field::ALL {
+    // Stresses are at the nodes: their mean over a cell is far from the largest.
+    for field in [Field::EnergyDensity, Field::LargestStrain, Field::RotationAngle, Field::MeshError] {
         simulation.field(field, &mut values);
         // VTK has no word for a value that is absent: a field that lacks one is left out.
         let Some(values) = values.iter().copied().collect::<Option<Vec<f64>>>() else { continue };
-        let unit = if field.unit().is_empty() { String::new() } else { format!(" [{}]", field.unit()) };
-        let _ = writeln!(text, r#"<DataArray type="Float64" Name="{}{unit}" format="ascii">"#, field.name());
-        for element in values.chunks_exact(per_element) {
-            let _ = writeln!(text, "{}", element.iter().sum::<f64>() / element.len() as f64);
-        }
-        let _ = writeln!(text, "</DataArray>");
+        let mean = |element: &[f64]| [element.iter().sum::<f64>() / element.len() as f64];
+        let values = values.chunks_exact(per_element).map(mean).collect();
+        data_array(&mut text, "Float64", &title(field), Some(values));
     }
     text.push_str("</CellData>\n</Piece></UnstructuredGrid>\n</VTKFile>\n");
     text

@@ -39,7 +39,7 @@
 //! Data flows one way, and the modules say so; each imports only from its left:
 //!
 //! [`words`], [`timings`], [`scene`] → [`rotation`], [`material`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
-//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions → [`simulation`] → [`study`] → the commands and the
+//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`study`] → the commands and the
 //! window. [`truth`] needs the scene only; [`article`] stands beside.
 //!
 //! The feature `app` (on by default) is the window and the commands; `cli` is the commands alone, without a GPU or a
@@ -77,6 +77,7 @@ pub mod scene;
 pub mod simulation;
 pub mod solver;
 pub mod state;
+pub mod stress;
 pub mod study;
 pub mod timings;
 pub mod truth;

@@ -106,10 +106,18 @@ pub fn percent(value: f64) -> String {
         return "exact".to_owned();
     }
     if value.abs() >= 99.5 {
-        let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-        return format!("{} %", number(rounded));
+        return format!("{} %", number(three_digits(value)));
     }
     format!("{} %", significant(value, 2))
+}
+
+/// The nearest number of three significant digits: as much as a slider, a pointer or a clock is good for.
+#[must_use]
+pub fn three_digits(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// The largest of 1, 2, 5 · 10ⁿ that is not above `length`.

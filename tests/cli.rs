@@ -84,6 +84,10 @@ fn json_has_every_field_of_the_contract() {
             "max_rotation_deg",
             "max_strain",
             "inverted_elements",
+            "max_von_mises",
+            "mesh_error_percent",
+            "mesh_error_of",
+            "warnings",
             "probes",
             "energy",
             "reaction",
@@ -93,7 +97,7 @@ fn json_has_every_field_of_the_contract() {
         assert_eq!(json["status"], "converged", "{id}");
         assert!(json["residual"].as_f64().unwrap() <= 1e-8);
         let probe = &json["probes"][0];
-        for key in ["name", "x", "u", "truth_u", "error_percent"] {
+        for key in ["name", "x", "u", "rotation_deg", "strain", "stress", "von_mises", "truth_u", "error_percent"] {
             assert!(probe.get(key).is_some(), "{id}: {key}");
         }
         // A body at rest neither moves nor dissipates: what is not there is null.
@@ -103,7 +107,19 @@ fn json_has_every_field_of_the_contract() {
             ("reaction", &["force", "moment"]),
             (
                 "time_us",
-                &["total", "wall", "rotate", "assemble", "factorize", "solve", "certify", "set_up", "truth", "other"],
+                &[
+                    "total",
+                    "wall",
+                    "rotate",
+                    "assemble",
+                    "factorize",
+                    "solve",
+                    "certify",
+                    "set_up",
+                    "stress",
+                    "truth",
+                    "other",
+                ],
             ),
         ] {
             for key in keys {
@@ -113,7 +129,7 @@ fn json_has_every_field_of_the_contract() {
         // The solve is the sum of its stages, and all of the time is told.
         let time = |key: &str| json["time_us"][key].as_f64().unwrap();
         let solve: f64 = ["rotate", "assemble", "factorize", "solve"].map(time).iter().sum();
-        let beside: f64 = ["certify", "set_up", "truth", "other"].map(time).iter().sum();
+        let beside: f64 = ["certify", "set_up", "stress", "truth", "other"].map(time).iter().sum();
         assert!((solve - time("total")).abs() < 1e-6 * solve, "{id}: {solve} of {} µs", time("total"));
         assert!((solve + beside - time("wall")).abs() < 1e-6 * time("wall"), "{id}: {solve} + {beside} µs");
         let certified = json["time_us"]["certify"].as_f64().unwrap() > 0.0;
@@ -192,13 +208,13 @@ fn results_are_written_as_csv_and_vtu() {
     assert_eq!(code, Some(0));
     let rows: Vec<Vec<f64>> =
         csv.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect();
-    assert_eq!((rows.len(), rows[0].len()), (12, 7));
+    assert_eq!((rows.len(), rows[0].len()), (12, 17));
     for row in &rows {
         assert!((row[1] + row[5] - row[3]).abs() < 1e-12 && (row[2] + row[6] - row[4]).abs() < 1e-12);
     }
     let (code, vtu, _) = run("mesh.vtu");
     assert_eq!(code, Some(0));
-    assert!(vtu.contains("NumberOfPoints=\"12\" NumberOfCells=\"10\"") && vtu.contains("von Mises stress [Pa]"));
+    assert!(vtu.contains("NumberOfPoints=\"12\" NumberOfCells=\"10\"") && vtu.contains("von Mises (Cauchy) [Pa]"));
     let (code, _, message) = run("mesh.obj");
     assert_eq!(code, Some(2));
     assert!(message.contains(".csv or .vtu"), "{message}");

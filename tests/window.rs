@@ -13,12 +13,12 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-use common::scene;
+use common::{scene, solve_json, warpbeam};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use warpbeam::app::Lab;
-use warpbeam::scene::Source;
+use warpbeam::scene::{Load, Source};
 use warpbeam::simulation::Simulation;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{AtomEnum, ConnectionExt, ImageFormat, MapState};
@@ -37,6 +37,8 @@ struct Desktop {
     server: Child,
     manager: Child,
     name: String,
+    /// Where the programs have their settings: never among those of who runs the tests.
+    config: tempfile::TempDir,
 }
 
 impl Drop for Desktop {
@@ -72,7 +74,8 @@ impl Desktop {
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let name = format!(":{}", number.trim());
         let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
-        let desktop = Self { _turn: turn, server, manager, name };
+        let config = tempfile::tempdir().unwrap();
+        let desktop = Self { _turn: turn, server, manager, name, config };
         // A window that is mapped before there is a manager may never be managed.
         wait_for("the window manager", || desktop.is_managed().then_some(()));
         Some(desktop)
@@ -89,6 +92,7 @@ impl Desktop {
     fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);
         command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        command.env("XDG_CONFIG_HOME", self.config.path());
         command
     }
 
@@ -245,11 +249,12 @@ fn wait_for<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Where the panel has its force slider, from the same panel laid out without a window.
-fn force_slider() -> egui::Rect {
+/// The article's scene at rest, laid out as in the window but without one.
+fn laid_out() -> Harness<'static, Lab> {
     let scene = scene("article");
     let simulation = Simulation::new(&scene).unwrap();
-    let lab = Lab::new(Source { name: "article".into(), assignments: Vec::new() }, scene, simulation);
+    let mut lab = Lab::new(Source { name: "article".into(), assignments: Vec::new() }, scene, simulation);
+    lab.solve();
     let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
         |ui, lab: &mut Lab| {
             lab.ui(ui);
@@ -257,11 +262,25 @@ fn force_slider() -> egui::Rect {
         lab,
     );
     harness.run_steps(3);
-    harness.get_by_role_and_label(Role::Slider, "Force").rect()
+    harness
 }
 
+/// Where the panel has its force slider.
+fn force_slider() -> egui::Rect {
+    laid_out().get_by_role_and_label(Role::Slider, "Force").rect()
+}
+
+/// A whole PNG file in the order of X images, BGRx.
+fn read_bgrx(path: &std::path::Path) -> Option<Vec<u8>> {
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).ok()?)).read_info().ok()?;
+    let mut rgba = vec![0; reader.output_buffer_size()?];
+    reader.next_frame(&mut rgba).ok()?;
+    Some(rgba.chunks(4).flat_map(|p| [p[2], p[1], p[0], 0]).collect())
+}
+
+/// How many pixels differ; the fourth byte of an X image is no colour.
 fn changed(a: &[u8], b: &[u8]) -> usize {
-    a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24)).count()
+    a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).take(3).any(|(a, b)| a.abs_diff(*b) > 24)).count()
 }
 
 #[test]
@@ -380,21 +399,70 @@ fn s_saves_a_screenshot() {
     let shown = window.settle();
     let path = folder.path().join("warpbeam-001.png");
     let mut asked: Option<Instant> = None;
-    let rgba = wait_for("the whole screenshot", || {
+    let bgrx = wait_for("the whole screenshot", || {
         if asked.is_none_or(|at| at.elapsed() > AGAIN) {
             window.key("s");
             asked = Some(Instant::now());
         }
-        let mut reader = png::Decoder::new(BufReader::new(File::open(&path).ok()?)).read_info().ok()?;
-        let mut rgba = vec![0; reader.output_buffer_size()?];
-        reader.next_frame(&mut rgba).ok()?;
-        Some(rgba)
+        read_bgrx(&path)
     });
-    // X images are BGRx.
-    let bgrx: Vec<u8> = rgba.chunks(4).flat_map(|p| [p[2], p[1], p[0], 0]).collect();
-    let shown: Vec<u8> = shown.chunks(4).flat_map(|p| [p[0], p[1], p[2], 0]).collect();
     assert_eq!(bgrx.len(), shown.len());
     let different = changed(&bgrx, &shown);
     assert!(different < 1_000, "{different} pixels differ from the window");
     assert_eq!(window.close().0, Some(0));
+}
+
+/// The tip of the arrow is dragged: the force goes where the pointer went, Ctrl+S saves it, `solve` converges to what is
+/// shown, and Ctrl+Z brings back what was before.
+#[test]
+fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, scene("article").to_toml().unwrap()).unwrap();
+    let window = Window::open(&desktop, &["run", path.to_str().unwrap()]);
+    let harness = laid_out();
+    let (tip, corner) = (harness.state().arrow_tips()[0].1, (1270.0, 790.0));
+    window.point(corner.0, corner.1);
+    let before = window.settle();
+    window.point(tip.x, tip.y);
+    desktop.xdotool(&["mousedown", "1"]);
+    // To the left and up: less force, and another direction.
+    let way = egui::vec2(-60.0, -45.0);
+    for part in [0.25, 0.5, 0.75, 1.0] {
+        window.point(tip.x + part * way.x, tip.y + part * way.y);
+    }
+    wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 10_000).then_some(()));
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(corner.0, corner.1);
+    let after = window.settle();
+    let until = |what: &str, key: &str, done: &dyn Fn() -> bool| {
+        let mut asked: Option<Instant> = None;
+        wait_for(what, || {
+            if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+                window.key(key);
+                asked = Some(Instant::now());
+            }
+            done().then_some(())
+        });
+    };
+    let force = || {
+        let saved = warpbeam::Scene::from_toml(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        saved.loads.iter().find_map(|l| if let Load::Force { force, .. } = l { Some(*force) } else { None }).unwrap()
+    };
+    until("the saved scene", "ctrl+s", &|| force() != [0.0, -30_000.0]);
+    let [fx, fy] = force();
+    assert!(fx < 0.0 && fy < 0.0 && fx.hypot(fy) < 30_000.0, "{fx} {fy}");
+    let json = solve_json(&[path.to_str().unwrap()]);
+    assert_eq!(json["status"], "converged", "{json}");
+    // What is saved is what is shown; only times and counts of iterations differ.
+    let picture = folder.path().join("saved.png");
+    let shot = warpbeam(&["shot", path.to_str().unwrap(), "-o", picture.to_str().unwrap(), "--size", "1280x800"]);
+    assert_eq!(shot.status.code(), Some(0));
+    let different = changed(&read_bgrx(&picture).unwrap(), &after);
+    assert!(different < 5_000, "{different} pixels differ from what `shot` makes of the saved scene");
+    until("the scene as it was", "ctrl+z", &|| changed(&before, &window.image()) < 2_000);
+    let (code, said) = window.close();
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
 }

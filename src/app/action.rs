@@ -1,5 +1,9 @@
 //! What panel, keys and drawers ask of the lab, and how the body is looked at.
 
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
 use super::mode::Mode;
 use super::motion_plot::MotionPlot;
 use crate::scene::{Analysis, IntegratorKind, Scene};
@@ -14,6 +18,22 @@ pub(super) const MOST_ITERATIONS: u32 = 100;
 pub(super) enum Action {
     /// Open a built-in scene.
     Open(&'static str),
+    /// Ask for a scene file and open it.
+    OpenFile,
+    /// Open a file that was dropped on the window.
+    Drop(PathBuf),
+    /// Open the scene's file again.
+    Reload,
+    /// Save the scene to its file, or ask for one.
+    Save,
+    /// Ask for a file and save the scene to it.
+    SaveAs,
+    /// Take the last edit back.
+    Undo,
+    /// Do the edit that was taken back last again.
+    Redo,
+    /// Close what is open over the body.
+    Escape,
     /// Change the scene; a refusal is shown next to the field of this label.
     Edit(&'static str, Box<Scene>),
     /// Iterate, or stop.
@@ -70,7 +90,8 @@ pub(super) enum Toggle {
 }
 
 /// What is shown under the body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(super) enum Drawer {
     /// Load against deflection.
     Curve,
@@ -102,6 +123,8 @@ pub(super) struct ViewOptions {
     pub field: Field,
     /// Fixed ends of the colour map, or `None` for those of the current values.
     pub fixed_range: Option<[f64; 2]>,
+    /// Values as the elements have them, not recovered at the nodes.
+    pub raw: bool,
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
@@ -121,6 +144,8 @@ pub(super) struct ViewOptions {
     /// Whether the status is explained.
     pub why: bool,
     pub help: bool,
+    /// An edge that is shown: the pointer is on its name.
+    pub edge: Option<String>,
 }
 
 impl Default for ViewOptions {
@@ -128,6 +153,7 @@ impl Default for ViewOptions {
         Self {
             field: Field::default(),
             fixed_range: None,
+            raw: false,
             wireframe: true,
             rest_outline: true,
             ghost: true,
@@ -142,11 +168,17 @@ impl Default for ViewOptions {
             narrow: false,
             why: false,
             help: false,
+            edge: None,
         }
     }
 }
 
 impl ViewOptions {
+    /// Whether the field is drawn from what has been recovered at the nodes.
+    pub(super) fn is_smooth(&self) -> bool {
+        !self.raw && !self.field.is_of_elements()
+    }
+
     /// Shows what was hidden and hides what was shown; a drawer opens in the place of another.
     pub(super) fn toggle(&mut self, what: Toggle) {
         match what {

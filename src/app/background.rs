@@ -56,7 +56,9 @@ impl Background {
         let (sender, receiver) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let cancelled = cancel.clone();
-        std::thread::Builder::new().name("study".to_owned()).spawn(move || work(&scene, extent, &sender, &cancelled))?;
+        std::thread::Builder::new()
+            .name("study".to_owned())
+            .spawn(move || work(&scene, extent, &sender, &cancelled))?;
         Ok(Self { receiver, cancel, fraction: 0.0, now: String::new() })
     }
 

@@ -13,7 +13,7 @@ use crate::method::METHODS;
 use crate::scene::{ElementKind, Scene, SolverSettings, limits};
 use crate::study::plot::drawn_error;
 use crate::study::{Demand, Extent, Measurement, Setting, Study};
-use crate::words::{engineering, number, percent};
+use crate::words::{engineering, number, percent, three_digits};
 
 /// The study of the lab's scene, and the limits within which its settings are looked for.
 #[derive(Debug, Default)]
@@ -253,7 +253,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
 
 /// The time of a solve, three digits.
 fn milliseconds(m: &Measurement) -> String {
-    engineering(format!("{:.2e}", 1e-3 * m.milliseconds()).parse().unwrap_or(0.0), "s")
+    engineering(three_digits(1e-3 * m.milliseconds()), "s")
 }
 
 /// A mark at every decade.

@@ -99,13 +99,40 @@ impl Drawing {
         positions.extend((0..(self.nodes.len() / self.stride.max(1)) as u32).map(|p| self.point(p, place)));
     }
 
-    /// The value of every triangle, from those of the quadrature points; absent where one of these is.
-    pub(super) fn values(&self, at_points: &[Option<f64>], values: &mut Vec<Option<f64>>) {
+    /// The values at the corners of every triangle, from those of the nodes by the shape functions; absent where one of
+    /// these is. Nodes whose values differ by a period have the same.
+    pub(super) fn nodal_values(
+        &self,
+        at_nodes: &[Option<f64>],
+        period: Option<f64>,
+        values: &mut Vec<[Option<f64>; 3]>,
+    ) {
+        values.clear();
+        let at = |p: u32| -> Option<f64> {
+            let own = p as usize * self.stride..(p as usize + 1) * self.stride;
+            let mut first = None;
+            self.nodes[own.clone()]
+                .iter()
+                .zip(&self.weights[own])
+                .map(|(&n, &weight)| {
+                    let value = *at_nodes.get(n as usize)?.as_ref()?;
+                    let near = *first.get_or_insert(value);
+                    let turns = period.map_or(0.0, |period| period * ((value - near) / period).round());
+                    Some((value - turns) * weight)
+                })
+                .sum()
+        };
+        values.extend(self.triangles.iter().map(|corners| corners.map(at)));
+    }
+
+    /// The value of every triangle, the same at its corners, from those of the quadrature points; absent where one of
+    /// these is.
+    pub(super) fn values(&self, at_points: &[Option<f64>], values: &mut Vec<[Option<f64>; 3]>) {
         values.clear();
         let stride = self.value_weights.len() / self.value_of.len().max(1);
         values.extend(self.value_of.iter().zip(self.value_weights.chunks(stride.max(1))).map(|(&first, weights)| {
             let own = at_points.get(first as usize..).unwrap_or_default();
-            own.iter().zip(weights).map(|(value, weight)| Some((*value)? * weight)).sum::<Option<f64>>()
+            [own.iter().zip(weights).map(|(value, weight)| Some((*value)? * weight)).sum(); 3]
         }));
     }
 }
@@ -185,11 +212,24 @@ mod tests {
             let mut values = Vec::new();
             drawing.values(&at_points, &mut values);
             let mean = |v: &[Option<f64>]| v.iter().flatten().sum::<f64>() / v.len() as f64;
-            assert!((mean(&values) - mean(&at_points)).abs() < 1e-12, "{element:?}");
+            assert!((mean(values.as_flattened()) - mean(&at_points)).abs() < 1e-12, "{element:?}");
             drawing.values(&vec![Some(5.0); count], &mut values);
-            assert!(values.iter().flatten().all(|v| (v - 5.0).abs() < 1e-12), "{element:?}");
+            assert!(values.as_flattened().iter().flatten().all(|v| (v - 5.0).abs() < 1e-12), "{element:?}");
             drawing.values(&vec![None; count], &mut values);
-            assert!(values.iter().all(Option::is_none), "{element:?}");
+            assert!(values.as_flattened().iter().all(Option::is_none), "{element:?}");
+            // One that is given at the nodes is drawn through them, and an angle takes the short way around.
+            let at_nodes: Vec<Option<f64>> = mesh.nodes().iter().map(|x| Some(x.x + 2.0 * x.y)).collect();
+            drawing.nodal_values(&at_nodes, None, &mut values);
+            for (corners, values) in drawing.triangles.iter().zip(&values) {
+                for (&p, value) in corners.iter().zip(values) {
+                    let x = points[p as usize];
+                    assert!((value.unwrap() - x.x - 2.0 * x.y).abs() < 1e-12, "{element:?}");
+                }
+            }
+            let angles: Vec<Option<f64>> =
+                (0..mesh.nodes().len()).map(|n| Some(if n % 2 == 0 { 179.0 } else { -179.0 })).collect();
+            drawing.nodal_values(&angles, Some(360.0), &mut values);
+            assert!(values.as_flattened().iter().flatten().all(|v| v.abs() > 178.0), "{element:?}");
         }
     }
 }

@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::scene::OutOfRange;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
-use crate::words::{editable, number};
+use crate::words::{editable, number, three_digits};
 
 /// Messages next to fields, by the field's label.
 pub(super) type Messages = BTreeMap<&'static str, String>;
@@ -79,7 +79,7 @@ impl NumberField {
                     let size = egui::vec2(VALUE_WIDTH, ui.spacing().interact_size.y);
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
                     if response.changed() {
-                        edited = Some(if response.dragged() { round_to_slider(typed) } else { typed });
+                        edited = Some(if response.dragged() { three_digits(typed) } else { typed });
                     }
                     quiet_tip(response, self.tooltip);
                 });
@@ -96,7 +96,7 @@ impl NumberField {
         if response.has_focus() && !response.dragged() {
             edited = self.stepped(ui, value).or(edited);
         } else if response.changed() {
-            edited = Some(if self.whole { slid.round() } else { round_to_slider(slid) });
+            edited = Some(if self.whole { slid.round() } else { three_digits(slid) });
         }
         quiet_tip(response, self.tooltip);
         let accepted = match (refused.into_inner(), edited) {
@@ -134,7 +134,7 @@ impl NumberField {
             None => (high - low) / 360.0,
         };
         let stepped = (value + steps * step).clamp(low.min(value), high.max(value));
-        Some(if self.whole { stepped } else { round_to_slider(stepped) })
+        Some(if self.whole { stepped } else { three_digits(stepped) })
     }
 
     fn expected(&self, text: &str) -> String {
@@ -162,14 +162,6 @@ fn quiet_tip(response: Response, tip: &str) {
     if !response.dragged() && !response.has_focus() {
         response.on_hover_text(tip);
     }
-}
-
-/// Three significant digits: what a slider's position is good for.
-pub(super) fn round_to_slider(value: f64) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// A typed number, in this unit where it has none: `2.5`, `1e4`, `12 kN`, `30,000`, and `3k` for 3 kN.

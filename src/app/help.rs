@@ -5,10 +5,13 @@ use egui::{Align2, Context};
 use super::keys::SHORTCUTS;
 
 const MOUSE: &[(&str, &str)] = &[
+    ("Drag an arrow's tip", "Set a force; Shift: its direction in steps of 15°"),
     ("Drag the body", "Pull it with a spring; let go and it springs back"),
     ("Drag beside it, two fingers", "Move the view"),
+    ("Rest over the body", "Its values under the pointer; a click keeps them"),
     ("Scroll, pinch", "Zoom to the pointer"),
-    ("Double click", "Fit the view"),
+    ("Double click", "Fit the view; on an arrow's tip: the scene's own force"),
+    ("Drop a file", "Open it"),
 ];
 
 /// Shows the list over everything; `open` goes off when it is closed.
@@ -20,11 +23,14 @@ pub(super) fn show(ctx: &Context, open: &mut bool) {
         .open(open)
         .collapsible(false)
         .resizable(false)
+        // The list is longer than a small window is high.
+        .vscroll(true)
+        .max_height(ctx.content_rect().height() - 80.0)
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
             egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
                 for shortcut in SHORTCUTS {
-                    ui.strong(shortcut.key.name());
+                    ui.strong(shortcut.words());
                     ui.label(shortcut.does);
                     ui.end_row();
                 }
@@ -34,6 +40,5 @@ pub(super) fn show(ctx: &Context, open: &mut bool) {
                     ui.end_row();
                 }
             });
-            ui.small("Escape closes this list.");
         });
 }

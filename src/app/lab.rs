@@ -1,5 +1,6 @@
 //! The lab: a scene, its simulation, and how it is looked at. Window, shot and tests show it through [`Lab::ui`].
 
+use std::path::Path;
 use std::time::Duration;
 
 use egui::{CentralPanel, Color32, Panel, Rect, Sense, Ui};
@@ -7,28 +8,37 @@ use nalgebra::Vector2;
 
 use super::ThemeChoice;
 use super::action::{Action, Drawer, MOST_ITERATIONS, Toggle, ViewOptions};
+use super::arrow::{Forces, vector};
 use super::budget::{Budget, question};
+use super::document::Document;
 use super::drawing::Drawing;
+use super::edits::{Edits, Snapshot};
+use super::eye::Eye;
+use super::file_dialog::{Answer, FileDialog, Purpose};
 use super::finder::{Finder, LISTEN};
 use super::intro::Intro;
 use super::learn::{self, Learn, Shown, Start};
 use super::mode::Mode;
-use super::overlay::{self, Overlay};
+use super::overlay::{self, Overlay, Projection};
 use super::palette::{self, Palette};
 use super::panel::{self, PanelInput, PanelState};
 use super::playback::Playback;
 use super::plot::Curve;
-use super::pointer::{self, Look, Reach};
+use super::pointer::{Look, Pointer, Reach};
+use super::quality::Quality;
 use super::recorder::Recorder;
+use super::settings::Settings;
 use super::verdict::{self, Errors};
-use super::{headline, help, keys, motion_plot, plot, toolbar};
+use super::{headline, help, keys, motion_plot, plot, probe, toolbar};
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
+use crate::mesh::MaterialPoint;
 use crate::render::colormap::ColorMap;
 use crate::render::{Camera, Frame, Margins};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
+use crate::stress::{NodalStress, RecoveryScratch};
 use crate::study::{Extent, Jump, LoadPath, Reference, Study};
 use crate::timings::Timings;
 
@@ -65,18 +75,28 @@ pub enum Request {
 /// Everything the window shows.
 #[derive(Debug)]
 pub struct Lab {
-    source: Source,
+    document: Document,
     scene: Scene,
+    /// What can be undone.
+    edits: Edits,
     simulation: Simulation,
     /// The same scene under linear theory; `None` where it could not be set up.
     linear: Option<Simulation>,
     running: bool,
     view: ViewOptions,
     panel: PanelState,
-    /// `None`: follows the body.
-    camera: Option<Camera>,
-    fitted: Camera,
+    eye: Eye,
+    /// Whether the view takes its time on the way to where it looks.
+    eases: bool,
     view_rect: Rect,
+    pointer: Pointer,
+    /// The material point whose values are shown.
+    probe: Option<MaterialPoint>,
+    /// The file that is asked for.
+    dialog: Option<FileDialog>,
+    /// Whether the scene's file has been written by somebody else.
+    is_outdated: bool,
+    settings: Settings,
     adapter: String,
     toast: Option<(String, f64)>,
     drawing: Drawing,
@@ -93,6 +113,7 @@ pub struct Lab {
     /// Of a body in motion: all that it has swept, m.
     swept: Option<[Vector2<f64>; 2]>,
     recorder: Option<Recorder>,
+    quality: Quality,
     /// Iterations a displayed frame.
     iterations: u32,
     /// Time of the last iterations made for one displayed frame.
@@ -121,8 +142,12 @@ enum OpenError {
 struct Shape {
     nodes: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
-    at_points: Vec<Option<f64>>,
-    values: Vec<Option<f64>>,
+    nodal: Option<NodalStress>,
+    scratch: RecoveryScratch,
+    /// At quadrature points or nodes.
+    known: Vec<Option<f64>>,
+    /// At the corners of what is drawn.
+    values: Vec<[Option<f64>; 3]>,
     range: [f64; 2],
     /// What the range is of.
     field: Option<Field>,
@@ -138,17 +163,24 @@ impl Lab {
     #[must_use]
     pub fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
         let drawing = Drawing::new(simulation.system().mesh());
+        let (low, high) = simulation.system().mesh().bounds();
         let mut lab = Self {
-            source,
+            document: Document::new(source, scene.clone()),
             linear: None,
             scene,
+            edits: Edits::default(),
             simulation,
             running: true,
             view: ViewOptions::default(),
             panel: PanelState::default(),
-            camera: None,
-            fitted: Camera { center: Vector2::zeros(), scale: 1.0 },
+            eye: Eye::new([low, high]),
+            eases: false,
             view_rect: Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1.0, 1.0)),
+            pointer: Pointer::default(),
+            probe: None,
+            dialog: None,
+            is_outdated: false,
+            settings: Settings::default(),
             adapter: String::new(),
             toast: None,
             drawing,
@@ -161,6 +193,7 @@ impl Lab {
             playback: Playback::default(),
             swept: None,
             recorder: None,
+            quality: Quality::default(),
             iterations: 1,
             timings: Timings::default(),
             residuals: Vec::new(),
@@ -205,6 +238,11 @@ impl Lab {
         self.learn.as_ref().map(|_| (self.card + 1, learn::CARDS.len()))
     }
 
+    /// How it is looked at.
+    pub(super) fn view(&self) -> &ViewOptions {
+        &self.view
+    }
+
     /// Shows a study under the body.
     pub fn show_study(&mut self, study: Study) {
         if self.learn.is_none() {
@@ -232,7 +270,7 @@ impl Lab {
 
     /// Looks through this camera, and colours with this range, whatever the body does.
     pub(super) fn fix_view(&mut self, camera: Camera, range: [f64; 2]) {
-        self.camera = Some(camera);
+        self.eye.look(camera);
         self.view.fixed_range = Some(range);
     }
 
@@ -267,16 +305,24 @@ impl Lab {
         self.view_rect
     }
 
+    /// Where the tips of the forces' arrows are in the window, points, with the number of each among the scene's loads.
+    #[must_use]
+    pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
+        let projection = Projection { camera: self.camera(), rect: self.view_rect };
+        self.forces().arrows(&projection).iter().map(|arrow| (arrow.load, arrow.tip())).collect()
+    }
+
     /// The camera of the last [`Self::ui`].
     #[must_use]
     pub fn camera(&self) -> Camera {
-        self.camera.unwrap_or(self.fitted)
+        self.eye.camera()
     }
 
     /// Title for the window.
     #[must_use]
     pub fn title(&self) -> String {
-        format!("{} \u{2013} warpbeam", self.scene.name)
+        let edited = if self.scene == self.document.original { "" } else { "*" };
+        format!("{}{edited} \u{2013} warpbeam", self.scene.name)
     }
 
     /// Makes the iterations of one displayed frame if it runs, or the time steps that are due at `now`, s of any clock
@@ -291,6 +337,65 @@ impl Lab {
             (false, _) => self.playback.pace.rest(),
         }
         self.iterates()
+    }
+
+    /// Whether there is an edit to undo.
+    #[must_use]
+    pub fn can_undo(&self) -> bool {
+        self.edits.can_undo()
+    }
+
+    /// Whether there is an undone edit to do again.
+    #[must_use]
+    pub fn can_redo(&self) -> bool {
+        self.edits.can_redo()
+    }
+
+    /// Lets the view take its time on the way to where it looks, as in a window, or not, as in pictures.
+    pub fn set_easing(&mut self, eases: bool) {
+        self.eases = eases;
+    }
+
+    /// The material point whose values are shown beside the body.
+    #[must_use]
+    pub fn probed(&self) -> Option<MaterialPoint> {
+        self.probe
+    }
+
+    /// Looks as it was left.
+    pub fn set_settings(&mut self, ctx: &egui::Context, settings: Settings) {
+        if let Some(theme) = settings.theme {
+            ctx.set_theme(egui::Theme::from(theme));
+        }
+        self.view.panel = settings.panel;
+        self.view.drawer = settings.drawer;
+        self.view.color_with(settings.color());
+        self.settings = settings;
+        if let Some(path) = self.document.path() {
+            self.settings.add_recent(path);
+        }
+    }
+
+    /// The window that shows it has this size, points.
+    pub fn set_window_size(&mut self, size: [f32; 2]) {
+        self.settings.set_size(size);
+    }
+
+    /// What is to be remembered of how it is looked at.
+    #[must_use]
+    pub fn settings(&self, ctx: &egui::Context) -> Settings {
+        let theme = match ctx.options(|options| options.theme_preference) {
+            egui::ThemePreference::Dark => Some(ThemeChoice::Dark),
+            egui::ThemePreference::Light => Some(ThemeChoice::Light),
+            egui::ThemePreference::System => None,
+        };
+        // The cards have a view of their own, which is not remembered.
+        let ViewOptions { panel, drawer, field, .. } =
+            *self.learn.as_ref().map_or(&self.view, |learn| learn.view_before());
+        let mut settings = self.settings.clone();
+        (settings.theme, settings.panel, settings.drawer) = (theme, panel, drawer);
+        settings.set_color(field);
+        settings
     }
 
     /// Whether the scene is one in time.
@@ -334,7 +439,11 @@ impl Lab {
             return;
         }
         self.simulation.certify();
+        self.quality.follow(&self.simulation);
         self.truth.settle(&self.scene);
+        if let Some(learn) = &mut self.learn {
+            learn.settle(&self.scene);
+        }
         self.jump.settle(&self.scene);
         if self.view.drawer == Some(Drawer::Curve) {
             self.curve.settle(&self.scene);
@@ -366,7 +475,8 @@ impl Lab {
             Some(Drawer::Motion) => self.frequency.is_open(),
             _ => false,
         };
-        open || (self.truth.is_open() || self.jump.is_open()) && !self.moves()
+        let learns = self.learn.as_ref().is_some_and(|learn| learn.is_looking());
+        open || learns || (self.truth.is_open() || self.jump.is_open()) && !self.moves()
     }
 
     /// What is drawn of the body, as of the last [`Self::ui`].
@@ -397,10 +507,16 @@ impl Lab {
         shape.nodes.extend(rest.iter().zip(simulation.displacement()).map(|(x, u)| x + u));
         let nodes = &shape.nodes;
         self.drawing.points(&|n| nodes[n as usize], &mut shape.points);
-        simulation.field(self.view.field, &mut shape.at_points);
-        self.drawing.values(&shape.at_points, &mut shape.values);
-        let [mut low, mut high] = panel::range_of(&shape.at_points);
-        if palette::has_sign(self.view.field) {
+        let field = self.view.field;
+        if self.view.is_smooth() {
+            simulation.smooth_field(field, (&mut shape.nodal, &mut shape.scratch), &mut shape.known);
+            self.drawing.nodal_values(&shape.known, field.period(), &mut shape.values);
+        } else {
+            simulation.field(field, &mut shape.known);
+            self.drawing.values(&shape.known, &mut shape.values);
+        }
+        let [mut low, mut high] = panel::range_of(&shape.known);
+        if palette::has_sign(field) {
             let reach = high.abs().max(low.abs());
             (low, high) = (-reach, reach);
         }
@@ -424,8 +540,9 @@ impl Lab {
         PanelInput {
             truth: self.truth.get(),
             jump: self.jump.get(),
+            quality: &self.quality,
             scene: &self.scene,
-            scene_name: self.source.name.to_str().unwrap_or_default(),
+            scene_name: self.document.source.name.to_str().unwrap_or_default(),
             simulation: &self.simulation,
             linear: self.linear.as_ref(),
             running: self.running,
@@ -433,6 +550,8 @@ impl Lab {
             iterations: self.iterations,
             timings: &self.timings,
             residuals: &self.residuals,
+            can_undo: self.edits.can_undo(),
+            can_redo: self.edits.can_redo(),
             adapter: &self.adapter,
         }
     }
@@ -441,6 +560,8 @@ impl Lab {
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
         palette::install(ui.ctx());
         let mut actions = Vec::new();
+        self.edits.listen(ui.ctx());
+        self.hear_of_files(ui.ctx(), &mut actions);
         self.find_out(ui.ctx());
         self.budget.listen(ui.ctx());
         self.go_on_with_intro(ui.ctx());
@@ -448,14 +569,16 @@ impl Lab {
         if self.view.bars {
             self.bars(ui, &mut actions);
         }
-        actions.extend(keys::actions(ui.ctx(), self.view.help));
+        if self.dialog.is_none() {
+            actions.extend(keys::actions(ui.ctx()));
+        }
         (self.view.mode.entry().show)(self, ui, &mut actions);
         let mut requests = Vec::new();
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
         let mut actions = Vec::new();
-        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, &mut actions));
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.body_view(ui, &mut actions, &mut requests));
         if self.view.bars && self.view.narrow && self.view.sheet && self.view_rect.width() >= 160.0 {
             self.sheet(ui, &mut actions);
         }
@@ -463,6 +586,7 @@ impl Lab {
             self.act(ui.ctx(), action, &mut requests);
         }
         help::show(ui.ctx(), &mut self.view.help);
+        self.ask_for_file(ui.ctx());
         if self.iterates() || self.intro.is_some() {
             ui.ctx().request_repaint();
         }
@@ -546,6 +670,7 @@ impl Lab {
             return;
         }
         self.simulation.certify();
+        self.quality.follow(&self.simulation);
         self.truth.ask(&self.scene, ctx);
         self.jump.ask(&self.scene, ctx);
         if self.view.drawer == Some(Drawer::Curve) {
@@ -576,7 +701,7 @@ impl Lab {
         // What cards remember is apart from what they show.
         let Some(mut learn) = self.learn.take() else { return };
         let shown = Shown { input: self.input(), study: self.budget.study(), progress: self.budget.progress() };
-        learn.show(ui, &shown, !self.view.help, actions);
+        learn.show(ui, &shown, self.dialog.is_none() && !self.view.help, actions);
         self.learn = Some(learn);
     }
 
@@ -591,8 +716,10 @@ impl Lab {
                     return;
                 };
                 lab.adapter.clone_from(&self.adapter);
+                lab.settings = std::mem::take(&mut self.settings);
+                lab.eases = self.eases;
                 let (bars, panel, narrow) = (self.view.bars, self.view.panel, self.view.narrow);
-                lab.view = ViewOptions { mode: Mode::Learn, bars, panel, narrow, ghost: false, ..ViewOptions::default() };
+                lab.view = ViewOptions { mode: Mode::Learn, bars, panel, narrow, raw: true, ..ViewOptions::default() };
                 (lab.view_rect, lab.card) = (self.view_rect, self.card);
                 self.intro = None;
                 self.view.mode = Mode::Explore;
@@ -603,8 +730,9 @@ impl Lab {
             (false, Some(learn)) => {
                 let (mode, drawer) = (self.view.mode, self.view.drawer);
                 let (before, card) = learn.leave();
+                let settings = std::mem::take(&mut self.settings);
                 *self = *before;
-                self.card = card;
+                (self.card, self.settings) = (card, settings);
                 self.view.mode = if (mode.entry().serves)(&self.scene) { mode } else { Mode::Explore };
                 // Plots that were asked for from a card are shown.
                 self.view.drawer = drawer.map(|_| Drawer::of(&self.scene)).or(self.view.drawer);
@@ -622,12 +750,13 @@ impl Lab {
         if self.set_scene(scene).is_err() {
             return;
         }
-        self.source = source;
+        self.document = Document::new(source, self.scene.clone());
+        self.edits = Edits::default();
         self.panel.clear();
         self.view.color_with(setup.field);
         self.view.fixed_range = None;
         (self.view.exact, self.view.rest_outline, self.view.ghost) = (setup.exact, setup.rest, false);
-        self.camera = None;
+        self.eye.fit();
         self.iterations = 1;
         self.running = setup.start != Start::Waiting;
         if setup.start != Start::Now {
@@ -642,23 +771,52 @@ impl Lab {
         }
     }
 
-    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        self.view_rect = rect;
         // What is pressed is what was seen: the last picture.
-        let reach = Reach { camera: self.camera(), positions: &self.shape.nodes, outline: &self.drawing.boundary };
+        let projection = Projection { camera: self.camera(), rect: self.view_rect };
         // Elements that are drawn elsewhere cannot be pulled.
         let apart = self.learn.as_ref().is_some_and(|learn| learn.is_apart());
-        let holds = !apart && pointer::hold(ui, &response, &reach, &mut self.simulation, &mut self.playback);
+        let arrows = if apart { Vec::new() } else { self.forces().arrows(&projection) };
+        let size = [rect.width(), rect.height()].map(f64::from);
+        let reach = Reach {
+            camera: projection.camera,
+            positions: &self.shape.nodes,
+            outline: &self.drawing.boundary,
+            arrows: &arrows,
+            apart,
+            scales: self.eye.scales(size),
+        };
+        self.view_rect = rect;
+        let wish = self.pointer.follow(ui, &response, &reach, &mut self.simulation, &mut self.playback);
+        if let Some((load, magnitude, degrees)) = wish.force {
+            self.panel.keep_force_direction(degrees);
+            let mut scene = Box::new(self.scene.clone());
+            // There is such a force: its arrow was taken.
+            if scene.set_force(load, vector(magnitude, degrees)).is_ok() && *scene != self.scene {
+                self.act(ui.ctx(), Action::Edit("Force", scene), requests);
+                ui.ctx().request_repaint();
+            }
+        }
+        if let Some(restored) = wish.restore.and_then(|load| self.with_original_load(load)) {
+            self.act(ui.ctx(), Action::Edit("Force", Box::new(restored)), requests);
+            ui.ctx().request_repaint();
+        }
         self.update_shape(ui.visuals());
         if let Some(learn) = &self.learn {
             learn.place(&self.simulation, &self.drawing, &mut self.shape.points);
         }
-        self.follow(rect);
-        match pointer::look(ui, &response, self.camera(), holds) {
+        match wish.look {
             Look::Same => {}
-            Look::At(camera) => self.camera = Some(camera),
-            Look::Fit => self.camera = None,
+            Look::At(camera) => self.eye.look(camera),
+            Look::Fit => self.eye.fit(),
+        }
+        self.follow(ui, size);
+        // On a card a click takes a triangle.
+        let probed = wish.clicked.flatten().filter(|_| self.learn.is_none());
+        if let (Some(point), Some(click)) = (probed, response.interact_pointer_pos()) {
+            let kept = self.probe.and_then(|kept| self.in_view(kept));
+            self.probe = (!kept.is_some_and(|kept| probe::is_on(kept, click))).then_some(point);
         }
         let painter = ui.painter_at(rect);
         let errors = verdict::errors(&self.input());
@@ -678,6 +836,8 @@ impl Lab {
             exact: if self.intro.is_some() { &[] } else { self.exact() },
             errors: if self.intro.is_some() { Errors::default() } else { errors },
             time: shown.state().time(),
+            direction: self.panel.force_direction(),
+            hot: self.pointer.hot_arrow(),
             hand: self.simulation.hand(),
             playback: &self.playback,
             reactions: &reactions,
@@ -691,7 +851,7 @@ impl Lab {
                 simulation: &self.simulation,
                 drawing: &self.drawing,
                 points: &self.shape.points,
-                camera: self.camera.unwrap_or(self.fitted),
+                camera: self.eye.camera(),
                 rect,
                 palette: Palette::new(ui.visuals()),
             };
@@ -699,6 +859,9 @@ impl Lab {
                 learn.pick(&view, at);
             }
             learn.paint(&painter, &view);
+        }
+        if !apart {
+            self.show_values(ui, &painter);
         }
         if self.view.bars && self.intro.is_none() {
             let mut free = rect;
@@ -771,33 +934,97 @@ impl Lab {
         reference.map_or(&[], |reference| &reference.outline)
     }
 
-    /// Fits the view to the body at rest and now, while nobody has moved it.
-    fn follow(&mut self, rect: Rect) {
+    /// What the arrows of the last picture are of.
+    fn forces(&self) -> Forces<'_> {
+        Forces {
+            scene: &self.scene,
+            system: self.simulation.system(),
+            positions: &self.shape.nodes,
+            time: self.simulation.state().time(),
+            direction: self.panel.force_direction(),
+        }
+    }
+
+    /// The scene with one of its loads as in its file; `None` where that has none such there.
+    fn with_original_load(&self, load: usize) -> Option<Scene> {
+        let original = self.document.original.loads.get(load)?;
+        let mut scene = self.scene.clone();
+        let present = scene.loads.get_mut(load)?;
+        if std::mem::discriminant(original) != std::mem::discriminant(present) {
+            return None;
+        }
+        present.clone_from(original);
+        Some(scene)
+    }
+
+    /// Where a material point is in the window.
+    fn in_view(&self, point: MaterialPoint) -> Option<egui::Pos2> {
+        let place = probe::place(self.simulation.system().mesh(), &self.shape.nodes, point)?;
+        Some(Projection { camera: self.camera(), rect: self.view_rect }.point(place))
+    }
+
+    /// The value of the field that colours the body, at a material point.
+    fn field_at(&self, point: MaterialPoint) -> (Field, Option<f64>) {
+        let (field, mesh, shape) = (self.view.field, self.simulation.system().mesh(), &self.shape);
+        let value = match &shape.nodal {
+            Some(nodal) if self.view.is_smooth() => field.smooth_at(mesh, nodal, point),
+            _ => Field::raw_at(mesh, &shape.known, point),
+        };
+        (field, value)
+    }
+
+    /// Shows the values under the pointer, and those at the point that is kept.
+    fn show_values(&mut self, ui: &Ui, painter: &egui::Painter) {
+        if let Some((point, at)) = self.pointer.over_body() {
+            let mesh = self.simulation.system().mesh();
+            if let Some(u) = probe::place(mesh, self.simulation.displacement(), point) {
+                probe::paint_hover(ui, painter, at, self.field_at(point), u);
+            }
+        }
+        let Some(point) = self.probe else { return };
+        let (Some(state), Some(at)) = (self.simulation.point_state(point), self.in_view(point)) else { return };
+        if probe::show_card(ui, painter, self.view_rect, at, self.field_at(point), &state) {
+            self.probe = None;
+        }
+    }
+
+    /// Fits the view to the body at rest and now, while nobody has moved it. What has not converged is not followed: it
+    /// may be anywhere.
+    fn follow(&mut self, ui: &Ui, size: [f64; 2]) {
         // A view that moved with the body would move the place under a pointer that holds it.
-        if self.simulation.hand().is_some() {
+        if self.pointer.holds() {
             return;
         }
-        let mesh = self.simulation.system().mesh();
-        let (mut low, mut high) = mesh.bounds();
-        if let (Some([swept_low, swept_high]), true) = (self.swept, self.moves()) {
-            (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
-        }
-        let mut include = |positions: &mut dyn Iterator<Item = Vector2<f64>>| {
-            for p in positions {
-                low = low.inf(&p);
-                high = high.sup(&p);
+        let status = self.simulation.status();
+        let is_sound = if self.moves() { !matches!(status, Status::Stopped(_)) } else { *status == Status::Converged };
+        if is_sound {
+            let (mut low, mut high) = self.simulation.system().mesh().bounds();
+            if let (Some([swept_low, swept_high]), true) = (self.swept, self.moves()) {
+                (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
             }
-        };
-        include(&mut self.shape.points.iter().copied());
-        if self.intro.is_some() {
-            // Where it is going to be.
-            for u in std::iter::once(self.simulation.displacement()).chain(self.linear_displacement()) {
-                include(&mut mesh.nodes().iter().zip(u).map(|(x, u)| x + u));
+            let mut include = |points: &mut dyn Iterator<Item = Vector2<f64>>| {
+                for p in points {
+                    (low, high) = (low.inf(&p), high.sup(&p));
+                }
+            };
+            include(&mut self.shape.points.iter().copied());
+            if self.intro.is_some() {
+                // Where it is going to be.
+                let rest = self.simulation.system().mesh().nodes();
+                for u in std::iter::once(self.simulation.displacement()).chain(self.linear_displacement()) {
+                    include(&mut rest.iter().zip(u).map(|(x, u)| x + u));
+                }
             }
+            include(&mut self.exact().iter().flatten().copied());
+            self.swept = Some([low, high]).filter(|_| self.moves());
+            self.eye.follow([low, high]);
         }
-        include(&mut self.exact().iter().flatten().copied());
-        self.swept = Some([low, high]).filter(|_| self.moves());
-        self.fitted = self.fit(low, high, [f64::from(rect.width()), f64::from(rect.height())]);
+        let [low, high] = self.eye.whole();
+        let fitted = self.fit(low, high, size);
+        let dt = f64::from(ui.input(|i| i.stable_dt));
+        if self.eye.aim(fitted, self.eases.then_some(dt)) {
+            ui.ctx().request_repaint();
+        }
     }
 
     /// The camera that shows a box, m, and the linear solution beside it, in a view of this size, points.
@@ -813,7 +1040,25 @@ impl Lab {
                 (low, high) = (ghost_low, ghost_high);
             }
         }
-        Camera::fit(low, high, view, FIT_MARGINS)
+        let margins = self.with_room_for_arrows(Camera::fit(low, high, view, FIT_MARGINS), view);
+        Camera::fit(low, high, view, margins)
+    }
+
+    /// What is kept free around the body: also what the loads' arrows need beyond the view of this camera.
+    fn with_room_for_arrows(&self, camera: Camera, view: [f64; 2]) -> Margins {
+        /// Beyond a tip, points: its force stands there.
+        const BEYOND: f32 = 36.0;
+        let size = egui::vec2(view[0] as f32, view[1] as f32);
+        let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
+        self.forces().arrows(&projection).iter().fold(FIT_MARGINS, |margins, arrow| {
+            let tip = arrow.tip();
+            let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
+            Margins {
+                sides: margins.sides.max(FIT_MARGINS.sides + beyond((-tip.x).max(tip.x - size.x))),
+                top: margins.top.max(FIT_MARGINS.top + beyond(-tip.y)),
+                bottom: margins.bottom.max(FIT_MARGINS.bottom + beyond(tip.y - size.y)),
+            }
+        })
     }
 
     /// The linear solution, if it is to be shown.
@@ -828,12 +1073,35 @@ impl Lab {
 
     fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
         match action {
-            Action::Open(id) => self.open(ctx, id),
+            Action::Open(id) => self.open(ctx, Source { name: id.into(), assignments: Vec::new() }),
+            Action::OpenFile => self.dialog = Some(FileDialog::new(Purpose::Open, self.document.path(), "")),
+            Action::Drop(path) => self.open(ctx, Source { name: path, assignments: Vec::new() }),
+            Action::Reload => self.open(ctx, self.document.source.clone()),
+            Action::Save => match self.document.path().map(Path::to_owned) {
+                Some(path) => {
+                    let saved = self.save(&path);
+                    self.say(ctx, saved.unwrap_or_else(|reason| format!("Not saved: {reason}")));
+                }
+                None => self.ask_where_to_save(),
+            },
+            Action::SaveAs => self.ask_where_to_save(),
+            Action::Undo => {
+                let step = self.edits.undo(self.snapshot());
+                self.go_to(ctx, step);
+            }
+            Action::Redo => {
+                let step = self.edits.redo(self.snapshot());
+                self.go_to(ctx, step);
+            }
+            Action::Escape if self.view.help => self.view.help = false,
+            Action::Escape => self.probe = None,
             Action::Edit(label, scene) => {
+                let before = self.snapshot();
                 if let Err(error) = self.set_scene(*scene) {
                     self.panel.messages.insert(label, error.to_string());
                 } else {
                     self.panel.messages.remove(label);
+                    self.remember(before, Some(label));
                 }
             }
             // What has come to its end has nothing to pause.
@@ -855,7 +1123,7 @@ impl Lab {
             Action::Speed(speed) => self.playback.pace.set_speed(speed),
             Action::Compare(integrator) => self.compare_with(integrator),
             Action::Iterations(iterations) => self.iterations = iterations.clamp(1, MOST_ITERATIONS),
-            Action::Fit => self.camera = None,
+            Action::Fit => self.eye.fit(),
             Action::Toggle(what) => {
                 self.view.toggle(what);
                 self.enter_or_leave();
@@ -883,9 +1151,38 @@ impl Lab {
             }
             Action::Measure(false) => self.budget.cancel(),
             Action::Apply(setting) => {
+                let before = self.snapshot();
                 self.edit(ctx, setting.apply(&self.scene));
                 self.iterations = setting.iterations.clamp(1, MOST_ITERATIONS);
+                self.remember(before, None);
             }
+        }
+    }
+
+    /// The scene as it stands, to come back to.
+    fn snapshot(&self) -> Snapshot {
+        Snapshot { document: self.document.clone(), scene: self.scene.clone(), iterations: self.iterations }
+    }
+
+    /// Keeps how it was before something was changed, if it was.
+    fn remember(&mut self, before: Snapshot, label: Option<&'static str>) {
+        if before != self.snapshot() {
+            self.edits.record(before, label);
+        }
+    }
+
+    /// Goes to a step of the past or the future.
+    fn go_to(&mut self, ctx: &egui::Context, step: Option<Snapshot>) {
+        let Some(Snapshot { document, scene, iterations }) = step else { return };
+        let gone = if document.source == self.document.source {
+            self.panel.messages.clear();
+            self.set_scene(scene)
+        } else {
+            self.adopt(document, scene)
+        };
+        match gone {
+            Ok(()) => self.iterations = iterations,
+            Err(error) => self.say(ctx, error.to_string()),
         }
     }
 
@@ -903,7 +1200,10 @@ impl Lab {
         self.simulation.change_scene(&scene)?;
         let is_another = self.scene.beam != scene.beam || self.scene.mesh != scene.mesh;
         if is_another {
-            self.drawing = Drawing::new(self.simulation.system().mesh());
+            let mesh = self.simulation.system().mesh();
+            self.drawing = Drawing::new(mesh);
+            self.eye.set_body(mesh.bounds().into());
+            self.probe = None;
         }
         let is_another = is_another || self.scene.analysis != scene.analysis;
         if is_another {
@@ -926,22 +1226,111 @@ impl Lab {
         Ok(())
     }
 
-    fn open(&mut self, ctx: &egui::Context, id: &str) {
-        let source = Source { name: id.into(), assignments: Vec::new() };
-        let opened = scene::open(&source).map_err(OpenError::from).and_then(|scene| Ok(self.set_scene(scene)?));
-        match opened {
-            Ok(()) => {
-                self.source = source;
-                self.playback = Playback::default();
-                self.reset();
-                self.panel.clear();
-                self.budget = Budget::default();
-                self.iterations = 1;
-                self.camera = None;
-                self.view.fixed_range = None;
-            }
-            Err(error) => self.say(ctx, error.to_string()),
+    /// Opens a scene in the place of the present one; says so where that fails.
+    fn open(&mut self, ctx: &egui::Context, source: Source) {
+        if let Err(error) = self.try_open(source) {
+            self.say(ctx, error.to_string());
         }
+    }
+
+    fn try_open(&mut self, source: Source) -> Result<(), OpenError> {
+        let before = self.snapshot();
+        let document = Document::open(source)?;
+        let scene = document.original.clone();
+        self.adopt(document, scene)?;
+        if let Some(path) = self.document.path() {
+            self.settings.add_recent(path);
+        }
+        self.remember(before, None);
+        Ok(())
+    }
+
+    /// Takes a scene from somewhere else.
+    fn adopt(&mut self, document: Document, scene: Scene) -> Result<(), SimulationError> {
+        self.set_scene(scene)?;
+        self.document = document;
+        self.is_outdated = false;
+        self.playback = Playback::default();
+        self.reset();
+        self.panel.clear();
+        self.budget = Budget::default();
+        self.iterations = 1;
+        self.eye = Eye::new(self.simulation.system().mesh().bounds().into());
+        self.probe = None;
+        self.view.fixed_range = None;
+        Ok(())
+    }
+
+    /// Saves the scene to a file; returns what there is to say of it, or why it failed.
+    fn save(&mut self, path: &Path) -> Result<String, String> {
+        self.document = self.document.save(&self.scene, path).map_err(|reason| reason.to_string())?;
+        self.settings.add_recent(path);
+        self.is_outdated = false;
+        Ok(format!("Saved {}", path.display()))
+    }
+
+    fn ask_where_to_save(&mut self) {
+        let name = self.document.path().and_then(Path::file_name).and_then(|name| name.to_str());
+        let name = name.map_or_else(|| format!("{}.toml", self.document.source.name.display()), str::to_owned);
+        let name = if name == "-.toml" { "scene.toml".to_owned() } else { name };
+        self.dialog = Some(FileDialog::new(Purpose::Save, self.document.path(), &name));
+    }
+
+    /// Shows the dialog that asks for a file, and does what it answers.
+    fn ask_for_file(&mut self, ctx: &egui::Context) {
+        let Some(mut dialog) = self.dialog.take() else { return };
+        let done = match dialog.show(ctx, self.settings.recent()) {
+            None => Err(None),
+            Some(Answer::Cancel) => Ok(None),
+            Some(Answer::File(path)) => match dialog.purpose {
+                Purpose::Open => {
+                    let source = Source { name: path, assignments: Vec::new() };
+                    self.try_open(source).map(|()| None).map_err(|error| Some(error.to_string()))
+                }
+                Purpose::Save => self.save(&path).map(Some).map_err(Some),
+            },
+        };
+        match done {
+            Ok(None) => {}
+            Ok(Some(words)) => self.say(ctx, words),
+            Err(message) => {
+                message.into_iter().for_each(|message| dialog.refuse(message));
+                self.dialog = Some(dialog);
+            }
+        }
+        if self.dialog.is_none() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Opens what is dropped on the window. When the window gets the focus, looks whether the scene's file has been
+    /// written by somebody else, and offers it.
+    fn hear_of_files(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        let (dropped, is_back) = ctx.input(|i| {
+            let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
+            (dropped, i.events.contains(&egui::Event::WindowFocused(true)))
+        });
+        actions.extend(dropped.map(Action::Drop));
+        self.is_outdated |= is_back && self.document.has_changed();
+        if !self.is_outdated {
+            return;
+        }
+        let area =
+            egui::Area::new(egui::Id::unique("outdated")).anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 12.0));
+        area.show(ctx, |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    ui.label(format!("{} has changed on disk.", self.document.source.name.display()));
+                    if ui.button("Reload").clicked() {
+                        actions.push(Action::Reload);
+                    }
+                    if ui.button("Keep this one").clicked() {
+                        self.document.ignore_change();
+                        self.is_outdated = false;
+                    }
+                });
+            });
+        });
     }
 
     fn solve_linear(&mut self) {
@@ -981,7 +1370,7 @@ impl Lab {
             return recorder.stop();
         }
         let theme = if ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
-        match Recorder::start(self.source.clone(), self.scene.clone(), theme) {
+        match Recorder::start(self.document.source.clone(), self.scene.clone(), theme) {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(reason) => self.say(ctx, format!("No recording: {reason}")),
         }

@@ -8,10 +8,15 @@ use thiserror::Error;
 use crate::render::RenderError;
 
 mod action;
+mod arrow;
 mod background;
 mod budget;
+mod document;
 mod drawing;
+mod edits;
+mod eye;
 mod field;
+mod file_dialog;
 mod finder;
 mod headline;
 mod help;
@@ -29,8 +34,11 @@ mod panel;
 mod playback;
 mod plot;
 mod pointer;
+mod probe;
+mod quality;
 mod record;
 mod recorder;
+mod settings;
 mod shot;
 mod stage;
 mod toolbar;
@@ -39,6 +47,7 @@ mod window;
 
 pub use lab::{Lab, PANEL_WIDTH};
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
+pub use settings::Settings;
 pub use shot::{Canvas, MAX_SHOT_SIDE, ShotOptions, picture, shot};
 pub use window::{Display, NoDisplay, run};
 
@@ -71,7 +80,8 @@ pub enum AppError {
 }
 
 /// Light or dark.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ThemeChoice {
     /// Light text on dark.
     #[default]

@@ -4,6 +4,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, 
 use nalgebra::Vector2;
 
 use super::action::ViewOptions;
+use super::arrow::{self, Arrow, Forces};
 use super::drawing::Drawing;
 use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
@@ -12,7 +13,7 @@ use crate::assembly::{Hand, System};
 use crate::render::Camera;
 use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
 use crate::simulation::SupportReaction;
-use crate::words::{engineering, percent, prefix, round_down, ticks};
+use crate::words::{engineering, percent, prefix, round_down, three_digits, ticks};
 
 /// What is painted over the body.
 pub(super) struct Overlay<'a> {
@@ -33,6 +34,10 @@ pub(super) struct Overlay<'a> {
     pub errors: Errors,
     /// Simulated time, s.
     pub time: f64,
+    /// Direction of an arrow without force, degrees.
+    pub direction: f64,
+    /// The arrow whose tip the pointer is on, or has taken and dragged so far.
+    pub hot: Option<HotArrow>,
     /// The hand that pulls, and its force, N.
     pub hand: Option<(&'a Hand, Vector2<f64>)>,
     /// The past of a motion, and the same motion under other integrators.
@@ -45,10 +50,19 @@ pub(super) struct Overlay<'a> {
     pub warning: Option<&'a str>,
 }
 
+/// An arrow whose tip the pointer is on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HotArrow {
+    pub arrow: Arrow,
+    /// Where it has been dragged since it was taken, points.
+    pub dragged: Option<Vec2>,
+}
+
 /// Metres to window positions.
-struct Projection {
-    camera: Camera,
-    rect: Rect,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Projection {
+    pub camera: Camera,
+    pub rect: Rect,
 }
 
 impl Projection {
@@ -57,7 +71,7 @@ impl Projection {
     }
 
     /// The window position of a point; far outside the view, somewhere outside the view.
-    fn point(&self, p: Vector2<f64>) -> Pos2 {
+    pub(super) fn point(&self, p: Vector2<f64>) -> Pos2 {
         let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
         self.rect.center() + vec2(x, y)
     }
@@ -140,6 +154,16 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     }
     if overlay.options.trail {
         trails(painter, &projection, overlay, &palette);
+    }
+    if let Some(edge) = &overlay.options.edge {
+        let segments = system.mesh().edges().get(edge).into_iter().flatten();
+        for piece in segments.flat_map(|s| s.nodes().windows(2)) {
+            let ends = [piece[0], piece[1]].map(|n| overlay.positions[n as usize]);
+            if let Some(segment) = projection.segment(ends[0], ends[1]) {
+                painter.line_segment(segment, Stroke::new(9.0, palette.load.gamma_multiply(0.35)));
+                painter.line_segment(segment, Stroke::new(3.5, palette.load));
+            }
+        }
     }
     if !overlay.apart {
         supports(painter, &projection, overlay, &palette);
@@ -293,19 +317,6 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-const ARROW: f32 = 58.0;
-
-fn arrow(painter: &Painter, from: Pos2, direction: Vec2, color: Color32) -> Pos2 {
-    const HEAD: f32 = 12.0;
-    let direction = direction.normalized();
-    let tip = from + direction * ARROW;
-    let side = vec2(-direction.y, direction.x) * (HEAD * 0.42);
-    let neck = tip - direction * HEAD;
-    painter.line_segment([from, neck], Stroke::new(3.0, color));
-    painter.add(egui::Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
-    tip
-}
-
 /// An arc of three quarters of a turn with a head, and the moment beside it.
 fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, visuals: &Visuals) {
     const RADIUS: f32 = 26.0;
@@ -328,57 +339,38 @@ fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, v
     boxed_text(painter, center + vec2(0.0, RADIUS + 12.0), Align2::CENTER_TOP, &label, visuals, color, 200.0);
 }
 
-/// Where a load pulls now: the middle of its edge, or its node, m.
-fn load_point(overlay: &Overlay<'_>, place: &Place) -> Option<Vector2<f64>> {
-    let mesh = overlay.system.mesh();
-    let nodes = match place {
-        Place::Edge(name) => mesh.edge_nodes(name)?,
-        Place::At(at) => vec![mesh.nearest_node((*at).into())],
-    };
-    let sum: Vector2<f64> = nodes.iter().map(|&n| overlay.positions[n as usize]).sum();
-    (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
-}
-
 fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    let view = projection.rect;
-    for load in &overlay.scene.loads {
-        /// Less than this part of a pulse is not drawn.
-        const SEEN: f64 = 0.02;
-        if load.pulse().is_some_and(|pulse| pulse.factor(overlay.time) < SEEN) {
-            continue;
+    /// Length of the arrow of a weight, which tells its direction only, points.
+    const WEIGHT: f32 = 58.0;
+    let Overlay { scene, system, positions, time, .. } = *overlay;
+    let forces = Forces { scene, system, positions, time, direction: overlay.direction };
+    for arrow in forces.arrows(projection) {
+        let hot = overlay.hot.as_ref().filter(|hot| hot.arrow.load == arrow.load);
+        arrow.paint(painter, palette.load, visuals, hot.is_some_and(|hot| hot.dragged.is_none()));
+        if let Some((taken, by)) = hot.and_then(|hot| Some((hot.arrow, hot.dragged?))) {
+            taken.paint_handle(painter, by, palette.load);
         }
-        let (vector, from, label) = match load {
-            Load::Force { place, force, .. } => {
-                let Some(point) = load_point(overlay, place) else {
-                    continue;
-                };
-                let magnitude = force[0].hypot(force[1]);
-                (force, projection.point(point), engineering(magnitude, "N"))
-            }
+    }
+    for load in scene.loads.iter().filter(|load| arrow::is_seen(load, time)) {
+        match load {
+            Load::Force { .. } => {}
             Load::Moment { edge, moment, .. } => {
-                if let (Some(point), true) = (load_point(overlay, &Place::from(edge.as_str())), *moment != 0.0) {
+                let place = Place::from(edge.as_str());
+                if let (Some(point), true) = (arrow::load_point(system.mesh(), positions, &place), *moment != 0.0) {
                     turning_arrow(painter, projection.point(point), *moment, palette.load, visuals);
                 }
-                continue;
             }
-            Load::Gravity { acceleration, .. } => {
-                let magnitude = acceleration[0].hypot(acceleration[1]);
-                (acceleration, view.right_top() + vec2(-64.0, 30.0), engineering(magnitude, "m/s²"))
+            Load::Gravity { acceleration: [x, y], .. } => {
+                let direction = vec2(*x as f32, -*y as f32).normalized();
+                if direction == Vec2::ZERO || !direction.is_finite() {
+                    continue;
+                }
+                let from = projection.rect.right_top() + vec2(-64.0, 30.0);
+                let tip = arrow::paint_arrow(painter, from, direction * WEIGHT, palette.load);
+                let label = engineering(x.hypot(*y), "m/s²");
+                boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
             }
-        };
-        let direction = vec2(vector[0] as f32, -vector[1] as f32).normalized();
-        if direction == Vec2::ZERO || !direction.is_finite() {
-            continue;
         }
-        let tip = arrow(painter, from, direction, palette.load);
-        let (anchor, at) = if direction.y.abs() > direction.x.abs() {
-            let below = direction.y > 0.0;
-            let anchor = if below { Align2::CENTER_TOP } else { Align2::CENTER_BOTTOM };
-            (anchor, tip + vec2(0.0, 6.0 * direction.y.signum()))
-        } else {
-            (Align2::CENTER_BOTTOM, tip - direction * (ARROW * 0.5) - vec2(0.0, 10.0))
-        };
-        boxed_text(painter, at, anchor, &label, visuals, palette.load, 200.0);
     }
 }
 
@@ -390,6 +382,8 @@ fn moved_supports(
     palette: &Palette,
     visuals: &Visuals,
 ) {
+    /// Length of the arrow of a reaction, which tells its direction only, points.
+    const REACTION: f32 = 58.0;
     for (support, reaction) in overlay.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
         let direction = vec2(reaction.force.x as f32, -reaction.force.y as f32).normalized();
         if direction == Vec2::ZERO || !direction.is_finite() {
@@ -398,8 +392,8 @@ fn moved_supports(
         let middle = projection.point(reaction.middle);
         // It pushes the way it has gone: from outside. Else it holds back.
         let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
-        let from = if pushes { middle - direction * ARROW } else { middle };
-        let tip = arrow(painter, from, direction, palette.support);
+        let from = if pushes { middle - direction * REACTION } else { middle };
+        let tip = arrow::paint_arrow(painter, from, direction * REACTION, palette.support);
         let tail = if pushes { from } else { tip };
         let (anchor, away) = match (pushes, direction.y > 0.0) {
             (true, true) | (false, false) => (Align2::CENTER_BOTTOM, -6.0),
@@ -427,11 +421,6 @@ pub(super) fn boxed_text(
     let rect = Rect::from_min_size(corner, galley.size());
     painter.rect_filled(rect.expand(4.0), 4.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     painter.galley(rect.min, galley, color);
-}
-
-/// What changes too fast for more digits.
-fn three_digits(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// Room that the colour bar takes at the bottom of the view, points.

@@ -11,7 +11,7 @@ use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
 use crate::study::path_chart::{Ordinate, Piece, drawn};
 use crate::study::{LoadCurve, LoadPath};
-use crate::words::{engineering, ticks};
+use crate::words::{engineering, three_digits, ticks};
 
 /// What is known of a scene's load and deflection.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
     const CLEAR: f32 = 40.0;
     /// A value between ticks, to three digits.
     fn value(value: f64, unit: &str) -> String {
-        engineering(format!("{value:.2e}").parse().unwrap_or(value), unit)
+        engineering(three_digits(value), unit)
     }
     let ((x_name, x_unit), (y_name, y_unit)) = (x, y);
     Plot::new(id.to_owned())

@@ -38,7 +38,15 @@ pub struct ShotOptions {
 
 impl Default for ShotOptions {
     fn default() -> Self {
-        Self { size: [1280, 800], panel: true, curve: false, study: false, learn: None, motion: None, theme: ThemeChoice::default() }
+        Self {
+            size: [1280, 800],
+            panel: true,
+            curve: false,
+            study: false,
+            learn: None,
+            motion: None,
+            theme: ThemeChoice::default(),
+        }
     }
 }
 

@@ -32,6 +32,8 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, acti
         divide(ui);
         run(ui, input, wide, actions);
         divide(ui);
+        history(ui, input, actions);
+        divide(ui);
         for entry in MODES.iter().filter(|entry| (entry.serves)(input.scene)) {
             let chosen = view.mode == entry.mode;
             if ui.selectable_label(chosen, entry.name).on_hover_text(entry.about).clicked() && !chosen {
@@ -58,12 +60,14 @@ fn divide(ui: &mut Ui) {
 }
 
 /// What is drawn on a button: the fonts have no such letters.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Icon {
     Play,
     Pause,
     Step,
     Reset,
+    Undo,
+    Redo,
     Theme,
     Help,
     Panel,
@@ -116,6 +120,12 @@ fn paint(painter: &Painter, icon: Icon, center: Pos2, color: egui::Color32) {
             painter.add(Shape::line(arc(-0.6, 4.6), stroke));
             polygon(vec![at(0.5, -9.0), at(0.5, -2.0), at(-4.5, -5.5)]);
         }
+        Icon::Undo | Icon::Redo => {
+            let side = if icon == Icon::Undo { 1.0 } else { -1.0 };
+            let turn = arc(-2.9, 1.2).into_iter().map(|p| pos2(center.x + side * (p.x - center.x), p.y));
+            painter.add(Shape::line(turn.collect(), stroke));
+            polygon([(-9.0, -2.0), (-2.0, -2.0), (-6.0, 3.0)].map(|(x, y)| at(side * x, y)).to_vec());
+        }
         Icon::Theme => {
             painter.circle_stroke(center, 5.5, stroke);
             polygon(arc(-std::f32::consts::FRAC_PI_2, std::f32::consts::FRAC_PI_2));
@@ -155,6 +165,18 @@ fn run(ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action
     };
     button(Icon::Step, "Step", tip, !(moves && ended), Action::Step);
     button(Icon::Reset, "Reset", "Back to rest, or to the start of the motion (R)", true, Action::Reset);
+}
+
+fn history(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {
+    for (icon, name, tip, enabled, action) in [
+        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.can_undo, Action::Undo),
+        (Icon::Redo, "Redo", "Redo it (Ctrl+Shift+Z)", input.can_redo, Action::Redo),
+    ] {
+        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, None, false));
+        if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
+            actions.push(action);
+        }
+    }
 }
 
 fn scene_picker(ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action>) {

@@ -1,5 +1,6 @@
 //! The window: winit events in, frames out. At rest nothing is drawn.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -13,6 +14,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 use super::lab::{Lab, Request};
+use super::settings::Settings;
 use super::shot::picture;
 use super::stage::Stage;
 use super::{AppError, NoName, free_name};
@@ -66,19 +68,28 @@ impl Display {
 /// [`AppError`]: no adapter, or no window.
 pub fn run(display: Display, source: Source, scene: Scene, simulation: Simulation) -> Result<(), AppError> {
     let first_picture = source.name.to_str() == Some(registry::DEFAULT);
+    let file = Settings::file();
+    let settings = file.as_deref().map(Settings::load).unwrap_or_default();
+    let ctx = egui::Context::default();
     let mut lab = Lab::new(source, scene, simulation);
+    lab.set_settings(&ctx, settings.clone());
+    lab.set_easing(true);
     if first_picture {
         lab.introduce();
     }
     let mut app =
-        App { lab, ctx: egui::Context::default(), open: None, start: Instant::now(), wake: None, error: None };
+        App { lab, ctx, settings, settings_file: file, open: None, start: Instant::now(), wake: None, error: None };
     display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
+    app.keep_settings();
     app.error.map_or(Ok(()), Err)
 }
 
 struct App {
     lab: Lab,
     ctx: egui::Context,
+    /// As they are in their file.
+    settings: Settings,
+    settings_file: Option<PathBuf>,
     open: Option<OpenWindow>,
     /// When the window began.
     start: Instant,
@@ -105,10 +116,10 @@ struct OpenWindow {
 const MAX_FAILURES: u32 = 10;
 
 impl OpenWindow {
-    fn new(event_loop: &ActiveEventLoop, lab: &Lab, ctx: &egui::Context) -> Result<Self, AppError> {
+    fn new(event_loop: &ActiveEventLoop, lab: &Lab, ctx: &egui::Context, size: [f32; 2]) -> Result<Self, AppError> {
         let attributes = Window::default_attributes()
             .with_title(lab.title())
-            .with_inner_size(first_size(event_loop))
+            .with_inner_size(first_size(event_loop, size))
             .with_min_inner_size(SMALLEST);
         let window = Arc::new(event_loop.create_window(attributes).map_err(|e| AppError::Window(e.to_string()))?);
         let (instance, surface, gpu) = Gpu::first_of_backends(|backends| {
@@ -194,10 +205,10 @@ impl OpenWindow {
 /// The smallest window, points: everything in it can still be reached.
 const SMALLEST: LogicalSize<f64> = LogicalSize::new(480.0, 360.0);
 
-/// The size of a new window: 1280×800 points, and never more than nine tenths of the screen.
-fn first_size(event_loop: &ActiveEventLoop) -> LogicalSize<f64> {
+/// The size of a new window: as wanted, points, and never more than nine tenths of the screen.
+fn first_size(event_loop: &ActiveEventLoop, wanted: [f32; 2]) -> LogicalSize<f64> {
     const SHARE: f64 = 0.9;
-    let wanted = LogicalSize::new(1280.0, 800.0);
+    let wanted = LogicalSize::new(f64::from(wanted[0]), f64::from(wanted[1]));
     let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
     monitor.filter(|m| m.size().width > 0 && m.size().height > 0).map_or(wanted, |monitor| {
         let screen = monitor.size().to_logical::<f64>(monitor.scale_factor());
@@ -272,6 +283,17 @@ impl App {
         open.window.request_redraw();
     }
 
+    /// Writes the settings to their file, if they have changed.
+    fn keep_settings(&mut self) {
+        let settings = self.lab.settings(&self.ctx);
+        if let (Some(file), true) = (&self.settings_file, settings != self.settings) {
+            match settings.save(file) {
+                Ok(()) => self.settings = settings,
+                Err(error) => log::warn!("{}: {error}", file.display()),
+            }
+        }
+    }
+
     fn quit(&mut self, event_loop: &ActiveEventLoop, error: Option<AppError>) {
         self.error = self.error.take().or(error);
         // The surface goes while the display connection still stands.
@@ -294,7 +316,7 @@ impl ApplicationHandler for App {
         if self.open.is_some() {
             return;
         }
-        match OpenWindow::new(event_loop, &self.lab, &self.ctx) {
+        match OpenWindow::new(event_loop, &self.lab, &self.ctx, self.settings.size()) {
             Ok(open) => {
                 self.lab.set_adapter(open.gpu.describe());
                 open.window.request_redraw();
@@ -320,6 +342,8 @@ impl ApplicationHandler for App {
             }
             WindowEvent::Resized(size) => {
                 open.resize(size.width, size.height);
+                let points = size.to_logical::<f32>(open.window.scale_factor());
+                self.lab.set_window_size([points.width, points.height]);
                 open.window.request_redraw();
             }
             WindowEvent::Occluded(occluded) => {

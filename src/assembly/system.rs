@@ -1,6 +1,6 @@
 //! What is found once for a mesh and its supports, and shared by all who solve on it.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -9,7 +9,7 @@ use super::edge::no_such_edge;
 use super::supports::{Hold, check_held, fixed_unknowns};
 use super::{Edge, Pattern};
 use crate::element::Elements;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Recovery};
 use crate::rotation::Rotation;
 use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
 use crate::solver::Symbolic;
@@ -56,6 +56,8 @@ struct Body {
     elements: Box<dyn Elements>,
     edges: Vec<Edge>,
     nodal_areas: Vec<f64>,
+    /// Made when it is first asked for.
+    recovery: OnceLock<Recovery>,
     size: f64,
 }
 
@@ -75,6 +77,7 @@ impl Body {
             elements: (entry.loops)(mesh.nodes(), mesh.connectivity()),
             edges: Edge::of(&mesh),
             nodal_areas,
+            recovery: OnceLock::new(),
             size: (high - low).norm(),
             mesh,
         }
@@ -216,6 +219,12 @@ impl System {
     #[must_use]
     pub fn nodal_areas(&self) -> &[f64] {
         &self.body.nodal_areas
+    }
+
+    /// From quadrature points to nodes: made when it is first asked for, and shared.
+    #[must_use]
+    pub fn recovery(&self) -> &Recovery {
+        self.body.recovery.get_or_init(|| Recovery::new(&self.body.mesh))
     }
 
     /// Size of the body at rest: the diagonal of the box around it, m.

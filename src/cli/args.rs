@@ -15,8 +15,12 @@ const EXIT_CODES: &str = "Exit codes: 0 done and converged, 1 ran but did not co
 2 bad input or usage, or a result that could not be written, 3 no usable graphics adapter.";
 
 const SOLVE_FILES: &str = "--out of a static scene:
-  .csv  a row a node: node, rest_x, rest_y, x, y, u_x, u_y (m)
-  .vtu  the mesh and its fields, for ParaView
+  .csv  a row a node: node, rest_x, rest_y, x, y, u_x, u_y (m), rotation_deg,
+          strain_xx, _yy, _zz, _xy (Biot), stress_xx, _yy, _zz, _xy (Cauchy, Pa),
+          von_mises (Cauchy, Pa), file_node (its number in the mesh file)
+  .vtu  the mesh and its fields, for ParaView: at points displacement, strain,
+        stress, von Mises, node numbers, named edges; of cells rotation,
+        energy density, largest strain, mesh error
 --out of a scene in motion (analysis = \"dynamic\"):
   .csv  a row a time step. Columns: t (s); for every probe NAME
           NAME_x, NAME_y, NAME_u_x, NAME_u_y (m), NAME_v_x, NAME_v_y (m/s);

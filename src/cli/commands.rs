@@ -29,6 +29,8 @@ pub(super) struct Spent {
     set_up: Duration,
     /// The solve.
     stages: Timings,
+    /// Recovering stresses, and estimating the mesh's error from them.
+    stress: Duration,
     /// Finding the truth that errors are measured against.
     truth: Duration,
 }
@@ -45,10 +47,10 @@ impl Spent {
     }
 
     /// The parts that sum to all of it, each with the name it has in JSON.
-    pub(super) fn parts(&self) -> [(&'static str, Duration); 8] {
-        let Self { wall, set_up, stages, truth } = *self;
+    pub(super) fn parts(&self) -> [(&'static str, Duration); 9] {
+        let Self { wall, set_up, stages, stress, truth } = *self;
         let Timings { rotate, assemble, factorize, solve, certify } = stages;
-        let other = wall.saturating_sub(set_up + stages.total() + truth);
+        let other = wall.saturating_sub(set_up + stages.total() + stress + truth);
         [
             ("rotate", rotate),
             ("assemble", assemble),
@@ -56,6 +58,7 @@ impl Spent {
             ("solve", solve),
             ("certify", certify),
             ("set_up", set_up),
+            ("stress", stress),
             ("truth", truth),
             ("other", other),
         ]
@@ -90,6 +93,9 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         .then(|| LoadPath::jump_before(&scene, simulation.displacement()))
         .flatten();
     let certify_path = certified.elapsed();
+    let recovered = Instant::now();
+    let stress = simulation.stress_result();
+    let stress_time = recovered.elapsed();
     // A scene without a truth has a result all the same.
     let sought = Instant::now();
     let truth = if no_truth { None } else { Reference::of(&scene).ok() };
@@ -97,11 +103,12 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let solution = Solution { status, ..simulation.solution() };
     let mut stages = solution.time;
     stages.certify += certify_path;
-    let spent = Spent { wall: began.elapsed(), set_up, stages, truth: truth_time };
+    let spent = Spent { wall: began.elapsed(), set_up, stages, stress: stress_time, truth: truth_time };
+    let (mesh, results) = (simulation.system().mesh(), (&solution, &stress));
     text::print(&if json {
-        json::solution(&scene, &solution, jump, truth.as_ref(), &spent)
+        json::solution(&scene, mesh, results, jump, truth.as_ref(), &spent)
     } else {
-        text::solution(&scene, &solution, jump, truth.as_ref(), &spent)
+        text::solution(&scene, mesh, results, jump, truth.as_ref(), &spent)
     })?;
     // What could not be written is no reason to keep the result from who waits for it.
     written?;

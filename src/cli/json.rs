@@ -6,20 +6,24 @@ use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
 use super::commands::Spent;
+use crate::mesh::Mesh;
 use crate::scene::{Place, Scene, Support};
-use crate::simulation::{MotionResult, ProbeResult, Solution, SupportReaction};
+use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Solution, StressResult, SupportReaction};
+use crate::stress::{PlaneTensor, strain_warning};
 use crate::study::{Jump, ProbeTruth, Reference};
 
 /// A result.
 pub(super) fn solution(
     scene: &Scene,
-    solution: &Solution,
+    mesh: &Mesh,
+    (solution, stress): (&Solution, &StressResult),
     jump: Option<Option<Jump>>,
     truth: Option<&Reference>,
     spent: &Spent,
 ) -> String {
     let truths = truth.map_or(&[][..], Reference::probes);
-    let probes: Vec<Value> = solution.probes.iter().enumerate().map(|(i, p)| probe(p, truths.get(i))).collect();
+    let probes: Vec<Value> =
+        solution.probes.iter().enumerate().map(|(i, p)| probe(p, stress.probes.get(i), truths.get(i))).collect();
     let supports: Vec<Value> = scene.supports.iter().zip(&solution.supports).map(|(s, r)| support(s, r)).collect();
     let certificate = solution.certificate.unwrap_or_default();
     let deformation = &solution.deformation;
@@ -44,6 +48,15 @@ pub(super) fn solution(
         "max_rotation_deg": number(deformation.max_rotation_deg),
         "max_strain": number(deformation.max_strain),
         "inverted_elements": deformation.inverted_elements,
+        "max_von_mises": stress.largest.map(|largest| json!({
+            "value": number(largest.von_mises),
+            "stress": "cauchy",
+            "node": mesh.node_name(largest.node),
+            "at": pair(largest.at),
+        })),
+        "mesh_error_percent": stress.mesh_error_percent.map(number),
+        "mesh_error_of": "estimate: energy norm",
+        "warnings": strain_warning(deformation.max_strain).into_iter().collect::<Vec<_>>(),
         "probes": probes,
         "energy": {
             "elastic": number(solution.energy.elastic),
@@ -98,11 +111,21 @@ fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
     energy["hands"] = number(ledger.hands);
 }
 
-fn probe(result: &ProbeResult, truth: Option<&ProbeTruth>) -> Value {
+fn tensor(tensor: &PlaneTensor) -> Value {
+    let [xx, yy, zz, xy] = tensor.components().map(number);
+    json!({ "xx": xx, "yy": yy, "zz": zz, "xy": xy })
+}
+
+fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, truth: Option<&ProbeTruth>) -> Value {
+    let cauchy = stress.and_then(|s| s.cauchy);
     json!({
         "name": result.name,
         "x": pair(result.x),
         "u": pair(result.u),
+        "rotation_deg": stress.map(|s| number(s.rotation_deg)),
+        "strain": stress.map(|s| tensor(&s.strain)),
+        "stress": cauchy.map(|s| tensor(&s)),
+        "von_mises": cauchy.map(|s| number(s.von_mises())),
         "truth_u": truth.map(|t| pair(t.displacement)),
         "truth_source": truth.map(|t| t.source.to_string()),
         "error_percent": truth.and_then(|t| t.error_percent(result)).map(number),

@@ -7,9 +7,11 @@ use nalgebra::Vector2;
 
 use super::CliError;
 use super::commands::Spent;
+use crate::mesh::Mesh;
 use crate::method::{Certificate, rho_words};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
-use crate::simulation::{MotionResult, Solution, Status};
+use crate::simulation::{MotionResult, Solution, Status, StressResult};
+use crate::stress::strain_warning;
 use crate::study::{Jump, LoadCurve, LoadPath, PathState, Reference, support_name};
 use crate::words::{count, engineering, engineering_pair, prefix};
 
@@ -37,7 +39,8 @@ pub(super) fn scenes() -> String {
 /// A result.
 pub(super) fn solution(
     scene: &Scene,
-    solution: &Solution,
+    mesh: &Mesh,
+    (solution, stress): (&Solution, &StressResult),
     jump: Option<Option<Jump>>,
     truth: Option<&Reference>,
     spent: &Spent,
@@ -102,6 +105,19 @@ pub(super) fn solution(
     let truths = truth.map_or(&[][..], Reference::probes);
     for (i, probe) in solution.probes.iter().enumerate() {
         let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), pair(probe.u, "m"));
+        if let Some(at_probe) = stress.probes.get(i) {
+            let [ex, ey, _, exy] = at_probe.strain.components().map(|v| engineering(100.0 * v, "%"));
+            let _ = writeln!(
+                text,
+                "  turned by {}, strain {ex}, {ey}, shear {exy}",
+                engineering(at_probe.rotation_deg, "°")
+            );
+            if let Some(cauchy) = &at_probe.cauchy {
+                let [x, y, _, xy] = cauchy.components().map(|v| engineering(v, "Pa"));
+                let von_mises = engineering(cauchy.von_mises(), "Pa");
+                let _ = writeln!(text, "  stress (Cauchy) {x}, {y}, shear {xy}; von Mises {von_mises}");
+            }
+        }
         let truth = truths.get(i).and_then(|truth| Some((truth, truth.error_percent(probe)?)));
         if let Some((truth, error)) = truth {
             let u = pair(truth.displacement, "m");
@@ -119,6 +135,17 @@ pub(super) fn solution(
         engineering(100.0 * deformation.max_strain, "%"),
         deformation.inverted_elements
     );
+    if let Some(warning) = strain_warning(deformation.max_strain) {
+        let _ = writeln!(text, "  {warning}");
+    }
+    if let Some(largest) = stress.largest {
+        let node = mesh.node_name(largest.node).map_or_else(String::new, |node| format!(", node {node}"));
+        let (value, at) = (engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));
+        let _ = writeln!(text, "largest von Mises (Cauchy) {value}, at {at} of the rest body{node}");
+    }
+    if let Some(percent) = stress.mesh_error_percent {
+        let _ = writeln!(text, "mesh error {percent:.2} % (estimate: energy norm)");
+    }
     let _ = writeln!(
         text,
         "reaction {}, moment about the origin {}",

@@ -11,7 +11,8 @@ use crate::scene::{self, registry};
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let ShotArgs { scene, output, size, no_panel, curve, study, learn, motion, theme } = args;
-    let options = app::ShotOptions { size, panel: !no_panel, curve, study, learn: learn.map(usize::from), motion, theme };
+    let options =
+        app::ShotOptions { size, panel: !no_panel, curve, study, learn: learn.map(usize::from), motion, theme };
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
     let status = app::shot(source, scene, simulation, &options, &output)?;

@@ -327,7 +327,9 @@ impl File {
             }
         }
         let Builder { numbers, nodes, .. } = builder;
-        let bare = Mesh::new(nodes, kind, connectivity, BTreeMap::new())?;
+        let mut tags = vec![None; nodes.len()];
+        numbers.iter().for_each(|(&tag, &number)| tags[number as usize] = Some(tag));
+        let bare = Mesh { tags, ..Mesh::new(nodes, kind, connectivity, BTreeMap::new())? };
         let sides: HashMap<[u32; 2], Segment> =
             bare.elements().flat_map(|nodes| bare.sides(nodes)).map(|side| (side.key(), side)).collect();
         let mut edges: BTreeMap<String, Vec<Segment>> = BTreeMap::new();

@@ -11,10 +11,12 @@ use crate::scene::ElementKind;
 mod beam;
 mod gmsh;
 mod locate;
+mod recovery;
 mod refine;
 
 pub use gmsh::GmshError;
 pub use locate::MaterialPoint;
+pub use recovery::Recovery;
 
 /// A mesh that cannot be used. Elements are numbered from 0.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -129,6 +131,8 @@ pub struct Mesh {
     element: ElementKind,
     connectivity: Vec<u32>,
     edges: BTreeMap<String, Vec<Segment>>,
+    /// What the file that it was read from calls every node; empty for other meshes.
+    tags: Vec<Option<u64>>,
 }
 
 /// Area over squared size below which an element counts as degenerate: a few hundred roundings. It trades slivers that
@@ -160,7 +164,7 @@ impl Mesh {
         connectivity: Vec<u32>,
         edges: BTreeMap<String, Vec<Segment>>,
     ) -> Result<Self, MeshError> {
-        let mut mesh = Self { nodes, element, connectivity, edges };
+        let mut mesh = Self { nodes, element, connectivity, edges, tags: Vec::new() };
         mesh.check()?;
         Ok(mesh)
     }
@@ -231,7 +235,8 @@ impl Mesh {
     /// [`MeshError`] where that leaves an element without area.
     pub fn moved(&self, place: impl Fn(Vector2<f64>) -> Vector2<f64>) -> Result<Self, MeshError> {
         let nodes = self.nodes.iter().map(|&x| place(x)).collect();
-        Self::new(nodes, self.element, self.connectivity.clone(), self.edges.clone())
+        let moved = Self::new(nodes, self.element, self.connectivity.clone(), self.edges.clone())?;
+        Ok(Self { tags: self.tags.clone(), ..moved })
     }
 
     /// How many parts it has that share no nodes, and the part of every node; `u32::MAX` for nodes without an element.
@@ -288,6 +293,19 @@ impl Mesh {
     #[must_use]
     pub(crate) fn node(&self, node: u32) -> Vector2<f64> {
         self.nodes[node as usize]
+    }
+
+    /// Whether its nodes have numbers of a file.
+    #[must_use]
+    pub fn is_from_file(&self) -> bool {
+        !self.tags.is_empty()
+    }
+
+    /// What a node is called towards people: by its file, or where there is none by its number from 0. `None` for a node
+    /// that was put between those of a file.
+    #[must_use]
+    pub fn node_name(&self, node: u32) -> Option<u64> {
+        if self.is_from_file() { self.tags.get(node as usize).copied().flatten() } else { Some(u64::from(node)) }
     }
 
     /// What every element is.

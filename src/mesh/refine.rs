@@ -60,6 +60,13 @@ impl OnSides {
 }
 
 impl Mesh {
+    /// A nodal vector carried over to [`Self::refined`], by the shape functions.
+    #[must_use]
+    pub fn prolonged(&self, nodal: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+        // Refinement makes new nodes of the old by the shape functions, whatever is at the nodes.
+        Self { nodes: nodal.to_vec(), ..self.clone() }.refined().nodes
+    }
+
     /// The mesh with every element cut into four of the same kind and every named edge into halves. Its nodes come
     /// first, with the same numbers; the body is the same.
     #[must_use]
@@ -107,7 +114,11 @@ impl Mesh {
         let edges = self.edges.iter().map(|(name, segments)| {
             (name.clone(), segments.iter().flat_map(|segment| halves(segment, &on_sides)).collect())
         });
-        Self { edges: edges.collect(), nodes, element: self.element, connectivity }
+        let mut tags = self.tags.clone();
+        if !tags.is_empty() {
+            tags.resize(nodes.len(), None);
+        }
+        Self { edges: edges.collect(), nodes, element: self.element, connectivity, tags }
     }
 }
 

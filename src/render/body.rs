@@ -13,8 +13,8 @@ pub struct Frame<'a> {
     pub positions: &'a [Vector2<f64>],
     /// Corners of the triangles.
     pub triangles: &'a [[u32; 3]],
-    /// A value a triangle, if it has one.
-    pub values: &'a [Option<f64>],
+    /// A value at every corner of every triangle, if it has one; between them it is linear.
+    pub values: &'a [[Option<f64>; 3]],
     /// The colour of triangles without, gamma space.
     pub absent_color: [u8; 3],
     /// The values at the two ends of the colour map.
@@ -57,7 +57,14 @@ impl Viewport {
 struct Vertex {
     position: [f32; 2],
     color: [u8; 4],
+    /// Where its value lies in the colour map, 0 to 1; negative where its colour is its own.
+    value: f32,
 }
+
+/// The value of a vertex that has a colour of its own.
+const COLORED: f32 = -1.0;
+/// Colours that the shader has of the colour map.
+const MAP_COLORS: usize = 64;
 
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -72,6 +79,9 @@ pub struct BodyRenderer {
     triangles: wgpu::RenderPipeline,
     lines: wgpu::RenderPipeline,
     camera: wgpu::Buffer,
+    map: wgpu::Buffer,
+    /// What is in there.
+    uploaded_map: Option<ColorMap>,
     bind_group: wgpu::BindGroup,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
@@ -97,23 +107,33 @@ impl BodyRenderer {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
+        let map = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("colour map"),
+            size: size_of::<[[f32; 4]; MAP_COLORS]>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let uniform = |binding, visibility| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("camera"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
+            entries: &[uniform(0, wgpu::ShaderStages::VERTEX), uniform(1, wgpu::ShaderStages::FRAGMENT)],
         });
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("camera"),
             layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: camera.as_entire_binding() }],
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: camera.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: map.as_entire_binding() },
+            ],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("body"),
@@ -131,7 +151,7 @@ impl BodyRenderer {
                     buffers: &[Some(wgpu::VertexBufferLayout {
                         array_stride: size_of::<Vertex>() as u64,
                         step_mode: wgpu::VertexStepMode::Vertex,
-                        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Unorm8x4],
+                        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Unorm8x4, 2 => Float32],
                     })],
                 },
                 primitive: wgpu::PrimitiveState { topology, ..Default::default() },
@@ -155,6 +175,8 @@ impl BodyRenderer {
             triangles: pipeline(wgpu::PrimitiveTopology::TriangleList),
             lines: pipeline(wgpu::PrimitiveTopology::LineList),
             camera,
+            map,
+            uploaded_map: None,
             bind_group,
             vertices: Self::vertex_buffer(gpu, 1024),
             scratch: Vec::new(),
@@ -207,6 +229,16 @@ impl BodyRenderer {
         let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
         gpu.queue.write_buffer(&self.camera, 0, bytemuck::bytes_of(&uniform));
 
+        if self.uploaded_map != Some(frame.map) {
+            let color = |i: usize| frame.map.color(i as f64 / (MAP_COLORS - 1) as f64).map(|c| f32::from(c) / 255.0);
+            let colors: [[f32; 4]; MAP_COLORS] = std::array::from_fn(|i| {
+                let [r, g, b] = color(i);
+                [r, g, b, 1.0]
+            });
+            gpu.queue.write_buffer(&self.map, 0, bytemuck::cast_slice(&colors));
+            self.uploaded_map = Some(frame.map);
+        }
+
         let [r, g, b] = frame.surround.map(|c| f64::from(c) / 255.0);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("body"),
@@ -247,11 +279,15 @@ impl BodyRenderer {
         let [r, g, b] = frame.background;
         let [x, y] = view.map(|side| (0.5 * side) as f32);
         let corners = [[-x, -y], [x, -y], [x, y], [-x, -y], [x, y], [-x, y]];
-        self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255] }));
-        for (triangle, &value) in frame.triangles.iter().zip(frame.values) {
-            let color = |value| frame.map.color(colormap::position(value, frame.range));
-            let [r, g, b] = value.map_or(frame.absent_color, color);
-            self.scratch.extend(triangle.map(|node| Vertex { position: position(node), color: [r, g, b, 255] }));
+        self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255], value: COLORED }));
+        let [r, g, b] = frame.absent_color;
+        for (triangle, values) in frame.triangles.iter().zip(frame.values) {
+            // A triangle without a value at one of its corners has none.
+            let known = values.iter().all(Option::is_some);
+            self.scratch.extend(triangle.iter().zip(values).map(|(&node, value)| {
+                let at = value.filter(|_| known).map(|value| colormap::position(value, frame.range) as f32);
+                Vertex { position: position(node), color: [r, g, b, 255], value: at.unwrap_or(COLORED) }
+            }));
         }
         let triangle_vertices = self.scratch.len() as u32;
         let at = |node: u32| frame.positions.get(node as usize).copied().unwrap_or_default();
@@ -264,7 +300,7 @@ impl BodyRenderer {
             let strength = line_strength(height * camera.scale);
             if strength > 0.0 {
                 let color = [r, g, b, (f64::from(opacity) * strength) as u8];
-                self.scratch.extend(line.map(|node| Vertex { position: position(node), color }));
+                self.scratch.extend(line.map(|node| Vertex { position: position(node), color, value: COLORED }));
             }
         }
         triangle_vertices

@@ -1,5 +1,7 @@
 //! Metres to points of a view, and back.
 
+use std::ops::RangeInclusive;
+
 use nalgebra::Vector2;
 
 /// Looks at a point of the plane with a magnification.
@@ -12,7 +14,7 @@ pub struct Camera {
 }
 
 /// What is kept free around a fitted box, points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Margins {
     /// Left and right.
     pub sides: f64,
@@ -24,7 +26,7 @@ pub struct Margins {
 
 impl Camera {
     /// Scales beyond these leave nothing to see.
-    const SCALES: std::ops::RangeInclusive<f64> = 1e-9..=1e12;
+    const SCALES: RangeInclusive<f64> = 1e-9..=1e12;
 
     /// The camera that shows the box from `low` to `high` in a view of this size (points), inside the margins. A view
     /// smaller than its margins gets smaller margins.
@@ -63,10 +65,12 @@ impl Camera {
         self.center -= Vector2::new(by[0], -by[1]) / self.scale;
     }
 
-    /// Magnifies by `factor`; what is at `at` stays there.
-    pub fn zoom(&mut self, factor: f64, at: [f64; 2]) {
+    /// Magnifies by `factor`, within these scales; what is at `at` stays there.
+    pub fn zoom(&mut self, factor: f64, at: [f64; 2], scales: RangeInclusive<f64>) {
         let fixed = self.to_world(at);
-        let scale = (self.scale * factor).clamp(*Self::SCALES.start(), *Self::SCALES.end());
+        // A scale outside already is not made worse.
+        let (low, high) = (scales.start().min(self.scale), scales.end().max(self.scale));
+        let scale = (self.scale * factor).max(low).min(high);
         self.center = fixed + (self.center - fixed) * (self.scale / scale);
         self.scale = scale;
     }
@@ -81,7 +85,7 @@ mod tests {
         let mut camera = Camera { center: Vector2::new(3.0, -1.0), scale: 50.0 };
         let at = [120.0, -35.0];
         let before = camera.to_world(at);
-        camera.zoom(1.7, at);
+        camera.zoom(1.7, at, 1.0..=1e3);
         assert!((camera.to_world(at) - before).norm() < 1e-12);
         assert!((camera.scale - 85.0).abs() < 1e-12);
     }

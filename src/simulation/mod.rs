@@ -16,19 +16,23 @@ use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::scene::{Analysis, Invalid, Material, MethodKind, Scene};
 use crate::solver::{Factor, SolverError};
 use crate::state::{State, StateError, is_finite};
+use crate::stress::{MeshError, NodalStress, RecoveryScratch};
 use crate::timings::Timings;
 
 mod field;
 mod motion;
+mod point;
 mod results;
 mod search;
 mod status;
 
 pub use self::motion::Motion;
 pub use field::Field;
+pub use point::PointState;
 use results::supports_work;
 pub use results::{
-    Deformation, Energy, ProbeResult, Reaction, SupportReaction, energy, probe_results, reaction, support_reactions,
+    Deformation, Energy, LargestStress, ProbeResult, ProbeStress, Reaction, StressResult, SupportReaction, energy,
+    probe_results, reaction, support_reactions,
 };
 pub use status::Status;
 
@@ -489,9 +493,50 @@ impl Simulation {
         }
     }
 
+    /// Stress and strain at every node, recovered from the current state.
+    #[must_use]
+    pub fn nodal_stress(&self) -> NodalStress {
+        NodalStress::of(&self.body.problem, &self.body.state, self.kinematics())
+    }
+
+    /// The estimate of the mesh's own error in the current state; see [`MeshError`].
+    #[must_use]
+    pub fn mesh_error(&self, nodal: &NodalStress) -> MeshError {
+        MeshError::of(&self.body.problem, &self.body.state, nodal)
+    }
+
+    /// How the current state is seen.
+    fn kinematics(&self) -> Kinematics {
+        if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated }
+    }
+
     /// A field's value at every quadrature point; see [`Field::values`].
     pub fn field(&self, field: Field, values: &mut Vec<Option<f64>>) {
-        field.values(&self.body.problem, &self.body.state, values);
+        field.values(&self.body.problem, &self.body.state, self.kinematics(), values);
+    }
+
+    /// A field's values as people expect them, recovered at the nodes; of a field of elements, those of
+    /// [`Self::field`]. `nodal` and `scratch` are room to work in, kept from state to state.
+    pub fn smooth_field(
+        &self,
+        field: Field,
+        (nodal, scratch): (&mut Option<NodalStress>, &mut RecoveryScratch),
+        values: &mut Vec<Option<f64>>,
+    ) {
+        if field.is_of_elements() {
+            return self.field(field, values);
+        }
+        let Body { problem, state, .. } = &self.body;
+        let nodal = nodal.get_or_insert_with(|| NodalStress::empty(*problem.material()));
+        nodal.follow(problem, state, self.kinematics(), scratch);
+        field.nodal_values(nodal, values);
+    }
+
+    /// Stress where people look for it: the largest, that of the probes, and how far the mesh is to be trusted.
+    #[must_use]
+    pub fn stress_result(&self) -> StressResult {
+        let nodal = self.nodal_stress();
+        StressResult::of(&self.body.problem, &nodal, &self.mesh_error(&nodal))
     }
 
     /// Displacement of a probe, m, the mean over its edge; `None` where there is no such probe.

@@ -7,6 +7,7 @@ use crate::assembly::{Forces, Kinematics, Problem};
 use crate::rotation::polar;
 use crate::scene::Place;
 use crate::state::State;
+use crate::stress::{MeshError, NodalStress, PlaneTensor};
 
 /// What a probe sees.
 #[derive(Clone, Debug, PartialEq)]
@@ -158,4 +159,65 @@ pub(super) fn supports_work(problem: &Problem, reactions: &[SupportReaction], lo
     let pairs = problem.supports().all().iter().zip(reactions);
     let work: f64 = pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.turn).sum();
     load_factor * work
+}
+
+/// The largest von Mises stress of the recovered Cauchy stresses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LargestStress {
+    /// Pa.
+    pub von_mises: f64,
+    /// The node that has it, by its number in the mesh; [`crate::Mesh::node_name`] says what people call it.
+    pub node: u32,
+    /// That node's rest position, m.
+    pub at: Vector2<f64>,
+}
+
+/// What is at a probe: of the mean of what has been recovered at its nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ProbeStress {
+    /// The angle of R, degrees, within half a turn.
+    pub rotation_deg: f64,
+    /// The Biot strain ε, in the frame turned back.
+    pub strain: PlaneTensor,
+    /// The Cauchy stress, Pa; `None` where there is none.
+    pub cauchy: Option<PlaneTensor>,
+}
+
+/// Stress where people look for it.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct StressResult {
+    /// The largest von Mises (Cauchy) stress; `None` where no node has one.
+    pub largest: Option<LargestStress>,
+    /// At every probe.
+    pub probes: Vec<ProbeStress>,
+    /// The estimate of the mesh's own error in the energy norm, percent; see [`MeshError`].
+    pub mesh_error_percent: Option<f64>,
+}
+
+impl StressResult {
+    /// Of what has been recovered of a state.
+    #[must_use]
+    pub fn of(problem: &Problem, nodal: &NodalStress, error: &MeshError) -> Self {
+        let (mesh, material) = (problem.system().mesh(), nodal.material());
+        let probes = problem.probes().iter().map(|probe| {
+            let local = nodal.mean(&probe.weights);
+            ProbeStress {
+                rotation_deg: local.rotation.angle().to_degrees(),
+                strain: local.strain(material),
+                cauchy: local.cauchy(material, nodal.kinematics()),
+            }
+        });
+        Self {
+            largest: nodal.largest_von_mises().map(|(node, von_mises)| LargestStress {
+                von_mises,
+                node,
+                at: mesh.nodes()[node as usize],
+            }),
+            probes: probes.collect(),
+            mesh_error_percent: error.percent,
+        }
+    }
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::StudyError;
+use super::refined::refined_probes;
 use crate::assembly::System;
 use crate::mesh::{Mesh, Segment};
 use crate::scene::{Analysis, ElementKind, MethodKind, Place, Scene};
@@ -22,6 +23,8 @@ pub enum TruthSource {
     FineSolution,
     /// The six-node solution on the scene's mesh, refined.
     RefinedMesh,
+    /// No truth but an estimate of it: the scene's own mesh refined once, extrapolated; see [`refined_probes`].
+    Estimate,
 }
 
 impl std::fmt::Display for TruthSource {
@@ -30,6 +33,7 @@ impl std::fmt::Display for TruthSource {
             Self::ExactBeam => "the exact beam",
             Self::FineSolution => "a fine t6 solution",
             Self::RefinedMesh => "the fine solution on its refined mesh",
+            Self::Estimate => "an estimate, from its mesh refined once",
         })
     }
 }
@@ -153,6 +157,35 @@ impl Reference {
             }),
             (_, Err(error)) => Err(error),
         }
+    }
+
+    /// [`Self::of`], or where there is none to be found at the price of a solve, an estimate of it, which says so.
+    ///
+    /// # Errors
+    /// As [`Self::of`], where there is no estimate either.
+    pub fn or_estimate(scene: &Scene) -> Result<Self, StudyError> {
+        let missing = match Self::of(scene) {
+            Err(error @ (StudyError::TooFine { .. } | StudyError::NoTruth)) => error,
+            known => return known,
+        };
+        let mut scene = scene.clone();
+        scene.solver.method = MethodKind::Newton;
+        scene.solver.max_iterations = scene.solver.max_iterations.max(200);
+        let mut simulation = Simulation::new(&scene)?;
+        if *simulation.solve() != Status::Converged {
+            return Err(missing);
+        }
+        let probes = refined_probes(&simulation).map_err(|_| missing)?;
+        Ok(Self {
+            error_percent: 0.0,
+            probes: probes
+                .into_iter()
+                .map(|displacement| ProbeTruth { displacement, source: TruthSource::Estimate })
+                .collect(),
+            beam_off_by_percent: None,
+            outline: Vec::new(),
+            linear: None,
+        })
     }
 
     /// The truth of every probe, in the scene's order.

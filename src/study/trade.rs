@@ -223,7 +223,7 @@ impl Study {
     /// A study with its truth and nothing measured yet.
     pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
         check(observe(Progress { fraction: 0.0, now: "the truth", so_far: None }))?;
-        let reference = Reference::of(scene)?;
+        let reference = Reference::or_estimate(scene)?;
         if reference.first().displacement.norm() == 0.0 {
             return Err(StudyError::NoProbe);
         }

@@ -107,7 +107,10 @@ fn extremes_stay_finite(method: MethodKind) {
             let mut values = Vec::new();
             for field in Field::ALL {
                 simulation.field(field, &mut values);
-                assert!(values.iter().all(Option::is_some), "{id} {set:?} {field:?}");
+                // What is turned inside out has no Cauchy stress.
+                let all = field != Field::VonMises || s.deformation.inverted_elements == 0;
+                assert!(!all || values.iter().all(Option::is_some), "{id} {set:?} {field:?}");
+                assert!(values.iter().flatten().all(|v| v.is_finite()), "{id} {set:?} {field:?}");
             }
         }
     }

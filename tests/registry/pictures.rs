@@ -80,16 +80,19 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
 
     // Colours, at the middle of triangles that are large enough to have one without an edge in it.
     let mut seen = 0;
-    for (triangle, &value) in frame.triangles.iter().zip(frame.values) {
+    for (triangle, values) in frame.triangles.iter().zip(frame.values) {
         let [a, b, c] = triangle.map(|p| project(&camera, rect, frame.positions[p as usize]));
         let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs();
         if area < 60.0 {
             continue;
         }
         let [x, y] = [0, 1].map(|i| ((a[i] + b[i] + c[i]) / 3.0) as u32);
-        let expected = frame.map.color(colormap::position(value.unwrap(), frame.range));
+        // Between corners the value is linear; the pixel's middle is not quite the triangle's.
+        let positions = values.map(|value| colormap::position(value.unwrap(), frame.range));
+        let expected = frame.map.color(positions.iter().sum::<f64>() / 3.0);
+        let steep = positions.iter().fold(0.0f64, |m, v| m.max((v - positions[0]).abs()));
         let got = pixel(&picture, x, y);
-        if distance(expected, got) <= 2 {
+        if f64::from(distance(expected, got)) <= 3.0 + 40.0 * steep {
             seen += 1;
         }
     }

@@ -46,7 +46,7 @@ fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Ac
         label: "Tip force",
         tooltip: "The size of the force on the tip",
         limit: Limit { unit: "N", min: 1.0, max: 1e6 },
-        slider: 1e3..=6e4,
+        slider: 1e3..=4e4,
         logarithmic: None,
         whole: false,
     };
@@ -77,7 +77,7 @@ pub(super) fn growth_words(growth: f64) -> String {
 
 fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: egui::Color32) {
     /// Percent, at the end of the bar.
-    const FULL: f64 = 50.0;
+    const FULL: f64 = 100.0;
     const NAME: f32 = 56.0;
     const NUMBER: f32 = 78.0;
     let words = growth.map_or_else(|| "\u{2013}".to_owned(), growth_words);
@@ -90,7 +90,8 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
     put(rect.left(), RichText::new(name).size(SMALL).color(palette.secondary));
     put(rect.left() + NAME, RichText::new(&words).size(HEADLINE).color(color));
     let left = rect.left() + NAME + NUMBER;
-    let bar = Rect::from_min_max(egui::pos2(left, rect.center().y - 4.0), egui::pos2(rect.right(), rect.center().y + 4.0));
+    let bar =
+        Rect::from_min_max(egui::pos2(left, rect.center().y - 4.0), egui::pos2(rect.right(), rect.center().y + 4.0));
     if bar.width() > 20.0 {
         painter.rect_filled(bar, 2.0, palette.line);
         let part = (growth.unwrap_or(0.0).abs() / FULL).min(1.0) as f32;

@@ -69,9 +69,9 @@ fn nothing(_: &Painter, _: &View<'_>, _: &Learn) {}
 pub(in crate::app) const CARDS: &[Card] = &[
     Card {
         title: "Linear theory swells",
-        words: "Linear theory measures strain along the axes of the beam at rest. What only turns by an angle \u{3b8} looks \
-                stretched to it, so the beam grows: its area by about \u{3b8}\u{b2}, of whatever material it is. The \
-                dashed line is the exact beam.",
+        words: "Linear theory knows no turns. What turns by an angle \u{3b8} moves along the tangent instead of the arc, \
+                and grows: its area by \u{3b8}\u{b2}, whatever it is made of. The dashed line is the exact beam, which \
+                turns without growing.",
         formula: "K u = f          `det` ( I + \u{3b8} J ) = 1 + \u{3b8}^{2}",
         task: "Drag the tip force, and watch the area.",
         setup: Setup {
@@ -108,8 +108,8 @@ pub(in crate::app) const CARDS: &[Card] = &[
     Card {
         title: "Turn back",
         words: "Here each triangle is turned back by its own R\u{2019}s transpose and laid onto its shape at rest. What \
-                is left between the two is the strain, and that is all the stiffness K ever sees: small, however far the \
-                beam has turned.",
+                is left between the two is the strain, and that is all the stiffness K ever sees. It knows nothing of \
+                the turn.",
         formula: "R^{T} F = S = I + \u{3b5}",
         task: "Move the slider between the bent beam and the triangles turned back.",
         setup: Setup {
@@ -128,7 +128,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         title: "Turn the stiffness instead",
         words: "K is made once, at rest. Turned forward by R it acts on the bent beam, with an offset on the right. Each \
                 triangle adds nine 2\u{d7}2 blocks, at the rows and columns of its three nodes. The four unknowns of the \
-                two clamped nodes leave.",
+                two clamped nodes leave: 24 \u{2212} 4 = 20.",
         formula: "R K R^{T} x = f + R K X",
         task: "Click triangles, and point at entries for their values.",
         setup: Setup {

@@ -44,7 +44,8 @@ pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
             let corners = &rest[..mesh.entry().cell.corners.len().min(rest.len())];
             let shift = view.middle(element) - mean(corners);
             let line: Vec<_> = corners.iter().map(|p| view.place(p + shift)).collect();
-            painter.add(Shape::closed_line(line.clone(), Stroke::new(3.2, view.palette.canvas.gamma_multiply(strength))));
+            painter
+                .add(Shape::closed_line(line.clone(), Stroke::new(3.2, view.palette.canvas.gamma_multiply(strength))));
             painter.add(Shape::closed_line(line, Stroke::new(1.5, view.palette.exact.gamma_multiply(strength))));
         }
     }
@@ -61,7 +62,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         let name = "Turned back";
         let slider = ui.add(Slider::new(&mut learn.turned, 0.0..=1.0).show_value(false));
         let label = ui.label(name);
-        slider.labelled_by(label.id).on_hover_text("From the bent beam to its triangles, each turned back by its own R");
+        slider
+            .labelled_by(label.id)
+            .on_hover_text("From the bent beam to its triangles, each turned back by its own R");
     });
     ui.add_space(6.0);
     let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {

@@ -1,6 +1,6 @@
 //! The frame R in every triangle, and F = R S of one.
 
-use egui::{Color32, Painter, Pos2, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::{Matrix2, Vector2};
 
 use super::triangle::{Triangle, frames};
@@ -67,22 +67,15 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     ui.label(format!("Triangle {}, turned by {}", learn.picked + 1, angle_words(triangle.rotation)));
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 7.0;
+        ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
         let r = triangle.rotation.matrix();
-        for (name, matrix, between) in [("F", triangle.gradient, "="), ("R", r, "\u{b7}"), ("S", triangle.stretch, "")] {
-            ui.vertical(|ui| {
-                show_matrix(ui, name, &matrix, palette.text);
-                ui.vertical_centered(|ui| {
-                    ui.set_max_width(100.0);
-                    ui.label(formula::set(name, palette.secondary));
-                });
-            });
-            ui.vertical(|ui| {
-                ui.add_space(14.0);
-                ui.label(egui::RichText::new(between).size(18.0));
-            });
+        for (name, before, matrix) in
+            [("F", "", &triangle.gradient), ("R", "=", &r), ("S", "\u{b7}", &triangle.stretch)]
+        {
+            show_matrix(ui, (name, before), matrix, &palette);
         }
     });
+    ui.add_space(4.0);
     ui.label(
         egui::RichText::new("S is symmetric: it stretches along two axes at right angles, and turns nothing.")
             .size(SMALL)
@@ -95,30 +88,37 @@ pub(super) fn angle_words(rotation: Rotation) -> String {
     format!("{:.1}\u{b0}", rotation.angle().to_degrees()).replace('-', "\u{2212}")
 }
 
-/// The numbers of a 2×2 matrix in brackets.
-fn show_matrix(ui: &mut Ui, name: &str, m: &Matrix2<f64>, color: Color32) {
-    const CELL: egui::Vec2 = vec2(52.0, 22.0);
+/// The numbers of a 2×2 matrix in brackets, after a sign, with the name below.
+fn show_matrix(ui: &mut Ui, (name, before): (&str, &str), m: &Matrix2<f64>, palette: &Palette) {
+    const CELL: egui::Vec2 = vec2(54.0, 22.0);
     const BRACKET: f32 = 5.0;
-    let (rect, response) = ui.allocate_exact_size(vec2(2.0 * CELL.x, 2.0 * CELL.y), Sense::hover());
-    let number = |v: f64| format!("{:.3}", if v == 0.0 { 0.0 } else { v }).replace('-', "\u{2212}");
-    for row in 0..2_u8 {
-        for column in 0..2_u8 {
-            let at = rect.min + vec2(CELL.x * (f32::from(column) + 1.0) - 6.0, CELL.y * (f32::from(row) + 0.5));
-            let font = egui::FontId::monospace(BODY - 1.0);
-            let text = number(m[(usize::from(row), usize::from(column))]);
-            ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font, color);
-        }
+    const SIGN: f32 = 16.0;
+    const NAME: f32 = 26.0;
+    let sign = if before.is_empty() { 0.0 } else { SIGN };
+    let size = vec2(sign + 2.0 * CELL.x + 6.0, 2.0 * CELL.y + NAME);
+    let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
+    let rect = Rect::from_min_size(whole.min + vec2(sign, 0.0), vec2(2.0 * CELL.x + 6.0, 2.0 * CELL.y));
+    let painter = ui.painter();
+    let number = |v: f64| {
+        let text = format!("{v:.3}");
+        if text == "-0.000" { "0.000".to_owned() } else { text.replace('-', "\u{2212}") }
+    };
+    let numbers = [m.m11, m.m12, m.m21, m.m22].map(number);
+    for ((row, column), text) in [(0.5, 1.0), (0.5, 2.0), (1.5, 1.0), (1.5, 2.0)].into_iter().zip(&numbers) {
+        let at = rect.min + vec2(CELL.x * column, CELL.y * row);
+        painter.text(at, Align2::RIGHT_CENTER, text, FontId::monospace(BODY - 1.0), palette.text);
     }
     for (x, inward) in [(rect.left(), BRACKET), (rect.right(), -BRACKET)] {
-        let line = [rect.top(), rect.bottom()];
-        let points = vec![
-            egui::pos2(x + inward, line[0]),
-            egui::pos2(x, line[0]),
-            egui::pos2(x, line[1]),
-            egui::pos2(x + inward, line[1]),
-        ];
-        ui.painter().add(Shape::line(points, Stroke::new(1.2, color)));
+        let points = [(x + inward, rect.top()), (x, rect.top()), (x, rect.bottom()), (x + inward, rect.bottom())];
+        let points = points.map(|(x, y)| pos2(x, y)).to_vec();
+        painter.add(Shape::line(points, Stroke::new(1.2, palette.text)));
     }
-    let [a, b, c, d] = [m.m11, m.m12, m.m21, m.m22].map(number);
+    if !before.is_empty() {
+        let at = pos2(whole.left() + 4.0, rect.center().y);
+        painter.text(at, Align2::CENTER_CENTER, before, FontId::proportional(BODY + 4.0), palette.text);
+    }
+    let galley = painter.layout_job(formula::set(name, palette.secondary));
+    painter.galley(pos2(rect.center().x - 0.5 * galley.size().x, rect.bottom() + 2.0), galley, palette.secondary);
+    let [a, b, c, d] = numbers;
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} = [{a} {b}; {c} {d}]")));
 }

@@ -59,7 +59,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         ui.add_space(2.0);
     }
     if known.is_none() {
-        let words = if learn.is_looking() { "Looking for the errors." } else { "The truth of this scene is not known." };
+        let words =
+            if learn.is_looking() { "Looking for the errors." } else { "The truth of this scene is not known." };
         ui.label(RichText::new(words).size(SMALL).color(palette.secondary));
     }
 }

@@ -9,11 +9,11 @@ use crate::app::action::Action;
 use crate::app::palette::{Palette, SMALL};
 use crate::render::colormap;
 use crate::simulation::Field;
-use crate::words::engineering;
+use crate::words::{engineering, three_digits};
 
 /// Side of a small matrix, and of the large one, points.
-const SMALL_SIDE: f32 = 126.0;
-const LARGE_SIDE: f32 = 168.0;
+const SMALL_SIDE: f32 = 120.0;
+const LARGE_SIDE: f32 = 146.0;
 /// A body of more unknowns is not drawn as a matrix.
 const MOST_UNKNOWNS: usize = 96;
 
@@ -41,7 +41,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         }
         ui.vertical(|ui| whole(ui, shown, &palette, &triangle));
         let note = format!(
-            "Triangle {}: nodes {}. Framed: its 2\u{d7}2 blocks. Grey: rows and columns of clamped unknowns, which leave.",
+            "Triangle {}: nodes {}. Framed: its blocks. Grey: what clamping takes away. Red is positive, blue negative.",
             learn.picked + 1,
             triangle.nodes.map(|n| (n + 1).to_string()).join(", "),
         );
@@ -54,7 +54,7 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, triangle: &Triangle)
     let simulation = shown.input.simulation;
     let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
     let (all, free) = (2 * nodes, pattern.dofs());
-    let words = format!("\u{3a3} R K_{{e}} R^{{T}} :  {all} \u{2192} {free}");
+    let words = format!("\u{3a3} R K_{{e}} R^{{T}} ,  {all} \u{2212} {} = {free}", all - free);
     ui.label(formula::set(&words, palette.text))
         .on_hover_text(format!("{all} unknowns, of which {free} are left where the supports hold the others"));
     let matrix = (all <= MOST_UNKNOWNS).then(|| assembled(simulation)).flatten();
@@ -136,12 +136,10 @@ fn cells(
 }
 
 fn color_of(map: &colormap::ColorMap, value: f64, largest: f64) -> Color32 {
-    let [r, g, b] = map.color(colormap::position(value, [-largest, largest]));
+    // Of the root: small entries are seen too.
+    let part = if largest > 0.0 { (value.abs() / largest).sqrt().copysign(value) } else { 0.0 };
+    let [r, g, b] = map.color(colormap::position(part, [-1.0, 1.0]));
     Color32::from_rgb(r, g, b)
-}
-
-fn three_digits(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// Row and column of the cell at a place.

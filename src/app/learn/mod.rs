@@ -4,7 +4,7 @@
 use egui::{Context, FontId, Key, Painter, Panel, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use nalgebra::Vector2;
 
-use super::action::{Action, Toggle};
+use super::action::{Action, Toggle, ViewOptions};
 use super::drawing::Drawing;
 use super::field::Messages;
 use super::finder::Finder;
@@ -33,7 +33,7 @@ pub(super) use cards::{CARDS, Card, Start};
 use locking::ElementError;
 
 /// Height of the row of cards, points; at most a part of the window's.
-const HEIGHT: f32 = 246.0;
+const HEIGHT: f32 = 258.0;
 const SHARE: f32 = 0.42;
 
 /// Below this width, points, what is beside the words is under them.
@@ -163,6 +163,11 @@ impl Learn {
         (self.before, self.card)
     }
 
+    /// How the lab was looked at.
+    pub(super) fn view_before(&self) -> &ViewOptions {
+        self.before.view()
+    }
+
     pub(super) fn card(&self) -> &'static Card {
         &CARDS[self.card.min(CARDS.len() - 1)]
     }
@@ -277,9 +282,16 @@ impl Learn {
                 });
                 return;
             }
-            ui.columns_const(|[left, right]| {
-                scroll("words", number).show(left, |ui| text(ui, card));
-                scroll("drawing", number).show(right, |ui| (card.show)(ui, shown, self, actions));
+            let (left, right) = split(ui.available_rect_before_wrap());
+            let mut column = |rect: Rect, show: &mut dyn FnMut(&mut Ui)| {
+                let layout = egui::Layout::top_down(egui::Align::Min);
+                let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+                ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
+                show(&mut ui);
+            };
+            column(left, &mut |ui| _ = scroll("words", number).show(ui, |ui| text(ui, card)));
+            column(right, &mut |ui| {
+                scroll("drawing", number).show(ui, |ui| (card.show)(ui, shown, self, actions));
             });
         });
     }
@@ -309,7 +321,7 @@ impl Learn {
                     }
                 }
                 let next = ui.add_enabled(card + 1 < count, egui::Button::new("Next \u{203a}"));
-                if next.on_hover_text("The next card (\u{2192} or Enter)").clicked() {
+                if next.on_hover_text("The next card (right arrow or Enter)").clicked() {
                     actions.push(Action::Card(card + 1));
                 }
                 if wide {
@@ -317,7 +329,7 @@ impl Learn {
                 }
                 ui.label(RichText::new(format!("{} of {count}", card + 1)).color(palette.secondary));
                 let back = ui.add_enabled(card > 0, egui::Button::new("\u{2039} Back"));
-                if back.on_hover_text("The card before (\u{2190})").clicked() {
+                if back.on_hover_text("The card before (left arrow)").clicked() {
                     actions.push(Action::Card(card - 1));
                 }
             });
@@ -344,6 +356,15 @@ impl Learn {
             _ => None,
         }
     }
+}
+
+/// The places of the words, and of what is beside them.
+fn split(rect: Rect) -> (Rect, Rect) {
+    /// Lines of more letters than fit in this are hard to read.
+    const WIDEST: f32 = 470.0;
+    const GUTTER: f32 = 24.0;
+    let words = (0.48 * (rect.width() - GUTTER)).min(WIDEST);
+    (rect.with_max_x(rect.left() + words), rect.with_min_x(rect.left() + words + GUTTER))
 }
 
 /// A dot a card; a click goes there.
@@ -427,14 +448,17 @@ mod tests {
         let _ = ctx.run_ui(egui::RawInput::default(), |_| {});
         let mut all: String = CARDS.iter().flat_map(|c| [c.title, c.words, c.task]).collect();
         all.extend(CARDS.iter().map(|card| formula::plain(card.formula)));
-        all.push_str("\u{2039}\u{203a}\u{2190}\u{2192}\u{2212}\u{3a3}\u{3b5}\u{b7}\u{d7}\u{2013}\u{b0}\u{201c}\u{201d}");
+        all.push_str("\u{2039}\u{203a}\u{2212}\u{3a3}\u{3b5}\u{b7}\u{d7}\u{2013}\u{b0}\u{201c}\u{201d}");
         for size in [super::super::palette::BODY, formula::SIZE] {
             let font = FontId::proportional(size);
             for letter in all.chars().filter(|c| *c != '\n') {
                 assert!(ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter)), "no glyph for {letter:?}");
             }
         }
-        assert!(!ctx.fonts_mut(|fonts| fonts.has_glyph(&FontId::proportional(14.0), '\u{10ffff}')), "the check is blind");
+        assert!(
+            !ctx.fonts_mut(|fonts| fonts.has_glyph(&FontId::proportional(14.0), '\u{10ffff}')),
+            "the check is blind"
+        );
     }
 
     #[test]

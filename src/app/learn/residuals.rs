@@ -103,12 +103,17 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     }
     let words = match (residuals.last(), rho) {
         (Some(last), Some(rho)) => {
-            format!("Residual {last:.1e} after {}; rho = {}", count(residuals.len() as u64, "iteration"), rho_number(rho))
+            format!(
+                "Residual {last:.1e} after {}; rho = {}",
+                count(residuals.len() as u64, "iteration"),
+                rho_number(rho)
+            )
         }
         _ => format!("{} so far", count(residuals.len() as u64, "iteration")),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &words));
-    response.on_hover_text("Force out of balance over all forces, after each iteration; grey dashes: what is asked for");
+    response
+        .on_hover_text("Force out of balance over all forces, after each iteration; grey dashes: what is asked for");
     if rho.is_none() && learn.is_looking() {
         ui.label(RichText::new("Looking for \u{3c1}.").size(SMALL).color(palette.secondary));
     }

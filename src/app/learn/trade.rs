@@ -14,7 +14,12 @@ use crate::words::{engineering, percent};
 pub(super) const ASKED: [f64; 3] = [10.0, 1.0, 0.1];
 
 /// The fastest setting of an element and a method whose error is at most `percent`; else the closest.
-pub(super) fn best(study: &Study, element: ElementKind, method: MethodKind, percent: f64) -> Option<(Measurement, bool)> {
+pub(super) fn best(
+    study: &Study,
+    element: ElementKind,
+    method: MethodKind,
+    percent: f64,
+) -> Option<(Measurement, bool)> {
     let own = study.measurements.iter().filter(|m| (m.setting.element, m.setting.method) == (element, method));
     let good = own.clone().filter(|m| m.error.bound() <= percent).min_by_key(|m| m.time.total());
     let closest = || own.min_by(|a, b| a.error.bound().total_cmp(&b.error.bound()));

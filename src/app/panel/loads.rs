@@ -2,30 +2,12 @@
 
 use egui::Ui;
 
-use super::{Action, PanelInput, PanelState};
+use super::{Action, PanelInput, PanelState, edges};
+use crate::app::arrow::{DOWN, SMALLEST, largest_force, polar_form, vector};
 use crate::app::field::NumberField;
+use crate::assembly::System;
 use crate::scene::{Load, Scene, limits};
 use crate::words::engineering;
-
-const DOWN: f64 = -90.0;
-
-/// Magnitude and direction (degrees) of a vector; the direction is `None` at zero.
-fn polar_form([x, y]: [f64; 2]) -> (f64, Option<f64>) {
-    let magnitude = x.hypot(y);
-    (magnitude, (magnitude > 0.0).then(|| y.atan2(x).to_degrees()))
-}
-
-/// The vector of a magnitude and a direction in degrees, exact along the axes.
-fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
-    let (s, c) = match degrees {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        -90.0 => (-1.0, 0.0),
-        180.0 | -180.0 => (0.0, -1.0),
-        _ => degrees.to_radians().sin_cos(),
-    };
-    [magnitude * c, magnitude * s]
-}
 
 fn gravity_of(scene: &Scene) -> Option<[f64; 2]> {
     scene.loads.iter().find_map(|l| match l {
@@ -57,24 +39,19 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
         _ => None,
     });
     let (magnitude, direction) = polar_form(force.unwrap_or_default());
-    let direction = direction.or(state.force_direction).unwrap_or(DOWN);
-    let material = &scene.material;
-    // A force that strains the whole section by 1, rounded up: as far as anything can be seen.
-    let (low, high) = input.simulation.system().mesh().bounds();
-    let height = (high - low).min();
-    let largest = (material.young * material.thickness * height).clamp(1e-6, 1e14);
-    let largest = 10f64.powf(largest.log10().ceil());
+    let direction = direction.unwrap_or(state.force_direction());
+    let largest = largest_force(&scene.material, input.simulation.system().mesh());
     let field = NumberField {
         label: "Force",
         tooltip: "Magnitude of the force, N. Type a number for values the slider has not, such as 12 kN.",
         limit: limits::FORCE,
         slider: 0.0..=largest,
-        logarithmic: Some(1e-5 * largest),
+        logarithmic: Some(SMALLEST * largest),
         whole: false,
     };
     if let Some(new) = field.show(ui, &mut state.messages, magnitude) {
-        state.force_direction = Some(direction);
-        actions.push(Action::Edit("Force", with_force(scene, vector(new, direction))));
+        state.keep_force_direction(direction);
+        actions.push(Action::Edit("Force", with_force(scene, input.simulation.system(), vector(new, direction))));
     }
     let field = NumberField {
         label: "Direction",
@@ -85,8 +62,8 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
         whole: false,
     };
     if let Some(new) = field.show(ui, &mut state.messages, shown_degrees(direction)) {
-        state.force_direction = Some(new);
-        actions.push(Action::Edit("Direction", with_force(scene, vector(magnitude, new))));
+        state.keep_force_direction(new);
+        actions.push(Action::Edit("Direction", with_force(scene, input.simulation.system(), vector(magnitude, new))));
     }
 }
 
@@ -121,7 +98,7 @@ pub(super) fn gravity_and_moment(
     let largest = 10f64.powf(circle.clamp(1e-6, 1e14).log10().ceil());
     let field = NumberField {
         label: "Moment",
-        tooltip: "Moment on the right edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
+        tooltip: "Moment on an edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
         limit: limits::MOMENT,
         slider: -largest..=largest,
         logarithmic: Some(1e-4 * largest),
@@ -135,7 +112,14 @@ pub(super) fn gravity_and_moment(
         });
         match first {
             Some(moment) => *moment = new,
-            None => scene.loads.push(Load::moment("right", new)),
+            None => match edges::edge_for_moment(&scene, input.simulation.system()) {
+                Some(edge) => scene.loads.push(Load::moment(&edge, new)),
+                None => {
+                    let message = "expected a straight edge that is not held, there is none";
+                    state.messages.insert("Moment", message.to_owned());
+                    return;
+                }
+            },
         }
         actions.push(Action::Edit("Moment", scene));
     }
@@ -146,8 +130,8 @@ fn shown_degrees(degrees: f64) -> f64 {
     (degrees * 1e9).round() / 1e9
 }
 
-/// The scene with its first force replaced, or with one on the right edge.
-fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
+/// The scene with its first force replaced, or with one on an edge that can carry it.
+fn with_force(scene: &Scene, system: &System, new: [f64; 2]) -> Box<Scene> {
     let mut scene = Box::new(scene.clone());
     let first = scene.loads.iter_mut().find_map(|l| match l {
         Load::Force { force, .. } => Some(force),
@@ -155,7 +139,10 @@ fn with_force(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
     });
     match first {
         Some(force) => *force = new,
-        None => scene.loads.push(Load::force("right", new)),
+        None => {
+            let edge = edges::edge_for_force(&scene, system).unwrap_or_else(|| "right".to_owned());
+            scene.loads.push(Load::force(edge.as_str(), new));
+        }
     }
     scene
 }
@@ -171,20 +158,4 @@ fn with_gravity(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
         None => scene.loads.push(Load::gravity(new)),
     }
     scene
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vectors_go_to_polar_form_and_back() {
-        for v in [[3.0, -4.0], [0.0, -40_000.0], [-2.0, 0.0], [1e-3, 1e3]] {
-            let (magnitude, direction) = polar_form(v);
-            let back = vector(magnitude, direction.unwrap());
-            assert!((back[0] - v[0]).hypot(back[1] - v[1]) < 1e-12 * magnitude, "{v:?} {back:?}");
-        }
-        assert_eq!(vector(5.0, -90.0), [0.0, -5.0]);
-        assert_eq!(polar_form([0.0, 0.0]), (0.0, None));
-    }
 }

@@ -6,9 +6,11 @@ use egui::scroll_area::ScrollBarVisibility;
 use egui::{Align2, ComboBox, FontId, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::action::{Action, ViewOptions};
+use super::arrow::DOWN;
 use super::field::{Messages, NumberField, show_message};
 use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
+use super::quality::Quality;
 use super::toolbar::choice;
 use super::verdict::Errors;
 use crate::method::METHODS;
@@ -18,6 +20,7 @@ use crate::study::{Jump, Reference};
 use crate::timings::Timings;
 
 mod body;
+mod edges;
 mod loads;
 mod motion;
 mod result;
@@ -42,10 +45,14 @@ pub(super) struct PanelInput<'a> {
     pub timings: &'a Timings,
     /// The residual after every iteration since the last change.
     pub residuals: &'a [f64],
+    pub can_undo: bool,
+    pub can_redo: bool,
     /// What errors are measured against, once it is known.
     pub truth: Option<&'a Reference>,
     /// Where the body jumps on its way from rest, once it is known.
     pub jump: Option<&'a Jump>,
+    /// How far the result is to be trusted.
+    pub quality: &'a Quality,
     pub adapter: &'a str,
 }
 
@@ -63,6 +70,16 @@ impl PanelState {
     pub(super) fn clear(&mut self) {
         *self = Self::default();
     }
+
+    /// Direction of a force of zero, degrees.
+    pub(super) fn force_direction(&self) -> f64 {
+        self.force_direction.unwrap_or(DOWN)
+    }
+
+    /// Keeps the direction of a force that may become zero, degrees.
+    pub(super) fn keep_force_direction(&mut self, degrees: f64) {
+        self.force_direction = Some(degrees);
+    }
 }
 
 /// Shows the panel's contents.
@@ -75,6 +92,8 @@ pub(super) fn show(
     actions: &mut Vec<Action>,
 ) {
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
+    // Said anew by what the pointer is on.
+    view.edge = None;
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
     scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
         let palette = Palette::new(ui.visuals());
@@ -91,6 +110,8 @@ pub(super) fn show(
         }
         let summary = loads::summary(input.scene);
         fold(ui, "Gravity, moment", &summary, false, |ui| loads::gravity_and_moment(ui, input, state, actions));
+        let summary = edges::summary(input.scene);
+        fold(ui, "Edges", &summary, false, |ui| edges::show(ui, input, state, view, actions));
         if let Some(support) = supports::chosen(ui, input) {
             let summary = supports::summary(input.scene, support);
             fold(ui, "Moved support", &summary, true, |ui| supports::show(ui, input, support, state, actions));
@@ -101,7 +122,7 @@ pub(super) fn show(
         fold(ui, "Mesh", &summary, false, |ui| body::mesh(ui, input, state, actions));
         let summary = view::summary(view, input.scene);
         fold(ui, "View", &summary, false, |ui| view::options(ui, input, state, view, actions));
-        fold(ui, "Keep", "picture, movie, scene", false, |ui| view::keep(ui, actions));
+        fold(ui, "File", "open, save, picture, movie", false, |ui| view::keep(ui, actions));
         fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
     });
 }

@@ -3,10 +3,10 @@
 use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, number_row, picker};
-use crate::app::field::{NumberField, round_to_slider, show_message};
+use crate::app::field::{NumberField, show_message};
 use crate::dynamics::INTEGRATORS;
 use crate::scene::{Scene, limits};
-use crate::words::engineering;
+use crate::words::{engineering, three_digits};
 
 /// Speeds that can be chosen, with their words.
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
@@ -119,7 +119,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             ui.horizontal_wrapped(|ui| {
                 ui.colored_label(ui.visuals().error_fg_color, words);
                 if ui.button("Use 0.9 of it").clicked() {
-                    actions.push(set(round_to_slider(0.9 * critical)));
+                    actions.push(set(three_digits(0.9 * critical)));
                 }
             });
         } else {

@@ -7,8 +7,8 @@ use crate::app::headline::UNKNOWN;
 use crate::app::palette::Palette;
 use crate::app::verdict::{Errors, rho, sentence, stability};
 use crate::method::rho_words;
-use crate::simulation::{Motion, Simulation, energy};
-use crate::words::{count, engineering, engineering_pair, percent};
+use crate::simulation::{Motion, Simulation, Status, energy};
+use crate::words::{count, engineering, engineering_pair, percent, three_digits};
 
 /// Room for what a row is, points.
 const NAME_WIDTH: f32 = 84.0;
@@ -56,6 +56,7 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
         |(error, truth)| format!("{} of {}", percent(error), engineering(truth.first().displacement.norm(), "m")),
     );
     row("Error", words, &format!("Distance of the first probe from {truth}, over its displacement"));
+    quality_rows(row, input);
     let (factor, steps) = simulation.load_stepping();
     row("Load steps", format!("{steps}, at {:.3} % of the load", 100.0 * factor), "Parts in which the load is put on");
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
@@ -85,7 +86,7 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
 type Row<'a> = dyn FnMut(&str, String, &str) + 'a;
 
 fn time(duration: std::time::Duration) -> String {
-    engineering(format!("{:.2e}", duration.as_secs_f64()).parse().unwrap_or(0.0), "s")
+    engineering(three_digits(duration.as_secs_f64()), "s")
 }
 
 fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
@@ -93,6 +94,26 @@ fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
         let u = probe.mean(simulation.displacement());
         row(&format!("{} x, y", probe.name), engineering_pair(u.into(), "m"), "Displacement of the probe");
     }
+}
+
+/// What the mesh does wrong, and how far the material is strained.
+fn quality_rows(row: &mut Row<'_>, input: &PanelInput<'_>) {
+    let known = *input.simulation.status() == Status::Converged;
+    let quality = input.quality;
+    let error = quality.mesh_error_percent.filter(|_| known);
+    let words = error.map_or_else(|| UNKNOWN.to_owned(), |error| format!("{} (estimate)", percent(error)));
+    let tip = "Of the mesh alone, in the energy norm: the elements' stresses against those recovered at the nodes";
+    row("Mesh error", words, tip);
+    let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
+    let warning = quality.warning().filter(|_| known);
+    let words = match (known, &warning) {
+        (false, _) => UNKNOWN.to_owned(),
+        (true, None) => strain,
+        (true, Some(_)) => format!("{strain}: too large"),
+    };
+    let tip =
+        "The largest principal strain".to_owned() + &warning.map_or_else(String::new, |words| format!("; {words}"));
+    row("Strain", words, &tip);
 }
 
 fn frame_row(row: &mut Row<'_>, input: &PanelInput<'_>, what: &str) {

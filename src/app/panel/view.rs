@@ -6,6 +6,7 @@ use super::{Action, PanelInput, PanelState, ViewOptions};
 use crate::app::field::NumberField;
 use crate::scene::{Analysis, Scene, limits};
 use crate::simulation::{Field, Simulation};
+use crate::stress::RecoveryScratch;
 
 pub(super) fn options(
     ui: &mut Ui,
@@ -35,12 +36,12 @@ pub(super) fn options(
         .on_hover_text("Keep the ends of the colour map; else they follow the values")
         .changed()
     {
-        view.fixed_range = fixed.then(|| value_range(input.simulation, view.field));
+        view.fixed_range = fixed.then(|| value_range(input.simulation, view.field, view.raw));
     }
     if let Some(range) = view.fixed_range {
         let span = limits::Limit { unit: view.field.unit(), min: -1e30, max: 1e30 };
         // What the body has now, and as much again: the scale stays where it is while an end of it is dragged.
-        let [low, high] = value_range(input.simulation, view.field);
+        let [low, high] = value_range(input.simulation, view.field, view.raw);
         let span_now = high - low;
         let slider = low - 0.5 * span_now..=high + 0.5 * span_now;
         for (end, label) in ["Lowest", "Highest"].into_iter().enumerate() {
@@ -64,6 +65,8 @@ pub(super) fn options(
         }
     }
     ui.horizontal_wrapped(|ui| {
+        let tip = "Values as each element has them, not recovered at the nodes: they jump where the mesh is coarse";
+        ui.checkbox(&mut view.raw, "Raw").on_hover_text(tip);
         ui.checkbox(&mut view.wireframe, "Wireframe").on_hover_text("Element edges (W)");
         ui.checkbox(&mut view.rest_outline, "Rest").on_hover_text("Outline of the body at rest (O)");
         if input.scene.analysis == Analysis::Dynamic {
@@ -97,6 +100,9 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
 pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for (name, tip, action) in [
+            ("Open…", "Open a scene file; dropping one on the window does too (Ctrl+O)", Action::OpenFile),
+            ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
+            ("Save as…", "Save the scene to another file (Ctrl+Shift+S)", Action::SaveAs),
             ("Screenshot", "Save this picture as a PNG file here (S)", Action::Screenshot),
             ("Record", "Record the scene from its start as a GIF here; again: stop (V)", Action::Record),
             ("Copy scene", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
@@ -109,9 +115,13 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
 }
 
 /// The smallest and the largest value of a field; never empty.
-fn value_range(simulation: &Simulation, field: Field) -> [f64; 2] {
+fn value_range(simulation: &Simulation, field: Field, raw: bool) -> [f64; 2] {
     let mut values = Vec::new();
-    simulation.field(field, &mut values);
+    if raw {
+        simulation.field(field, &mut values);
+    } else {
+        simulation.smooth_field(field, (&mut None, &mut RecoveryScratch::default()), &mut values);
+    }
     range_of(&values)
 }
 

@@ -17,6 +17,7 @@ use crate::render::{Gpu, RenderError};
 use crate::scene::{Analysis, Scene, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
+use crate::stress::RecoveryScratch;
 
 mod colors;
 mod film;
@@ -346,7 +347,7 @@ impl Preview {
             if moves {
                 // What explodes neither shrinks the body to a dot nor takes all colours.
                 if preview.include(low, high, largest) {
-                    simulation.field(Field::default(), &mut values);
+                    smooth_values(&simulation, &mut values);
                     values.append(&mut extremes);
                     let finite = values.iter().flatten().copied();
                     extremes = vec![finite.clone().reduce(f64::min), finite.reduce(f64::max)];
@@ -373,7 +374,7 @@ impl Preview {
             for (low, high) in way {
                 preview.include(low, high, largest);
             }
-            simulation.field(Field::default(), &mut values);
+            smooth_values(&simulation, &mut values);
             preview.range = range_of(&values);
         }
         Some(preview)
@@ -396,6 +397,11 @@ fn bounds(simulation: &Simulation) -> (Vector2<f64>, Vector2<f64>) {
     let nodes = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
     let none = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
     nodes.fold(none, |(low, high), p| (low.inf(&p), high.sup(&p)))
+}
+
+/// The values that colour the body.
+fn smooth_values(simulation: &Simulation, values: &mut Vec<Option<f64>>) {
+    simulation.smooth_field(Field::default(), (&mut None, &mut RecoveryScratch::default()), values);
 }
 
 #[cfg(test)]
@@ -450,7 +456,7 @@ mod tests {
                 // On the way to an equilibrium an iteration may leave the picture; the end is in it.
                 let shown = moves || *simulation.status() == Status::Converged;
                 assert!(!shown || low >= preview.low && high <= preview.high, "{id}, picture {k}");
-                simulation.field(Field::default(), &mut values);
+                smooth_values(simulation, &mut values);
                 let [low, high] = range_of(&values);
                 // A body at rest has a range of its own.
                 let strained = values.iter().flatten().any(|v| *v > 0.0);

@@ -1,0 +1,254 @@
+//! Stress and strain at a point, by either definition; and fields of them, recovered at the nodes.
+//!
+//! The method computes the strain ε = S − I of the element turned back, F = R S, and the **Biot stress** T = 2 μ ε + λ tr(ε) I
+//! in that frame. Other codes and handbooks mean the **Cauchy stress**, the force on the deformed area in the frame of
+//! space:
+//!
+//! σ = J⁻¹ P Fᵀ = J⁻¹ R T S Rᵀ,
+//!
+//! as the corotated energy's first Piola–Kirchhoff stress is P = R T. J is the ratio of volumes: det S in plane strain; in
+//! plane stress det S (1 + ε₃₃), as the sheet thins by ε₃₃ = −ν/(1 − ν) tr ε. T and S have the same principal axes, so σ is
+//! symmetric. Linear theory does not tell the two stresses apart: there σ is T.
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::assembly::{Kinematics, Problem};
+use crate::rotation::{Rotation, polar_or};
+use crate::scene::{Material, Plane};
+use crate::state::State;
+
+mod error;
+
+pub use error::MeshError;
+
+/// A symmetric tensor of second order without shear out of the plane: stress (Pa) or strain.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlaneTensor {
+    /// The components in the plane.
+    pub plane: Matrix2<f64>,
+    /// The normal component out of the plane.
+    pub zz: f64,
+}
+
+impl PlaneTensor {
+    /// xx, yy, zz, xy.
+    #[must_use]
+    pub fn components(&self) -> [f64; 4] {
+        [self.plane.m11, self.plane.m22, self.zz, self.plane.m12]
+    }
+
+    /// Nine components, row by row.
+    #[must_use]
+    pub fn rows(&self) -> [f64; 9] {
+        [self.plane.m11, self.plane.m12, 0.0, self.plane.m12, self.plane.m22, 0.0, 0.0, 0.0, self.zz]
+    }
+
+    /// The von Mises stress √(3/2 s:s) of a stress with deviator s, Pa.
+    #[must_use]
+    pub fn von_mises(&self) -> f64 {
+        let [x, y, z, xy] = self.components();
+        let (a, b, c) = (x - y, y - z, z - x);
+        // Scaled, so that squares of very large or small stresses stay in range.
+        let scale = a.abs().max(b.abs()).max(c.abs()).max(xy.abs());
+        if scale == 0.0 {
+            return 0.0;
+        }
+        let [a, b, c, d] = [a, b, c, xy].map(|v| v / scale);
+        scale * (0.5 * (a * a + b * b + c * c) + 3.0 * d * d).sqrt()
+    }
+
+    /// Whether every component is finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.components().iter().all(|v| v.is_finite())
+    }
+}
+
+/// How the body is deformed at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Local {
+    /// ε = S − I in the plane, in the frame turned back; in linear theory the symmetric part of the displacement
+    /// gradient.
+    pub strain: Matrix2<f64>,
+    /// R; the identity in linear theory.
+    pub rotation: Rotation,
+}
+
+impl Local {
+    /// ε with its part out of the plane: −ν/(1 − ν) tr ε in plane stress, 0 in plane strain.
+    #[must_use]
+    pub fn strain(&self, material: &Material) -> PlaneTensor {
+        let zz = match material.plane {
+            Plane::Stress => -material.poisson / (1.0 - material.poisson) * self.strain.trace(),
+            Plane::Strain => 0.0,
+        };
+        PlaneTensor { plane: self.strain, zz }
+    }
+
+    /// The Biot stress T, Pa, in the frame turned back.
+    #[must_use]
+    pub fn biot(&self, material: &Material) -> PlaneTensor {
+        let plane = material.lame().stress(&self.strain);
+        PlaneTensor { plane, zz: material.out_of_plane_stress(plane.trace()) }
+    }
+
+    /// The Cauchy stress σ, Pa, in the frame of space; `None` where the body is crushed to nothing or turned inside out,
+    /// which no Cauchy stress belongs to, and where the arithmetic leaves the range of f64.
+    #[must_use]
+    pub fn cauchy(&self, material: &Material, kinematics: Kinematics) -> Option<PlaneTensor> {
+        let PlaneTensor { plane: t, zz } = self.biot(material);
+        let stress = match kinematics {
+            Kinematics::Linear => PlaneTensor { plane: t, zz },
+            Kinematics::Corotated => {
+                let s = Matrix2::identity() + self.strain;
+                let z = 1.0 + self.strain(material).zz;
+                let area = s.determinant();
+                let volume = area * z;
+                if !(area > 0.0 && z > 0.0 && volume > 0.0) {
+                    return None;
+                }
+                let r = self.rotation.matrix();
+                let turned = r * (t * s) * r.transpose() / volume;
+                // Symmetric but for rounding.
+                let xy = 0.5 * (turned.m12 + turned.m21);
+                PlaneTensor { plane: Matrix2::new(turned.m11, xy, xy, turned.m22), zz: zz * z / volume }
+            }
+        };
+        stress.is_finite().then_some(stress)
+    }
+}
+
+/// Strain beyond which the linear law between T and ε is stretched beyond its use.
+pub const LAW_HOLDS: f64 = 0.1;
+
+/// What is to be said of a strain beyond [`LAW_HOLDS`].
+#[must_use]
+pub fn strain_warning(max_strain: f64) -> Option<String> {
+    let percent = 100.0 * max_strain;
+    (percent.is_finite() && max_strain > LAW_HOLDS).then(|| {
+        let most = 100.0 * LAW_HOLDS;
+        format!(
+            "strains reach {percent:.0} %: beyond {most} % the linear law between stress and strain is no material's"
+        )
+    })
+}
+
+/// Calls `visit` with every quadrature point's number and what is there.
+pub fn visit_points(problem: &Problem, state: &State, kinematics: Kinematics, visit: &mut dyn FnMut(usize, Local)) {
+    let elements = problem.system().elements();
+    let (u, r) = (state.displacement(), state.rotations());
+    elements.visit_strains(problem.material().lame(), u, r, &mut |q, h, strain| {
+        let rotation = match kinematics {
+            Kinematics::Linear => Rotation::IDENTITY,
+            // Where the polar factor is undefined the state has the one before.
+            Kinematics::Corotated => polar_or(&(Matrix2::identity() + h), r[elements.rotation_of(q)]),
+        };
+        visit(q, Local { strain: *strain, rotation });
+    });
+}
+
+/// Stress and strain of a state at the nodes of its mesh; see [`crate::mesh::Recovery`].
+///
+/// Recovered are the components of ε and of R, which are smooth where the body is; the stresses are those of the
+/// recovered ε and R. So every number here belongs to one deformation.
+#[derive(Clone, Debug)]
+pub struct NodalStress {
+    material: Material,
+    kinematics: Kinematics,
+    nodes: Vec<Local>,
+}
+
+/// Room to recover in, kept from state to state.
+#[derive(Debug, Default)]
+pub struct RecoveryScratch {
+    at_points: Vec<[f64; 5]>,
+    nodal: Vec<[f64; 5]>,
+}
+
+impl NodalStress {
+    /// Of a state, as its method sees it.
+    #[must_use]
+    pub fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
+        let mut result = Self::empty(*problem.material());
+        result.follow(problem, state, kinematics, &mut RecoveryScratch::default());
+        result
+    }
+
+    /// Of no node yet.
+    #[must_use]
+    pub(crate) fn empty(material: Material) -> Self {
+        Self { material, kinematics: Kinematics::Corotated, nodes: Vec::new() }
+    }
+
+    /// Becomes that of another state, without allocating where the mesh is the same.
+    pub fn follow(
+        &mut self,
+        problem: &Problem,
+        state: &State,
+        kinematics: Kinematics,
+        RecoveryScratch { at_points, nodal }: &mut RecoveryScratch,
+    ) {
+        (self.material, self.kinematics) = (*problem.material(), kinematics);
+        at_points.clear();
+        visit_points(problem, state, kinematics, &mut |_, Local { strain, rotation }| {
+            at_points.push([strain.m11, strain.m22, strain.m12, rotation.c, rotation.s]);
+        });
+        problem.system().recovery().recover(at_points, nodal);
+        self.nodes.clear();
+        self.nodes.extend(nodal.iter().map(|&[xx, yy, xy, c, s]| {
+            let length = c.hypot(s);
+            let rotation = if length > 0.0 && length.is_finite() {
+                Rotation { c: c / length, s: s / length }
+            } else {
+                Rotation::IDENTITY
+            };
+            Local { strain: Matrix2::new(xx, xy, xy, yy), rotation }
+        }));
+    }
+
+    /// What is at every node.
+    #[must_use]
+    pub fn nodes(&self) -> &[Local] {
+        &self.nodes
+    }
+
+    /// The material that the stresses are of.
+    #[must_use]
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// How the state is seen.
+    #[must_use]
+    pub fn kinematics(&self) -> Kinematics {
+        self.kinematics
+    }
+
+    /// The Cauchy stress at every node, Pa.
+    pub fn cauchy(&self) -> impl ExactSizeIterator<Item = Option<PlaneTensor>> + '_ {
+        self.nodes.iter().map(|local| local.cauchy(&self.material, self.kinematics))
+    }
+
+    /// The node with the largest von Mises (Cauchy) stress, and that, Pa.
+    #[must_use]
+    pub fn largest_von_mises(&self) -> Option<(u32, f64)> {
+        let values = (0..).zip(self.cauchy()).filter_map(|(node, stress)| Some((node, stress?.von_mises())));
+        values.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+    }
+
+    /// The mean over weighted nodes, weights that sum to 1: stress and strain of the mean deformation and rotation there.
+    #[must_use]
+    pub fn mean(&self, weights: &[(u32, f64)]) -> Local {
+        let (mut strain, mut turn) = (Matrix2::zeros(), Vector2::zeros());
+        for &(node, weight) in weights {
+            if let Some(local) = self.nodes.get(node as usize) {
+                strain += local.strain * weight;
+                turn += Vector2::new(local.rotation.c, local.rotation.s) * weight;
+            }
+        }
+        let length = turn.norm();
+        let rotation =
+            if length > 0.0 { Rotation { c: turn.x / length, s: turn.y / length } } else { Rotation::IDENTITY };
+        Local { strain, rotation }
+    }
+}

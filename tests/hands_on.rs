@@ -1,0 +1,519 @@
+//! The pointer on the body, its loads and its values, and what edits go through, without a display or a GPU.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use common::{scene, solve_json};
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use nalgebra::Vector2;
+use warpbeam::app::Lab;
+use warpbeam::scene::{Load, Source};
+use warpbeam::simulation::{Simulation, Status};
+
+/// Time between frames, s: two clicks within some of them are a double click.
+const STEP: f32 = 0.05;
+
+fn harness(id: &str) -> Harness<'static, Lab> {
+    let scene = scene(id);
+    let simulation = Simulation::new(&scene).unwrap();
+    let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
+    let mut harness =
+        Harness::builder().with_size([1280.0, 800.0]).with_max_steps(2000).with_step_dt(STEP).build_ui_state(
+            |ui, lab: &mut Lab| {
+                lab.advance(ui.input(|i| i.time));
+                lab.ui(ui);
+            },
+            lab,
+        );
+    harness.run();
+    harness
+}
+
+fn force(lab: &Lab) -> [f64; 2] {
+    let forces =
+        lab.scene().loads.iter().filter_map(|l| if let Load::Force { force, .. } = l { Some(*force) } else { None });
+    forces.into_iter().next().unwrap()
+}
+
+fn tip(lab: &Lab) -> Pos2 {
+    lab.arrow_tips()[0].1
+}
+
+/// Where a point of the plane is in the window.
+fn in_window(lab: &Lab, place: Vector2<f64>) -> Pos2 {
+    let [x, y] = lab.camera().to_view(place);
+    lab.view_rect().center() + vec2(x as f32, y as f32)
+}
+
+/// Where a material point of the body is in the window.
+fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
+    let mesh = lab.simulation().system().mesh();
+    let weights = mesh.weights(mesh.locate(at).unwrap()).unwrap();
+    let u = lab.simulation().displacement();
+    in_window(lab, weights.iter().map(|&(n, w)| (mesh.nodes()[n as usize] + u[n as usize]) * w).sum())
+}
+
+/// Drags from one place to another, by way of some between, and lets go.
+fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2, modifiers: Modifiers) {
+    let button = |pos, pressed| Event::PointerButton { pos, button: egui::PointerButton::Primary, pressed, modifiers };
+    harness.hover_at(from);
+    harness.run();
+    harness.event(Event::ModifiersChanged(modifiers));
+    harness.event(button(from, true));
+    harness.step();
+    for i in 1..=4 {
+        harness.hover_at(from + (to - from) * (i as f32 / 4.0));
+        harness.step();
+    }
+    harness.event(button(to, false));
+    harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.run();
+}
+
+/// The number in the field of this label.
+fn shown(harness: &Harness<'_, Lab>, label: &str) -> String {
+    harness.get_by_role_and_label(Role::SpinButton, label).accesskit_node().value().unwrap_or_default()
+}
+
+/// The dragged tip sets force and direction; arrow, sliders and `solve` agree.
+#[test]
+fn dragging_the_tip_of_the_arrow_sets_the_force() {
+    let mut harness = harness("cantilever");
+    let camera = harness.state().camera();
+    let before = tip(harness.state());
+    let start = on_body(harness.state(), Vector2::new(10.0, 0.0));
+    let target = before + vec2(-30.0, -12.0);
+    drag(&mut harness, before, target, Modifiers::NONE);
+    let lab = harness.state();
+    let [fx, fy] = force(lab);
+    let way = target - start;
+    let wanted = f64::from(-way.y).atan2(f64::from(way.x)).to_degrees();
+    let direction = fy.atan2(fx).to_degrees();
+    assert!((direction - wanted).abs() < 0.6, "the arrow points to {wanted}°, the force to {direction}°");
+    assert!(fx.hypot(fy) < 0.9 * 1000.0, "a shorter arrow is a smaller force: {fx} {fy}");
+    assert_eq!(*lab.simulation().status(), Status::Converged);
+    let direction_shown = shown(&harness, "Direction");
+    assert!(direction_shown.starts_with(&format!("{direction:.0}")), "{direction_shown} {direction}");
+    let json = solve_json(&["cantilever", "--set", &format!("load.0.force=[{fx},{fy}]")]);
+    let solved = [0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap());
+    let u = lab.simulation().solution().probes[0].u;
+    assert!((u - Vector2::from(solved)).norm() < 1e-5 * u.norm(), "{u} {solved:?}");
+    // The arrow is as long as it was dragged, wherever the body has gone.
+    let length = (tip(lab) - on_body(lab, Vector2::new(10.0, 0.0))).length();
+    assert!((length - way.length()).abs() < 1.5, "{length} {}", way.length());
+    assert_ne!(lab.camera(), camera, "the view did not follow the body afterwards");
+}
+
+/// What is taken is what was pressed, also where the pointer has moved on before the next frame.
+#[test]
+fn a_press_takes_what_was_under_it_however_late_the_frame() {
+    let mut harness = harness("cantilever");
+    let (camera, pos) = (harness.state().camera(), tip(harness.state()));
+    harness.hover_at(pos);
+    harness.run();
+    let button =
+        Event::PointerButton { pos, button: egui::PointerButton::Primary, pressed: true, modifiers: Modifiers::NONE };
+    harness.input_mut().events.extend([button, Event::PointerMoved(pos + vec2(-60.0, -45.0))]);
+    harness.step();
+    harness.step();
+    assert_eq!(harness.state().camera(), camera, "the view was taken in the place of the tip");
+    assert!(force(harness.state())[0] < 0.0, "{:?}", force(harness.state()));
+    harness.drop_at(pos + vec2(-60.0, -45.0));
+    harness.run();
+}
+
+/// With Shift the direction is a multiple of 15°; dragged onto its foot the arrow is no force, and can be dragged out.
+#[test]
+fn shift_snaps_the_direction_and_a_force_can_be_dragged_away_and_back() {
+    let mut harness = harness("cantilever");
+    let before = tip(harness.state());
+    drag(&mut harness, before, before + vec2(31.0, 4.0), Modifiers::SHIFT);
+    let [fx, fy] = force(harness.state());
+    let direction = fy.atan2(fx).to_degrees();
+    assert!((direction / 15.0 - (direction / 15.0).round()).abs() < 1e-9 && direction != -90.0, "{direction}");
+    let (from, to) = (tip(harness.state()), on_body(harness.state(), Vector2::new(10.0, 0.0)));
+    drag(&mut harness, from, to, Modifiers::NONE);
+    assert_eq!(force(harness.state()), [0.0, 0.0]);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    let stub = tip(harness.state());
+    drag(&mut harness, stub, stub + vec2(0.0, -90.0), Modifiers::NONE);
+    assert!(force(harness.state())[1] > 0.0, "{:?}", force(harness.state()));
+}
+
+/// A press takes one thing: the tip before the body it lies over, the body before the space around it.
+#[test]
+fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
+    let mut harness = harness("article");
+    // An arrow along the beam, its tip over the body.
+    let mut inwards = harness.state().scene().clone();
+    inwards.set_force(0, [-20_000.0, 0.0]).unwrap();
+    harness.state_mut().set_scene(inwards).unwrap();
+    harness.run();
+    let (camera, tip) = (harness.state().camera(), tip(harness.state()));
+    harness.hover_at(tip);
+    harness.run();
+    assert_eq!(harness.output().platform_output.cursor_icon, egui::CursorIcon::Move);
+    let before = force(harness.state());
+    harness.drag_at(tip);
+    harness.step();
+    harness.hover_at(tip + vec2(-25.0, 0.0));
+    harness.step();
+    assert!(harness.state().simulation().hand().is_none(), "the body was taken with the tip");
+    assert_ne!(force(harness.state()), before);
+    assert_eq!(harness.state().camera(), camera, "the view moved with the tip");
+    harness.drop_at(tip + vec2(-25.0, 0.0));
+    harness.run();
+    let (before, camera) = (force(harness.state()), harness.state().camera());
+    let body = on_body(harness.state(), Vector2::new(1.0, 0.0));
+    harness.hover_at(body);
+    harness.run();
+    assert_eq!(harness.output().platform_output.cursor_icon, egui::CursorIcon::Grab);
+    harness.drag_at(body);
+    harness.step();
+    harness.hover_at(body + vec2(0.0, 60.0));
+    harness.step();
+    assert!(harness.state().simulation().hand().is_some());
+    assert_eq!((force(harness.state()), harness.state().camera()), (before, camera));
+    harness.drop_at(body + vec2(0.0, 60.0));
+    harness.run();
+    let space = harness.state().view_rect().center() + vec2(0.0, 290.0);
+    let camera = harness.state().camera();
+    drag(&mut harness, space, space + vec2(50.0, -30.0), Modifiers::NONE);
+    assert_eq!(force(harness.state()), before);
+    let moved = camera.to_world([0.0, 0.0]) - harness.state().camera().to_world([50.0, -30.0]);
+    assert!(moved.norm() < 1e-2 / camera.scale.min(1.0), "the view did not follow the pointer: {moved}");
+}
+
+fn key(harness: &mut Harness<'_, Lab>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run();
+}
+
+const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// A drag is one step, whatever it passed through; steps are undone and done again in order.
+#[test]
+fn edits_are_undone_and_done_again() {
+    let mut harness = harness("cantilever");
+    assert!(!harness.state().can_undo() && !harness.state().can_redo());
+    let start = harness.state().scene().clone();
+    let tip_now = tip(harness.state());
+    drag(&mut harness, tip_now, tip_now + vec2(-30.0, -12.0), Modifiers::NONE);
+    let dragged = force(harness.state());
+    let slider = harness.get_by_role_and_label(Role::Slider, "Poisson ν").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    drag(&mut harness, at(0.3), at(0.6), Modifiers::NONE);
+    let poisson = harness.state().scene().material.poisson;
+    assert_ne!(poisson, start.material.poisson);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.state().scene().material.poisson, start.material.poisson);
+    assert_eq!(force(harness.state()), dragged);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), start);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    assert!(!harness.state().can_undo() && harness.state().can_redo());
+    key(&mut harness, Modifiers::COMMAND, Key::Y);
+    key(&mut harness, COMMAND_SHIFT, Key::Z);
+    assert_eq!((force(harness.state()), harness.state().scene().material.poisson), (dragged, poisson));
+    assert!(!harness.state().can_redo());
+    // Another scene is a step too; what it was opened over comes back with its edits.
+    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
+    harness.run();
+    harness.get_by_label("bridge").click();
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Bridge");
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!((force(harness.state()), harness.state().scene().material.poisson), (dragged, poisson));
+    assert!(harness.state().title().contains("Cantilever*"), "{}", harness.state().title());
+    let json = solve_json(&[
+        "cantilever",
+        "--set",
+        &format!("load.0.force={dragged:?}"),
+        "--set",
+        &format!("material.poisson={poisson}"),
+    ]);
+    let u = harness.state().simulation().solution().probes[0].u;
+    assert!((u.y - json["probes"][0]["u"][1].as_f64().unwrap()).abs() < 1e-5 * u.norm());
+}
+
+/// A double click on the tip brings the scene's own force back, and does not fit the view.
+#[test]
+fn a_double_click_on_the_tip_resets_the_force() {
+    let mut harness = harness("cantilever");
+    let before = force(harness.state());
+    let from = tip(harness.state());
+    drag(&mut harness, from, from + vec2(-30.0, -12.0), Modifiers::NONE);
+    assert_ne!(force(harness.state()), before);
+    let from = tip(harness.state());
+    harness.hover_at(from);
+    for _ in 0..2 {
+        harness.drag_at(from);
+        harness.step();
+        harness.drop_at(from);
+        harness.step();
+    }
+    harness.run();
+    assert_eq!(force(harness.state()), before);
+}
+
+/// Resting on the body shows the field there; a click keeps the numbers of the point, another one on them lets them go.
+#[test]
+fn the_body_says_its_values_and_a_click_keeps_them() {
+    let mut harness = harness("article");
+    let at = Vector2::new(2.2, 0.3);
+    let pos = on_body(harness.state(), at);
+    harness.hover_at(pos);
+    harness.run();
+    assert!(harness.state().probed().is_none());
+    let click = |harness: &mut Harness<'_, Lab>, pos: Pos2| {
+        harness.hover_at(pos);
+        harness.run();
+        harness.drag_at(pos);
+        harness.step();
+        harness.drop_at(pos);
+        harness.run();
+    };
+    let before = harness.state().simulation().displacement().to_vec();
+    click(&mut harness, pos);
+    let lab = harness.state();
+    let away = lab.simulation().displacement().iter().zip(&before).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(away < 1e-6, "a click has moved the body by {away} m");
+    let point = lab.simulation().point_state(lab.probed().expect("a kept point")).unwrap();
+    assert!((point.rest - at).norm() < 0.02, "{}", point.rest);
+    let texts: Vec<String> = harness
+        .get_all_by(|_| true)
+        .flat_map(|n| [n.accesskit_node().label(), n.accesskit_node().value()])
+        .flatten()
+        .collect();
+    for (what, number) in [("F", point.gradient.m11), ("R", point.rotation.c), ("S", point.stretch.m22)] {
+        let number = format!("{number:.4}");
+        assert!(texts.iter().any(|text| text.contains(&number)), "{what}: no {number} in {texts:?}");
+    }
+    // It follows the material point, not the place.
+    harness.state_mut().set_scene(scene("article")).unwrap();
+    harness.run();
+    assert!(harness.state().probed().is_some());
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.state().probed().is_none());
+    click(&mut harness, pos);
+    assert!(harness.state().probed().is_some());
+    let card = harness.get_by_label("Click or Escape closes it").rect().center();
+    click(&mut harness, card);
+    assert!(harness.state().probed().is_none(), "a click on the card does not close it");
+    // A quick click: pressed and released between two frames.
+    harness.hover_at(pos);
+    harness.run();
+    let button = |pressed| Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.input_mut().events.extend([button(true), button(false)]);
+    harness.run();
+    assert!(harness.state().probed().is_some(), "a quick click is missed");
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    // A dragged body keeps nothing.
+    let pos = on_body(harness.state(), at);
+    drag(&mut harness, pos, pos + vec2(0.0, 60.0), Modifiers::NONE);
+    assert!(harness.state().probed().is_none());
+}
+
+/// What does not converge may be anywhere: the view does not go after it.
+#[test]
+fn the_view_does_not_follow_what_has_not_converged() {
+    let mut harness = harness("cantilever");
+    let camera = harness.state().camera();
+    let mut heavy = harness.state().scene().clone();
+    heavy.set_force(0, [0.0, -9000.0]).unwrap();
+    harness.state_mut().set_scene(heavy).unwrap();
+    for _ in 0..20 {
+        harness.step();
+        let now = harness.state().camera();
+        assert!((now.scale / camera.scale - 1.0).abs() < 0.2, "{camera:?} {now:?}");
+    }
+    harness.run();
+    assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
+    let now = harness.state().camera();
+    assert!((now.scale / camera.scale - 1.0).abs() < 0.2, "{camera:?} {now:?}");
+}
+
+/// A view that eases is on its way for some frames, then it is where one that jumps is, and nothing is redrawn.
+#[test]
+fn the_view_eases_to_where_it_would_jump() {
+    let mut jumps = harness("elastica");
+    let mut eases = harness("elastica");
+    eases.state_mut().set_easing(true);
+    let before = eases.state().camera();
+    for harness in [&mut jumps, &mut eases] {
+        let mut light = harness.state().scene().clone();
+        light.set_force(0, [0.0, -30.0]).unwrap();
+        harness.state_mut().set_scene(light).unwrap();
+    }
+    jumps.run();
+    let goal = jumps.state().camera();
+    assert!((goal.scale / before.scale - 1.0).abs() > 0.05);
+    let mut between = 0;
+    for _ in 0..400 {
+        eases.step();
+        let now = eases.state().camera();
+        between += u32::from(now != before && now != goal);
+    }
+    assert!(between >= 1, "it jumps");
+    assert_eq!(eases.state().camera(), goal);
+}
+
+#[derive(Debug)]
+struct Dropped(std::path::PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// Files are opened by dropping them and by a dialog, saved to where they came from or elsewhere, and offered again when
+/// somebody else has written them.
+#[test]
+fn files_are_dropped_opened_saved_and_offered_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    let mut own = scene("shear");
+    own.name = "Mine".to_owned();
+    std::fs::write(&path, own.to_toml().unwrap()).unwrap();
+    let mut harness = harness("article");
+    harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path.clone())));
+    harness.run();
+    harness.input_mut().dropped_files.clear();
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Mine");
+    assert!(harness.state().can_undo());
+    // Edited and saved.
+    let from = tip(harness.state());
+    drag(&mut harness, from, from + vec2(-6.0, -6.0), Modifiers::NONE);
+    let edited = harness.state().scene().clone();
+    assert!(harness.state().title().starts_with("Mine*"));
+    key(&mut harness, Modifiers::COMMAND, Key::S);
+    assert!(harness.state().title().starts_with("Mine \u{2013}"), "{}", harness.state().title());
+    let read = |path: &std::path::Path| warpbeam::Scene::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap();
+    assert_eq!(read(&path), edited);
+    // Saved to another file by the dialog, which adds what the name lacks.
+    key(&mut harness, COMMAND_SHIFT, Key::S);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.event(Event::Text("other".to_owned()));
+    harness.step();
+    key(&mut harness, Modifiers::NONE, Key::Enter);
+    let other = folder.path().join("other.toml");
+    assert_eq!(read(&other), edited);
+    // Nobody else has written it: nothing is offered. Then somebody does.
+    harness.event(Event::WindowFocused(true));
+    harness.run();
+    assert!(harness.query_by_label("Reload").is_none());
+    own.name = "Theirs".to_owned();
+    std::fs::write(&other, own.to_toml().unwrap()).unwrap();
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(5);
+    std::fs::File::options().write(true).open(&other).unwrap().set_modified(later).unwrap();
+    harness.event(Event::WindowFocused(true));
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Mine");
+    harness.get_by_label("Reload").click();
+    harness.run();
+    assert_eq!(harness.state().scene().name, "Theirs");
+    assert!(harness.query_by_label("Reload").is_none());
+    // Opened by the dialog; what is no scene is refused there, and the dialog stays.
+    std::fs::write(folder.path().join("bad.toml"), "name = 3").unwrap();
+    for (name, scene) in [("bad.toml", "Theirs"), ("mine.toml", "Mine")] {
+        if harness.query_by_label("Open a scene").is_none() {
+            key(&mut harness, Modifiers::COMMAND, Key::O);
+        }
+        harness.get_by_role_and_label(Role::Button, name).click();
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, "Open").click();
+        harness.run();
+        assert_eq!(harness.state().scene().name, scene);
+        assert_eq!(harness.query_by_label("Open a scene").is_some(), name == "bad.toml");
+    }
+    // Only scene files are there: nothing was left beside them.
+    let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["bad.toml", "mine.toml", "other.toml"]);
+}
+
+/// What a user has set is as it was in another lab that takes the settings on.
+#[test]
+fn settings_go_from_one_lab_to_the_next() {
+    let mut first = harness("article");
+    for wanted in [Key::P, Key::Num4, Key::B, Key::T] {
+        key(&mut first, Modifiers::NONE, wanted);
+    }
+    let settings = first.state().settings(&first.ctx);
+    let mut second = harness("article");
+    assert_ne!(second.state().settings(&second.ctx), settings);
+    let ctx = second.ctx.clone();
+    second.state_mut().set_settings(&ctx, settings.clone());
+    second.run();
+    assert_eq!(second.state().settings(&second.ctx), settings);
+    assert!(second.query_by_role_and_label(Role::Slider, "Force").is_none());
+    assert_eq!(second.ctx.theme(), first.ctx.theme());
+}
+
+/// Types a number into the field of this label.
+fn type_into(harness: &mut Harness<'_, Lab>, label: &str, text: &str) {
+    harness.get_by_role_and_label(Role::SpinButton, label).click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.event(Event::Text(text.to_owned()));
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run();
+}
+
+/// A moment goes on an edge that can turn, whatever the edges are called, and moves the body there.
+#[test]
+fn a_moment_goes_on_an_edge_that_can_turn() {
+    for (id, moment, held) in [("bracket", "200", "wall"), ("cook", "1", "clamp"), ("bridge", "500", "right")] {
+        let mut harness = harness(id);
+        let before = harness.state().simulation().displacement().to_vec();
+        type_into(&mut harness, "Moment", moment);
+        let edge = harness.state().scene().loads.iter().find_map(|l| match l {
+            Load::Moment { edge, .. } => Some(edge.clone()),
+            _ => None,
+        });
+        let edge = edge.unwrap_or_else(|| unreachable!("{id}: no moment"));
+        assert_ne!(edge, held, "{id}: a held edge cannot turn");
+        let moved = harness.state().simulation().displacement().iter().zip(&before).map(|(a, b)| (a - b).norm());
+        assert!(moved.fold(0.0, f64::max) > 1e-6, "{id}: the moment on {edge} does nothing");
+    }
+}
+
+/// The edge of a load is picked from a list, and is shown in the view while the pointer is on its name.
+#[test]
+fn loads_and_supports_are_put_on_other_edges() {
+    let mut harness = harness("cantilever");
+    harness.get_by_label("Edges").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::ComboBox, "Force on").click();
+    harness.run();
+    assert!(harness.query_by_role_and_label(Role::Button, "left").is_none(), "a load on a held edge does nothing");
+    harness.get_by_role_and_label(Role::Button, "top").click();
+    harness.run();
+    assert_eq!(harness.state().scene().loads, [Load::force("top", force(harness.state()))]);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    harness.get_by_role_and_label(Role::ComboBox, "Held at").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "right").click();
+    harness.run();
+    assert_eq!(harness.state().scene().supports[0].place, "right".into());
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), scene("cantilever"));
+}
