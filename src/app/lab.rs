@@ -54,6 +54,8 @@ const HEADLINE_HEIGHT: f32 = 42.0;
 
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
+/// The same over a card, which leaves less of the view.
+const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 48.0, bottom: 84.0 };
 
 /// Height of what is shown under the body, points; at most a part of the window's.
 const DRAWER_HEIGHT: f32 = 270.0;
@@ -227,9 +229,14 @@ impl Lab {
 
     /// Shows a card of the mode Learn, which count from 1; the lab as it is comes back at the end of the mode.
     pub fn show_card(&mut self, number: usize) {
-        self.card = number.saturating_sub(1);
-        self.view.mode = Mode::Learn;
-        self.enter_or_leave();
+        let card = number.saturating_sub(1).min(learn::CARDS.len() - 1);
+        if self.learn.is_some() {
+            self.go_to_card(card);
+        } else {
+            self.card = card;
+            self.view.mode = Mode::Learn;
+            self.enter_or_leave();
+        }
     }
 
     /// The number of the card that is shown, from 1, and of how many; `None` in other modes.
@@ -701,7 +708,10 @@ impl Lab {
         // What cards remember is apart from what they show.
         let Some(mut learn) = self.learn.take() else { return };
         let shown = Shown { input: self.input(), study: self.budget.study(), progress: self.budget.progress() };
-        learn.show(ui, &shown, self.dialog.is_none() && !self.view.help, actions);
+        // What lies over the body has Escape first.
+        let sheet = self.view.narrow && self.view.sheet;
+        let keys = self.dialog.is_none() && !self.view.help && !sheet;
+        learn.show(ui, &shown, keys, actions);
         self.learn = Some(learn);
     }
 
@@ -741,6 +751,14 @@ impl Lab {
         }
     }
 
+    fn go_to_card(&mut self, card: usize) {
+        if let Some(learn) = &mut self.learn {
+            learn.go_to(card);
+            self.card = card;
+            self.set_card_up();
+        }
+    }
+
     /// Makes scene and view what the card wants.
     fn set_card_up(&mut self) {
         let Some(setup) = self.learn.as_ref().map(|learn| learn.card().setup) else { return };
@@ -761,6 +779,9 @@ impl Lab {
         self.running = setup.start != Start::Waiting;
         if setup.start != Start::Now {
             self.reset();
+            // The view follows what has converged; until then there is room for the beam to bend.
+            let (low, high) = self.simulation.system().mesh().bounds();
+            self.eye.follow([low - Vector2::new(0.0, 0.8 * (high.x - low.x)), high]);
         }
     }
 
@@ -1040,8 +1061,13 @@ impl Lab {
                 (low, high) = (ghost_low, ghost_high);
             }
         }
-        let margins = self.with_room_for_arrows(Camera::fit(low, high, view, FIT_MARGINS), view);
+        let margins = self.with_room_for_arrows(Camera::fit(low, high, view, self.margins()), view);
         Camera::fit(low, high, view, margins)
+    }
+
+    /// What is kept free around the body, whatever its loads.
+    fn margins(&self) -> Margins {
+        if self.learn.is_some() { CARD_MARGINS } else { FIT_MARGINS }
     }
 
     /// What is kept free around the body: also what the loads' arrows need beyond the view of this camera.
@@ -1050,13 +1076,14 @@ impl Lab {
         const BEYOND: f32 = 36.0;
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
-        self.forces().arrows(&projection).iter().fold(FIT_MARGINS, |margins, arrow| {
+        let least = self.margins();
+        self.forces().arrows(&projection).iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
             let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
             Margins {
-                sides: margins.sides.max(FIT_MARGINS.sides + beyond((-tip.x).max(tip.x - size.x))),
-                top: margins.top.max(FIT_MARGINS.top + beyond(-tip.y)),
-                bottom: margins.bottom.max(FIT_MARGINS.bottom + beyond(tip.y - size.y)),
+                sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x))),
+                top: margins.top.max(least.top + beyond(-tip.y)),
+                bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y)),
             }
         })
     }
@@ -1130,12 +1157,8 @@ impl Lab {
                 ctx.request_repaint();
             }
             Action::Card(card) => {
-                if let Some(learn) = &mut self.learn {
-                    learn.go_to(card);
-                    self.card = card;
-                    self.set_card_up();
-                    ctx.request_repaint();
-                }
+                self.go_to_card(card);
+                ctx.request_repaint();
             }
             Action::Color(field) => self.view.color_with(field),
             Action::ToggleTheme => {

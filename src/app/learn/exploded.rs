@@ -38,7 +38,7 @@ fn mean(points: &[Vector2<f64>]) -> Vector2<f64> {
 pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
     let mesh = view.simulation.system().mesh();
     let strength = learn.turned as f32;
-    if strength > 0.0 {
+    if strength > 0.0 && !view.is_fine() {
         for (element, nodes) in mesh.elements().enumerate() {
             let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.nodes()[n as usize]).collect();
             let corners = &rest[..mesh.entry().cell.corners.len().min(rest.len())];

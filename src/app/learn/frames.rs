@@ -10,11 +10,12 @@ use crate::app::palette::{BODY, Palette, SMALL};
 use crate::rotation::Rotation;
 
 /// A shorter axis than this, points, is not drawn: the mesh is too fine for it.
-const SHORTEST: f32 = 7.0;
+const SHORTEST: f32 = 5.0;
 
 /// Paints the axes of every element's frame.
 pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
-    for (element, rotation) in frames(view.simulation).into_iter().enumerate() {
+    let rotations = if view.is_fine() { Vec::new() } else { frames(view.simulation) };
+    for (element, rotation) in rotations.into_iter().enumerate() {
         let corners = view.corners(element);
         let Some(center) = middle(&corners) else { continue };
         let length = 0.62 * corners.iter().map(|c| (*c - center).length()).fold(f32::INFINITY, f32::min);

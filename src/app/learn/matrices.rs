@@ -14,6 +14,7 @@ use crate::words::{engineering, three_digits};
 /// Side of a small matrix, and of the large one, points.
 const SMALL_SIDE: f32 = 120.0;
 const LARGE_SIDE: f32 = 146.0;
+const GAP: f32 = 18.0;
 /// A body of more unknowns is not drawn as a matrix.
 const MOST_UNKNOWNS: usize = 96;
 
@@ -30,33 +31,36 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     let turned = stiffness.rkrt(rotation);
     let largest = stiffness.ke.amax().max(turned.amax());
     let local = |i: usize| name_of(triangle.unknowns()[i]);
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 16.0;
+    let room = ui.available_width() - 2.0 * GAP;
+    let scale = (room / (2.0 * SMALL_SIDE + LARGE_SIDE)).clamp(0.5, 1.0);
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
         for (markup, plain, matrix) in [("K_{e}", "Ke", &stiffness.ke), ("R K_{e} R^{T}", "R Ke RT", &turned)] {
             ui.vertical(|ui| {
                 ui.label(formula::set(markup, palette.text));
                 let words = format!("{plain} of triangle {}, 6 by 6", learn.picked + 1);
-                cells(ui, &palette, (SMALL_SIDE, largest, &words), matrix, &local, &|_, _| true);
+                cells(ui, &palette, (scale * SMALL_SIDE, largest, &words), matrix, &local, &|_, _| true);
             });
         }
-        ui.vertical(|ui| whole(ui, shown, &palette, &triangle));
-        let note = format!(
-            "Triangle {}: nodes {}. Framed: its blocks. Grey: what clamping takes away. Red is positive, blue negative.",
-            learn.picked + 1,
-            triangle.nodes.map(|n| (n + 1).to_string()).join(", "),
-        );
-        ui.label(RichText::new(note).size(SMALL).color(palette.secondary));
+        ui.vertical(|ui| whole(ui, shown, &palette, scale * LARGE_SIDE, &triangle));
     });
+    let (all, free) = (2 * simulation.system().mesh().nodes().len(), simulation.system().dofs());
+    let note = format!(
+        "Triangle {}: nodes {}; framed: its blocks. Grey: what clamping takes away, {all} \u{2212} {} = {free} unknowns. Red is \
+         positive, blue negative.",
+        learn.picked + 1,
+        triangle.nodes.map(|n| (n + 1).to_string()).join(", "),
+        all - free,
+    );
+    ui.add(egui::Label::new(RichText::new(note).size(SMALL).color(palette.secondary)).wrap());
 }
 
 /// The matrix of the body before clamping, and what clamping takes from it.
-fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, triangle: &Triangle) {
+fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle: &Triangle) {
     let simulation = shown.input.simulation;
     let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
     let (all, free) = (2 * nodes, pattern.dofs());
-    let words = format!("\u{3a3} R K_{{e}} R^{{T}} ,  {all} \u{2212} {} = {free}", all - free);
-    ui.label(formula::set(&words, palette.text))
-        .on_hover_text(format!("{all} unknowns, of which {free} are left where the supports hold the others"));
+    ui.label(formula::set("\u{3a3} R K_{e} R^{T}", palette.text));
     let matrix = (all <= MOST_UNKNOWNS).then(|| assembled(simulation)).flatten();
     let Some(matrix) = matrix else {
         ui.label("Too many unknowns to draw.");
@@ -71,7 +75,6 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, triangle: &Triangle)
     }
     let stored = |i: usize, j: usize| coupled[(i / 2) * nodes + j / 2];
     let words = format!("the body's matrix, {all} by {all}, of which {free} by {free} are left");
-    let side = LARGE_SIDE;
     let (rect, _) = cells(ui, palette, (side, matrix.amax(), &words), &matrix, &name_of, &stored);
     let cell = rect.width() / all as f32;
     let block = |i: usize, j: usize, size: f32| {

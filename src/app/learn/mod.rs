@@ -39,6 +39,9 @@ const SHARE: f32 = 0.42;
 /// Below this width, points, what is beside the words is under them.
 const TWO_COLUMNS: f32 = 560.0;
 
+/// More elements than this are not painted over one by one.
+const MOST_ELEMENTS: usize = 3000;
+
 /// What takes a while to find out of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Needs {
@@ -114,6 +117,11 @@ impl View<'_> {
     fn place(&self, p: Vector2<f64>) -> Pos2 {
         let [x, y] = self.camera.to_view(p).map(|v| v.clamp(-1e5, 1e5) as f32);
         self.rect.center() + vec2(x, y)
+    }
+
+    /// Whether there are too many elements to paint each.
+    fn is_fine(&self) -> bool {
+        self.simulation.system().mesh().element_count() > MOST_ELEMENTS
     }
 
     /// The drawn points of an element.

@@ -85,8 +85,10 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     let inside = painter.with_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
     dashed(&inside, place(0.0, asked), place(most, asked), Stroke::new(1.0, palette.secondary));
     if let Some(rho) = rho {
-        // Through the last point: as it goes on from there.
-        let (k, r) = residuals.last().map_or((0.0, 0.0), |&r| (residuals.len() as f64, decade(r)));
+        // Through the last point, as it goes on from there; where that goes nowhere, through the lowest.
+        let points = residuals.iter().enumerate().map(|(i, &r)| (i as f64 + 1.0, decade(r)));
+        let anchor = if rho < 1.0 { points.last() } else { points.min_by(|a, b| a.1.total_cmp(&b.1)) };
+        let (k, r) = anchor.unwrap_or((0.0, 0.0));
         let line = |at: f64| place(at, r + (at - k) * rho.log10());
         dashed(&inside, line(0.0), line(most), Stroke::new(1.8, palette.exact));
     }
@@ -99,7 +101,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     let small = FontId::proportional(SMALL);
     if let Some(rho) = rho {
         let words = format!("\u{3c1} = {}: the line's slope", rho_number(rho));
-        painter.text(rect.right_top() + vec2(-2.0, 0.0), Align2::RIGHT_TOP, words, small, palette.exact);
+        painter.text(rect.right_top() + vec2(-2.0, 22.0), Align2::RIGHT_TOP, words, small, palette.exact);
     }
     let words = match (residuals.last(), rho) {
         (Some(last), Some(rho)) => {
