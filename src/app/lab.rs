@@ -55,7 +55,7 @@ const HEADLINE_HEIGHT: f32 = 42.0;
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 /// The same over a card, which leaves less of the view.
-const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 48.0, bottom: 84.0 };
+const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 48.0, bottom: 44.0 };
 
 /// Height of what is shown under the body, points; at most a part of the window's.
 const DRAWER_HEIGHT: f32 = 270.0;
@@ -781,7 +781,7 @@ impl Lab {
             self.reset();
             // The view follows what has converged; until then there is room for the beam to bend.
             let (low, high) = self.simulation.system().mesh().bounds();
-            self.eye.follow([low - Vector2::new(0.0, 0.8 * (high.x - low.x)), high]);
+            self.eye.follow([low - Vector2::new(0.3, 0.8) * (high.x - low.x), high]);
         }
     }
 
@@ -1077,6 +1077,9 @@ impl Lab {
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
         let least = self.margins();
+        if self.learn.as_ref().is_some_and(|learn| learn.is_apart()) {
+            return least;
+        }
         self.forces().arrows(&projection).iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
             let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));

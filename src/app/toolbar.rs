@@ -9,7 +9,7 @@ use egui::{
 };
 
 use super::action::{Action, Toggle, ViewOptions};
-use super::mode::MODES;
+use super::mode::{MODES, ModeEntry};
 use super::palette::{BODY, Palette, SMALL};
 use super::panel::PanelInput;
 use crate::scene::{Scene, registry};
@@ -34,12 +34,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, acti
         divide(ui);
         history(ui, input, actions);
         divide(ui);
-        for entry in MODES.iter().filter(|entry| (entry.serves)(input.scene)) {
-            let chosen = view.mode == entry.mode;
-            if ui.selectable_label(chosen, entry.name).on_hover_text(entry.about).clicked() && !chosen {
-                actions.push(Action::Toggle(Toggle::Mode(entry.mode)));
-            }
-        }
+        modes(ui, input, view, actions);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let mut button = |icon: Icon, name: &str, chosen: bool, tip: &str, action: Action| {
                 let response = ui.add(|ui: &mut Ui| icon_button(ui, icon, name, None, chosen));
@@ -53,6 +48,33 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, acti
             button(Icon::Panel, "Panel", view.shows_panel(), tip, Action::Toggle(Toggle::Panel));
         });
     });
+}
+
+/// The modes side by side, or as a list where there is no room for that.
+fn modes(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, actions: &mut Vec<Action>) {
+    /// Of the buttons at the right end, points.
+    const RIGHT: f32 = 112.0;
+    let entries = || MODES.iter().filter(|entry| (entry.serves)(input.scene));
+    let mut show = |ui: &mut Ui, entry: &ModeEntry| {
+        let chosen = view.mode == entry.mode;
+        if ui.selectable_label(chosen, entry.name).on_hover_text(entry.about).clicked() && !chosen {
+            actions.push(Action::Toggle(Toggle::Mode(entry.mode)));
+        }
+    };
+    let width = |entry: &ModeEntry| {
+        let text =
+            ui.painter().layout_no_wrap(entry.name.to_owned(), FontId::proportional(BODY), egui::Color32::PLACEHOLDER);
+        text.size().x + 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x
+    };
+    if entries().map(width).sum::<f32>() + RIGHT <= ui.available_width() {
+        entries().for_each(|entry| show(ui, entry));
+        return;
+    }
+    let present = view.mode.entry();
+    let list = ComboBox::from_id_salt("mode").selected_text(present.name).width(76.0);
+    let response = list.show_ui(ui, |ui| entries().for_each(|entry| show(ui, entry))).response;
+    response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Mode"));
+    response.on_hover_text(present.about);
 }
 
 fn divide(ui: &mut Ui) {

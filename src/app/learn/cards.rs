@@ -12,8 +12,8 @@ pub(in crate::app) struct Card {
     pub title: &'static str,
     /// Two or three sentences.
     pub words: &'static str,
-    /// In the markup of [`super::formula`].
-    pub formula: &'static str,
+    /// One or several, in the markup of [`super::formula`].
+    pub formula: &'static [&'static str],
     /// One thing to do.
     pub task: &'static str,
     pub setup: Setup,
@@ -72,7 +72,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         words: "Linear theory knows no turns. What turns by an angle \u{3b8} moves along the tangent instead of the arc, \
                 and grows: its area by \u{3b8}\u{b2}, whatever it is made of. The dashed line is the exact beam, which \
                 turns without growing.",
-        formula: "K u = f          `det` ( I + \u{3b8} J ) = 1 + \u{3b8}^{2}",
+        formula: &["K u = f", "`det` ( I + \u{3b8} J ) = 1 + \u{3b8}^{2}"],
         task: "Drag the tip force, and watch the area.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Linear, NEAR),
@@ -91,7 +91,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         words: "A triangle at rest and the same triangle now define a matrix F. Polar decomposition splits it into a turn \
                 R and a stretch S, in one way only, and in the plane in closed form. The two arrows in each triangle are \
                 the axes of its frame R.",
-        formula: "F = R S          R^{T}R = I          S = S^{T}",
+        formula: &["F = R S", "R^{T}R = I", "S = S^{T}"],
         task: "Click a triangle: its numbers appear beside.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, NEAR),
@@ -110,7 +110,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         words: "Here each triangle is turned back by its own R\u{2019}s transpose and laid onto its shape at rest. What \
                 is left between the two is the strain, and that is all the stiffness K ever sees. It knows nothing of \
                 the turn.",
-        formula: "R^{T} F = S = I + \u{3b5}",
+        formula: &["R^{T} F = S = I + \u{3b5}"],
         task: "Move the slider between the bent beam and the triangles turned back.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, NEAR),
@@ -129,7 +129,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         words: "K is made once, at rest. Turned forward by R it acts on the bent beam, with an offset on the right. Each \
                 triangle adds nine 2\u{d7}2 blocks, at the rows and columns of its three nodes. The four unknowns of the \
                 two clamped nodes leave: 24 \u{2212} 4 = 20.",
-        formula: "R K R^{T} x = f + R K X",
+        formula: &["R K R^{T} x = f + R K X"],
         task: "Click triangles, and point at entries for their values.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, NEAR),
@@ -147,7 +147,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         title: "Iterate",
         words: "R depends on where the beam is, and that on R. So solve with the present R, take the new R, and solve \
                 again. Near the equilibrium each iteration leaves the part \u{3c1} of the residual before it.",
-        formula: "A x_{k+1} = f + R_{k} K X          A = R_{k} K R_{k}^{T}          | r_{k+1} | \u{2248} \u{3c1} | r_{k} |",
+        formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | \u{2248} \u{3c1} | r_{k} |"],
         task: "Press \u{201c}Step once\u{201d} (N) again and again: the points fall along the line.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, NEAR),
@@ -166,7 +166,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         words: "Under twice the force a turn of R changes the forces by more than A answers for: \u{3c1} is above 1, and \
                 no number of iterations helps. Newton adds what is missing, G: how the forces turn with R. It costs the \
                 same an iteration.",
-        formula: "\u{3c1} = | \u{3bb} |_{`max`} ( A^{\u{2212}1} G )          ( A + G ) \u{394}x = f \u{2212} f_{`int`}",
+        formula: &["\u{3c1} = | \u{3bb} |_{`max`} ( A^{\u{2212}1} G )", "( A + G ) \u{394}x = f \u{2212} f_{`int`}"],
         task: "Switch to newton, and back.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, FAR),
@@ -185,7 +185,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         words: "The forces balance, and still the beam is far from the exact one (dashed). A three-node triangle has one \
                 strain throughout, so triangles cannot bend without stretching, and resist. On the same five cells \
                 another element cures it.",
-        formula: "`error` = | u \u{2212} u_{`exact`} | / | u_{`exact`} |",
+        formula: &["`error` = | u \u{2212} u_{`exact`} | / | u_{`exact`} |"],
         task: "Try t6 and q4.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Newton, NEAR),
@@ -204,7 +204,7 @@ pub(in crate::app) const CARDS: &[Card] = &[
         words: "Element, mesh and method each cost time and leave an error, and what is cheapest depends on your machine. \
                 In the table: the time of the fastest setting that keeps the error you ask for. The mode Budget has them \
                 all.",
-        formula: "`error` \u{2264} `mesh` + `iteration` + `theory`",
+        formula: &["`error` \u{2264} `mesh` + `iteration` + `theory`"],
         task: "Press \u{201c}Measure\u{201d}; it runs beside the window. Then ask for another error.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Newton, NEAR),

@@ -404,8 +404,13 @@ fn text(ui: &mut Ui, card: &Card) {
     ui.add_space(4.0);
     let chip = egui::Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(egui::Margin::symmetric(12, 5));
     chip.show(ui, |ui| {
-        let response = ui.add(egui::Label::new(formula::set(card.formula, palette.text)).wrap());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, formula::plain(card.formula)));
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 36.0;
+            for part in card.formula {
+                let response = ui.add(egui::Label::new(formula::set(part, palette.text)).extend());
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, formula::plain(part)));
+            }
+        });
     });
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
@@ -455,7 +460,7 @@ mod tests {
         let ctx = Context::default();
         let _ = ctx.run_ui(egui::RawInput::default(), |_| {});
         let mut all: String = CARDS.iter().flat_map(|c| [c.title, c.words, c.task]).collect();
-        all.extend(CARDS.iter().map(|card| formula::plain(card.formula)));
+        all.extend(CARDS.iter().flat_map(|card| card.formula).map(|part| formula::plain(part)));
         all.push_str("\u{2039}\u{203a}\u{2212}\u{3a3}\u{3b5}\u{b7}\u{d7}\u{2013}\u{b0}\u{201c}\u{201d}");
         for size in [super::super::palette::BODY, formula::SIZE] {
             let font = FontId::proportional(size);
