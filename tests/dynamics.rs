@@ -9,7 +9,7 @@ use common::motion::{beam, drift, first_mode, momentum, run, with};
 use common::{ids_of, scene, solve_json, stdout, warpbeam};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::assembly::Mass;
-use warpbeam::dynamics::{MotionDecision, MotionReport, lowest_frequency};
+use warpbeam::dynamics::{MotionDecision, MotionReport, StopReason, critical_step, lowest_frequency};
 use warpbeam::element::{DiscreteGradient, warped_strain};
 use warpbeam::material::Lame;
 use warpbeam::rotation::{Rotation, polar_or};
@@ -552,4 +552,358 @@ fn auto_says_what_it_did() {
 #[test]
 fn auto_is_finite_everywhere() {
     is_finite_everywhere(MethodKind::Auto);
+}
+
+/// A body is at rest once nothing has moved for half a second and ten steps, and no pulse is to come.
+#[test]
+fn a_body_at_rest_is_said_to_be() {
+    for h in [1.0 / 60.0, 0.125] {
+        let mut scene = Scene::beam(3.0, 0.3).with_cells(4, 1).clamp("left").moving(EULER, h);
+        scene = scene.with_material(Material::new(1e8, 0.3)).force("right", [0.0, 10.0]).pulse(1.5, 0.5);
+        scene.dynamics.damping.mass = 8.0;
+        scene.dynamics.duration = 1e3;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert!(!simulation.is_at_rest());
+        let (mut still, mut rested) = (0_u32, 0_u32);
+        for _ in 0..(12.0 / h) as u32 {
+            simulation.step();
+            let fastest = simulation.state().velocity().iter().map(|v| v.norm()).fold(0.0, f64::max);
+            still = if fastest < 1e-6 * simulation.system().size() { still + 1 } else { 0 };
+            let expected = still >= 10 && f64::from(still) * h >= 0.5 && simulation.state().time() >= 2.0;
+            assert_eq!(simulation.is_at_rest(), expected, "h = {h} at {} s", simulation.state().time());
+            rested += u32::from(expected);
+        }
+        assert!(rested > 5, "it comes to rest");
+        assert_eq!(simulation.problem().loads().last_pulse_end(), Some(2.0));
+    }
+    // A search is at rest at its end, and a motion that was given up.
+    let mut search = Simulation::new(&scene("cantilever")).unwrap();
+    assert!(!search.is_at_rest() && search.problem().loads().last_pulse_end().is_none());
+    search.solve();
+    assert!(search.is_at_rest());
+    let mut exploding = Simulation::new(&with("swing", SYMPLECTIC, 0.01, 1, 1e3)).unwrap();
+    while !matches!(exploding.status(), Status::Stopped(_)) {
+        assert!(!exploding.is_at_rest());
+        exploding.step();
+    }
+    assert!(exploding.is_at_rest());
+}
+
+/// Pulses of forces and moments: the last one's end.
+#[test]
+fn the_last_pulse_ends_when_its_load_does() {
+    let scene = beam(4, 10.0).force("right", [0.0, 1.0]).pulse(0.2, 0.3).moment("right", 1.0).pulse(0.1, 0.6);
+    let end = Simulation::new(&scene).unwrap().problem().loads().last_pulse_end().unwrap();
+    assert!((end - 0.7).abs() < 1e-12, "{end}");
+}
+
+/// A ledger that is kept goes on; one that is taken up again begins where the body is.
+#[test]
+fn a_ledger_taken_up_again_begins_anew() {
+    let mut simulation = Simulation::new(&scene("swing")).unwrap();
+    let ledger = |simulation: &Simulation| *simulation.motion().unwrap().ledger();
+    (0..10).for_each(|_| drop(simulation.step().clone()));
+    let kept = ledger(&simulation);
+    simulation.keep_ledger(true);
+    assert_eq!(ledger(&simulation), kept);
+    simulation.keep_ledger(false);
+    (0..10).for_each(|_| drop(simulation.step().clone()));
+    assert_eq!(ledger(&simulation), kept, "nothing is booked");
+    simulation.keep_ledger(true);
+    let anew = ledger(&simulation);
+    assert_eq!((anew.start, anew.throughput), (anew.total(), 0.0));
+    assert_ne!(anew.total(), kept.total());
+    (0..10).for_each(|_| drop(simulation.step().clone()));
+    let after = ledger(&simulation);
+    assert!(after.throughput > 0.0 && after.imbalance().abs() < 1e-11 * after.throughput, "{after:?}");
+}
+
+/// The critical step is that of the scene as it stands, whatever of it was edited.
+#[test]
+fn the_critical_step_follows_edits() {
+    let mut scene = with("swing", SYMPLECTIC, 1e-5, 1, 1e3);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let mut critical = vec![simulation.motion().unwrap().critical_step().unwrap()];
+    let edits: [fn(&mut Scene); 4] = [
+        |scene| scene.material.density *= 4.0,
+        |scene| scene.material.young *= 9.0,
+        |scene| scene.dynamics.damping.stiffness = 1e-3,
+        |scene| scene.scale_loads(2.0),
+    ];
+    for edit in edits {
+        edit(&mut scene);
+        simulation.change_scene(&scene).unwrap();
+        let fresh = Simulation::new(&scene).unwrap().motion().unwrap().critical_step();
+        assert_eq!(simulation.motion().unwrap().critical_step(), fresh);
+        critical.push(fresh.unwrap());
+    }
+    assert!((critical[1] / critical[0] - 2.0).abs() < 1e-9 && (critical[2] / critical[1] - 1.0 / 3.0).abs() < 1e-9);
+    assert!(critical[3] < 0.9 * critical[2] && critical[4] == critical[3], "{critical:?}");
+    scene.dynamics.integrator = TR_BDF2;
+    simulation.change_scene(&scene).unwrap();
+    assert_eq!(simulation.motion().unwrap().critical_step(), None);
+}
+
+/// What pulses and a hand put in is force times way, by the trapezoidal rule over steps that are short.
+#[test]
+fn works_are_forces_times_ways() {
+    for (kind, close) in [(EULER, 1e-9), (TR_BDF2, 2e-3), (ENERGY_MOMENTUM, 2e-3), (SYMPLECTIC, 2e-3)] {
+        let h = if kind == SYMPLECTIC { 1e-4 } else { 1.0 / 480.0 };
+        let steps = (0.5 / h) as u32;
+        let mut scene = beam(6, 10.0).moving(kind, h).force("right", [3.0, 20.0]).pulse(0.05, 0.4);
+        scene = scene.moment("right", 6.0).pulse(0.05, 0.4);
+        scene.dynamics.duration = 1e3;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let middle = simulation.system().mesh().locate(Vector2::new(0.6, 0.01)).unwrap();
+        let (mut pulses, mut hands) = (0.0, 0.0);
+        let right = simulation.system().edges().iter().position(|edge| edge.name() == "right").unwrap();
+        let pulse = |time: f64| {
+            let part = (time - 0.05) / 0.4;
+            if (0.0..1.0).contains(&part) { (part * TAU / 2.0).sin().powi(2) } else { 0.0 }
+        };
+        for step in 0..steps {
+            if step == steps / 4 {
+                assert!(simulation.grab(middle));
+            }
+            if step >= steps / 4 {
+                let t = f64::from(step - steps / 4) * h;
+                simulation.pull_to(Vector2::new(0.6 - 0.1 * t, 0.01 + 0.2 * (8.0 * t).sin())).unwrap();
+            }
+            let hand = |simulation: &Simulation| {
+                let (hand, force) = simulation.hand()?;
+                Some((hand.position(simulation.displacement()), force))
+            };
+            let along = |simulation: &Simulation| {
+                let tip = simulation.probe("tip").unwrap();
+                Vector2::new(3.0, 20.0).dot(&tip) + 6.0 * simulation.state().turns()[right]
+            };
+            let before = (along(&simulation), simulation.state().time(), hand(&simulation));
+            simulation.step();
+            let after = (along(&simulation), simulation.state().time(), hand(&simulation));
+            pulses += 0.5 * (pulse(before.1) + pulse(after.1)) * (after.0 - before.0);
+            if let (Some((x0, f0)), Some((x1, f1))) = (before.2, after.2) {
+                hands += 0.5 * (f0 + f1).dot(&(x1 - x0));
+            }
+        }
+        let ledger = *simulation.motion().unwrap().ledger();
+        assert!(pulses.abs() > 0.1 && hands.abs() > 0.1, "{pulses} {hands}");
+        assert!((ledger.pulses - pulses).abs() < close * pulses.abs(), "{}: {} {pulses}", kind.id(), ledger.pulses);
+        assert!((ledger.hands - hands).abs() < 10.0 * close * hands.abs(), "{}: {} {hands}", kind.id(), ledger.hands);
+    }
+}
+
+/// What damping takes is booked as damping: of a first mode under mass damping a, 1 − exp(−a t) of its energy.
+#[test]
+fn damping_is_booked_as_damping() {
+    for kind in [TR_BDF2, ENERGY_MOMENTUM, SYMPLECTIC] {
+        for (mass, stiffness) in [(0.5, 0.0), (0.0, 2e-3)] {
+            let mut scene = beam(6, 10.0).moving(kind, if kind == SYMPLECTIC { 1e-4 } else { 1.0 / 480.0 });
+            (scene.dynamics.damping.mass, scene.dynamics.damping.stiffness) = (mass, stiffness);
+            scene.dynamics.duration = 1e3;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.start_from(&first_mode(&simulation)).unwrap();
+            while simulation.state().time() < 1.0 {
+                simulation.step();
+            }
+            let ledger = *simulation.motion().unwrap().ledger();
+            let taken = ledger.start - ledger.total();
+            assert!(taken > 1e-2 * ledger.start, "{ledger:?}");
+            assert!((ledger.dissipated / taken - 1.0).abs() < 0.02, "{} {mass}: {ledger:?}", kind.id());
+            assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{ledger:?}");
+        }
+    }
+}
+
+/// Coming to linear theory and leaving it changes what the energy of a state is: the books say so.
+#[test]
+fn a_change_of_theory_is_booked() {
+    let mut scene = with("swing", TR_BDF2, 1.0 / 60.0, 1, 4.0).with_method(MethodKind::Auto);
+    scene.scale_loads(4e-3);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let (mut changes, mut linear, mut throughput) = (0, simulation.is_linear(), 0.0);
+    while *simulation.status() == Status::Running {
+        simulation.step();
+        changes += u32::from(simulation.is_linear() != linear);
+        linear = simulation.is_linear();
+        let ledger = *simulation.motion().unwrap().ledger();
+        assert!(ledger.imbalance().abs() < 1e-10 * ledger.throughput, "{changes} changes: {ledger:?}");
+        assert!(ledger.throughput >= throughput, "{changes} changes: {ledger:?}");
+        throughput = ledger.throughput;
+    }
+    assert!(changes >= 2, "{changes} changes, {:?}", report(&simulation));
+}
+
+/// A free body starts with the velocity and the spin of its scene, about its own centre, and is given up far away.
+#[test]
+fn a_body_starts_as_its_scene_says() {
+    let mut scene = Scene::beam(2.0, 1.0).with_cells(6, 3).moving(TR_BDF2, 0.5).probe("end", "right");
+    (scene.start.velocity, scene.start.spin, scene.dynamics.duration) = ([3.0, -1.5], 0.7, 1e6);
+    scene.solver.method = MethodKind::Linear;
+    let simulation = Simulation::new(&scene).unwrap();
+    let centre = Vector2::new(1.0, 0.0);
+    for (x, v) in simulation.system().mesh().nodes().iter().zip(simulation.state().velocity()) {
+        let arm = x - centre;
+        let expected = Vector2::new(3.0 - 0.7 * arm.y, -1.5 + 0.7 * arm.x);
+        assert!((v - expected).norm() < 1e-12, "at {x}: {v} {expected}");
+    }
+    assert!(simulation.is_linear() && !Simulation::new(&with("swing", EULER, 0.01, 1, 1.0)).unwrap().is_linear());
+    let mass = 2.0 * scene.material.area_density();
+    let start = momentum(&simulation);
+    assert!((start.linear - Vector2::new(3.0, -1.5) * mass).norm() < 1e-9 * mass);
+    // About the origin: c × m v, and the spin's own, ω m (L² + H²)/12.
+    let expected = mass * (centre.perp(&Vector2::new(3.0, -1.5)) + 0.7 * 5.0 / 12.0);
+    assert!((start.angular - expected).abs() < 1e-9 * mass, "{} {expected}", start.angular);
+    // Nothing holds it: it goes on for ever, until its strains have lost their digits.
+    let mut thrown = scene.clone();
+    (thrown.start.velocity, thrown.start.spin) = ([0.0, 9e3], 0.0);
+    thrown.dynamics.time_step = 10.0;
+    let mut simulation = Simulation::new(&thrown).unwrap();
+    let limit = 1e6 * simulation.system().size();
+    while *simulation.status() == Status::Running {
+        let gone = simulation.probe("end").unwrap().norm();
+        assert!(gone <= limit, "{gone} m of {limit}");
+        simulation.step();
+    }
+    assert!(matches!(simulation.status(), Status::Stopped(StopReason::RanAway(_))), "{:?}", simulation.status());
+    assert!(simulation.probe("end").unwrap().norm() > limit);
+    // What a step leaves unsolved is nothing where it iterates, and little where it solves once.
+    let left = |iterations: u32| {
+        let mut scene = with("swing", TR_BDF2, 1.0 / 60.0, iterations, 1.0);
+        scene.solver.tolerance = 1e-9;
+        run(&scene).residual()
+    };
+    assert!(left(0) <= 1e-9 && (1e-8..0.1).contains(&left(1)), "{:e} {:e}", left(0), left(1));
+}
+
+/// An edit is a new beginning: a body goes on from an edit as one does that starts there, whatever was kept before.
+#[test]
+fn an_edited_motion_goes_on_as_a_new_one_would() {
+    for method in [MethodKind::Linear, MethodKind::Newton, MethodKind::Auto] {
+        for kind in [EULER, TR_BDF2, ENERGY_MOMENTUM] {
+            let mut scene = with("swing", kind, 1.0 / 60.0, 1, 1e3).with_method(method);
+            scene.scale_loads(0.1);
+            scene.solver.max_error_percent = 0.1;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            (0..20).for_each(|_| drop(simulation.step().clone()));
+            // Where it stands still for an instant: at rest nothing but place is left of what was.
+            let u = simulation.displacement().to_vec();
+            let mut edited = scene.clone();
+            edited.material = Material { density: 500.0, ..Material::new(4e6, 0.2) };
+            edited.dynamics.damping.mass = 0.5;
+            simulation.change_scene(&edited).unwrap();
+            let before = *simulation.motion().unwrap().ledger();
+            assert!(before.edits != 0.0 && before.throughput >= before.edits.abs(), "{before:?}");
+            simulation.start_from(&u).unwrap();
+            let mut new = Simulation::new(&edited).unwrap();
+            new.start_from(&u).unwrap();
+            for step in 0..20 {
+                simulation.step();
+                new.step();
+                let off = (simulation.probe("tip").unwrap() - new.probe("tip").unwrap()).norm();
+                assert!(off < 1e-12, "{} {method:?} in step {step}: {off}", kind.id());
+            }
+        }
+    }
+    // And without a new start, where nothing is approximate.
+    for method in [MethodKind::Linear, MethodKind::Newton] {
+        let mut scene = with("swing", EULER, 1.0 / 60.0, 0, 1e3).with_method(method);
+        scene.scale_loads(0.1);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        (0..20).for_each(|_| drop(simulation.step().clone()));
+        let ledger = *simulation.motion().unwrap().ledger();
+        scene.material = Material::new(4e6, 0.2);
+        simulation.change_scene(&scene).unwrap();
+        let edited = *simulation.motion().unwrap().ledger();
+        let change = edited.total() - ledger.total();
+        assert!((edited.edits - change).abs() < 1e-12 * change.abs() && change != 0.0, "{ledger:?} {edited:?}");
+        assert!((edited.throughput - ledger.throughput - change.abs()).abs() < 1e-9 * edited.throughput);
+        let mut new = Simulation::new(&scene).unwrap();
+        new.restore(simulation.state()).unwrap();
+        for _ in 0..20 {
+            simulation.step();
+            new.step();
+        }
+        let off = (simulation.probe("tip").unwrap() - new.probe("tip").unwrap()).norm();
+        assert!(off < 1e-7, "{method:?}: {off}");
+    }
+}
+
+/// Linear theory's equations are linear, those of damping and of a hand within its reach too: one solve leaves nothing.
+#[test]
+fn one_solve_is_exact_in_linear_theory() {
+    for kind in IMPLICIT {
+        let mut scene = with("swing", kind, 1.0 / 60.0, 1, 1e3).with_method(MethodKind::Linear);
+        scene.scale_loads(0.05);
+        for (mass, stiffness, hand) in
+            [(0.0, 0.0, false), (2.0, 0.0, false), (0.0, 0.02, false), (0.0, 0.0, true), (2.0, 0.02, true)]
+        {
+            (scene.dynamics.damping.mass, scene.dynamics.damping.stiffness) = (mass, stiffness);
+            let mut simulation = Simulation::new(&scene).unwrap();
+            if hand {
+                assert!(simulation.grab(simulation.system().mesh().locate(Vector2::new(0.9, 0.01)).unwrap()));
+            }
+            for step in 0..20 {
+                let to = Vector2::new(0.9, 0.01) + Vector2::new(-0.1, 0.4) * (f64::from(step) / 200.0);
+                simulation.pull_to(to).unwrap();
+                simulation.step();
+                let left = simulation.residual();
+                assert!(left < 1e-11, "{} {mass} {stiffness} {hand} in step {step}: {left:e}", kind.id());
+            }
+            let pulled = simulation.hand().map_or(1.0, |(_, force)| force.norm());
+            assert!(pulled > 1e-3, "{pulled}");
+        }
+    }
+}
+
+/// However a step is cut up, a body in flight is where its velocity takes it.
+#[test]
+fn halved_steps_make_up_the_step() {
+    let mut scene = with("spin", ENERGY_MOMENTUM, 0.4, 0, 4.0);
+    scene.material.young = 2e4;
+    (scene.start.spin, scene.start.velocity) = (12.0, [0.5, -0.25]);
+    let simulation = run(&scene);
+    assert!(simulation.motion().unwrap().counts().halvings > 0);
+    let mass = Mass::new(simulation.system(), scene.material.area_density());
+    let moved = simulation.displacement().iter().zip(mass.lumped()).map(|(u, m)| u * *m).sum::<Vector2<f64>>();
+    let centre = moved / mass.lumped().iter().sum::<f64>();
+    assert!((centre - Vector2::new(2.0, -1.0)).norm() < 1e-2, "{centre}");
+}
+
+/// Damping ratio ξ = (a/ω + b ω)/2: the critical step is 2 (√(1 + ξ²) − ξ)/ω.
+#[test]
+fn damping_shortens_the_critical_step_as_theory_says() {
+    let scene = beam(6, 10.0);
+    let simulation = Simulation::new(&scene).unwrap();
+    let mass = Mass::new(simulation.system(), scene.material.area_density());
+    let step = |mass_damping: f64, stiffness: f64| {
+        let mut damping = scene.dynamics.damping;
+        (damping.mass, damping.stiffness) = (mass_damping, stiffness);
+        critical_step(simulation.problem(), &mass, damping).unwrap()
+    };
+    let omega = 2.0 / step(0.0, 0.0);
+    assert!(omega > 10.0);
+    for (a, b) in [(omega, 0.0), (0.0, 1.0 / omega), (0.5 * omega, 3.0 / omega)] {
+        let ratio = 0.5 * (a / omega + b * omega);
+        let expected = 2.0 * ((1.0 + ratio * ratio).sqrt() - ratio) / omega;
+        assert!((step(a, b) / expected - 1.0).abs() < 1e-9, "{a} {b}: {} {expected}", step(a, b));
+    }
+}
+
+/// What supports fix has neither velocity nor displacement, whatever a body is started with.
+#[test]
+fn supports_stop_what_they_hold() {
+    let mut scene = beam(6, 10.0).with_method(MethodKind::Newton);
+    (scene.start.velocity, scene.start.spin) = ([1.0, 2.0], 3.0);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let moves = |of: &[Vector2<f64>], simulation: &Simulation| {
+        let pattern = simulation.system().pattern();
+        let held = (0..).zip(of).filter(|&(node, _)| pattern.fixed(node) == [true; 2]);
+        (held.map(|(_, v)| v.norm()).fold(0.0, f64::max), of.iter().map(|v| v.norm()).fold(0.0, f64::max))
+    };
+    let (held, fastest) = moves(simulation.state().velocity(), &simulation);
+    assert!(held == 0.0 && fastest > 1.0, "{held} {fastest}");
+    let everywhere = vec![Vector2::new(1e-3, -2e-3); simulation.displacement().len()];
+    simulation.start_from(&everywhere).unwrap();
+    let (held, farthest) = moves(simulation.displacement(), &simulation);
+    assert!(held == 0.0 && farthest > 1e-3, "{held} {farthest}");
 }

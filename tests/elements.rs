@@ -6,10 +6,10 @@ mod common;
 use nalgebra::{DMatrix, DVector, Matrix2, SMatrix, Vector2};
 use warpbeam::article::stiffness::ElementStiffness;
 use warpbeam::assembly::{Forces, Matrix, Problem, System};
-use warpbeam::element::{QuadraturePoint, Tangent, warped_strain};
+use warpbeam::element::{QuadraturePoint, Tangent, side_weights, warped_strain};
 use warpbeam::material::Lame;
 use warpbeam::mesh::Mesh;
-use warpbeam::rotation::polar;
+use warpbeam::rotation::{Rotation, polar};
 use warpbeam::truth::error_percent;
 use warpbeam::{ElementKind, Load, Material, MethodKind, Plane, Scene, Simulation, Status};
 
@@ -325,6 +325,40 @@ fn q4_energy_is_that_of_the_turned_element() {
             assert!((image - numeric[(row, column)]).abs() < 1e-6 * scale, "{row} {column}: {image} {numeric}");
         }
     }
+}
+
+/// A uniform traction on a side: half to each end of a straight one, Simpson's parts where it has a node in its middle;
+/// on a curved one they sum to its length, and balance where its nodes mirror each other.
+#[test]
+fn a_traction_is_shared_out_along_a_side() {
+    let line = [Vector2::new(1.0, 2.0), Vector2::new(2.5, 4.0), Vector2::new(4.0, 6.0)];
+    let close = |found: &[f64], expected: &[f64]| {
+        assert_eq!(found.len(), expected.len());
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} {expected:?}");
+    };
+    close(&side_weights(&[line[0], line[2]]), &[2.5, 2.5]);
+    close(&side_weights(&line), &[5.0 / 6.0, 20.0 / 6.0, 5.0 / 6.0]);
+    close(&side_weights(&line[..1]), &[0.0]);
+    // A parabola y = 4 b s (1 − s) over a chord of length 1: its length in closed form.
+    let b: f64 = 0.1;
+    let arc = side_weights(&[Vector2::zeros(), Vector2::new(0.5, b), Vector2::new(1.0, 0.0)]);
+    let length = 0.5 * (1.0 + 16.0 * b * b).sqrt() + (4.0 * b).asinh() / (8.0 * b);
+    assert!((arc.iter().sum::<f64>() - length).abs() < 1e-5, "{arc:?} {length}");
+    assert!((arc[0] - arc[2]).abs() < 1e-14 && arc[1] > arc[0] && arc[0] > 0.0, "{arc:?}");
+}
+
+/// A turn is no strain: to the square of the rounding, small as it may be.
+#[test]
+fn a_small_turn_strains_nothing() {
+    for angle in [1e-9_f64, 1e-6, 1e-4] {
+        let (s, half) = (angle.sin(), (0.5 * angle).sin());
+        let h = Matrix2::new(-2.0 * half * half, -s, s, -2.0 * half * half);
+        let strain = warped_strain(Rotation::from_angle(angle), &h);
+        assert!(strain.amax() < 1e-15 * angle * angle, "{angle}: {strain:e}");
+    }
+    // With the loads' own tangent belongs what is all of G, and nothing else.
+    let exact = [Tangent::EXACT, Tangent::GEOMETRIC, Tangent::WARPED, Tangent::DEFINITE].map(|t| t.is_exact());
+    assert_eq!(exact, [true, true, false, false]);
 }
 
 /// Few cells are enough, and few solves; percent of the tip's displacement, against the scene's own truth.

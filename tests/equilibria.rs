@@ -5,7 +5,9 @@ mod common;
 
 use common::{cantilever, cantilever_table, scene, scene_with, solved};
 use nalgebra::Vector2;
-use warpbeam::{ElementKind, Load, Mesh, MethodKind, Scene, Simulation, Status};
+use warpbeam::assembly::{Forces, Kinematics};
+use warpbeam::method::{Decision, Reason, rho_words};
+use warpbeam::{Axis, ElementKind, Load, Mesh, MethodKind, Scene, Simulation, Status};
 
 fn tip(simulation: &Simulation) -> Vector2<f64> {
     simulation.solution().probes[0].x
@@ -265,4 +267,219 @@ fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
     let exact = moment(3.0 * share, 400);
     let [a, b] = [&stopped, &exact].map(|s| s.probe("tip").unwrap());
     assert!((a - b).norm() < 1e-3 * b.norm(), "{a} {b}");
+}
+
+/// The warped iteration's steps shrink by ρ in the end, the less the larger the load; Newton's method has no such ratio.
+#[test]
+fn steps_shrink_by_rho() {
+    let mut before = 0.0;
+    for factor in [0.6, 0.8, 1.0] {
+        let mut scene = scene("cantilever").with_method(MethodKind::Warped);
+        scene.scale_loads(factor);
+        (scene.solver.tolerance, scene.solver.max_iterations) = (1e-11, 2000);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(simulation.step_ratio(), None, "two steps have a ratio");
+        assert_eq!(*simulation.solve(), Status::Converged);
+        let (ratio, rho) = (simulation.step_ratio().unwrap(), simulation.certify().fixed_point_rho.unwrap());
+        assert!((ratio / rho - 1.0).abs() < 0.01, "{factor}: {ratio} {rho}");
+        assert!(ratio > before && ratio < 1.0);
+        before = ratio;
+        let says = rho_words(rho);
+        assert!(says.contains("converges near") && says.contains(&format!("{rho:.3}")), "{says}");
+    }
+    let mut newton = Simulation::new(&scene("cantilever").with_method(MethodKind::Newton)).unwrap();
+    newton.solve();
+    assert_eq!(newton.step_ratio(), None);
+    let mut auto = Simulation::new(&scene("cantilever").with_method(MethodKind::Auto)).unwrap();
+    auto.solve();
+    assert!(auto.iterations() > 2 && auto.step_ratio().is_some_and(|ratio| ratio > 0.0 && ratio < 0.5));
+    for (rho, words) in [(1.0, "cannot converge here: ρ = 1.000"), (999.0, "ρ = 999.000"), (1e3, "ρ = 1.0e3")] {
+        assert!(rho_words(rho).contains(words), "{}", rho_words(rho));
+    }
+}
+
+/// What supports fix, node by node.
+#[test]
+fn supports_fix_what_they_say() {
+    let scene = Scene::beam(4.0, 1.0).with_cells(4, 2).clamp("left").support([4.0, -0.5], &[Axis::Y]);
+    let simulation = Simulation::new(&scene.support([4.0, 0.5], &[Axis::X])).unwrap();
+    let (mesh, pattern) = (simulation.system().mesh(), simulation.system().pattern());
+    for (node, x) in (0..).zip(mesh.nodes()) {
+        let expected = match (x.x, x.y) {
+            (0.0, _) => [true, true],
+            (4.0, -0.5) => [false, true],
+            (4.0, 0.5) => [true, false],
+            _ => [false, false],
+        };
+        assert_eq!(pattern.fixed(node), expected, "at {x}");
+        assert_eq!([0, 1].map(|axis| pattern.mask()[node as usize][axis] == 0.0), expected);
+    }
+    // A nodal vector times one over the free unknowns: what is fixed counts nothing.
+    let nodal: Vec<_> = mesh.nodes().iter().map(|x| Vector2::new(1.0 + x.x, 2.0 - 3.0 * x.y)).collect();
+    let free: Vec<f64> = (0..simulation.system().dofs()).map(|i| (i as f64 + 1.0).sqrt()).collect();
+    let mut spread = vec![Vector2::zeros(); nodal.len()];
+    pattern.add_free(&free, 1.0, &mut spread);
+    let product: f64 = nodal.iter().zip(&spread).map(|(a, b)| a.dot(b)).sum();
+    assert!((pattern.dot(&nodal, &free) / product - 1.0).abs() < 1e-12 && product > 1.0);
+    // Its norm, whatever its size.
+    let plain = pattern.norm(&spread);
+    assert!((plain / free.iter().map(|v| v * v).sum::<f64>().sqrt() - 1.0).abs() < 1e-12);
+    for size in [1e-250, 1e-160, 1e160, 1e250] {
+        let scaled: Vec<_> = spread.iter().map(|v| v * size).collect();
+        assert!((pattern.norm(&scaled) / (plain * size) - 1.0).abs() < 1e-12, "{size:e}");
+    }
+    assert_eq!(pattern.fixed(mesh.nodes().len() as u32), [true, true], "no node moves where there is none");
+}
+
+/// Whether supports hold a body depends on neither its size nor its place.
+#[test]
+fn a_clamp_is_a_clamp_at_any_size_and_place() {
+    for size in [1e-4, 1.0, 1e4] {
+        let scene = Scene::beam(10.0 * size, size).clamp("left").force("right", [0.0, -1.0]);
+        let simulation = Simulation::new(&scene);
+        assert!(simulation.is_ok(), "{size} m: {:?}", simulation.err());
+        // Along its middle line a body can still turn, wherever that is.
+        let hinged = Scene::beam(10.0 * size, size).with_cells(4, 2).support([0.0, 0.0], &[Axis::X, Axis::Y]);
+        assert!(Simulation::new(&hinged).is_err());
+        let two = hinged.support([10.0 * size, 0.0], &[Axis::X]);
+        assert!(Simulation::new(&two).is_err(), "two bars in line");
+        assert!(Simulation::new(&two.support([10.0 * size, 0.0], &[Axis::Y])).is_ok());
+    }
+    let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).with_method(MethodKind::Linear);
+    let near = solved(&scene);
+    let far = near.system().mesh().moved(|x| x + Vector2::new(1e6, -3e6)).unwrap();
+    let mut far = Simulation::with_mesh(&scene, far).unwrap();
+    assert_eq!(*far.solve(), Status::Converged);
+    let off = near.displacement().iter().zip(far.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(off < 1e-6 * near.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max), "{off}");
+}
+
+/// A reset, before, at and after the end, leads back to the start of the scene, and forgets what was found out.
+#[test]
+fn a_reset_goes_back_to_the_start() {
+    for id in ["cantilever", "swing", "spin"] {
+        for method in [MethodKind::Newton, MethodKind::Auto] {
+            let mut scene = scene(id).with_method(method);
+            if id != "cantilever" {
+                scene.dynamics.duration = 0.2;
+            }
+            let fresh = Simulation::new(&scene).unwrap();
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.solve();
+            let place = |s: &Simulation| (s.displacement().to_vec(), s.state().velocity().to_vec(), s.state().time());
+            assert!(place(&simulation) != place(&fresh));
+            if id == "cantilever" {
+                assert!(simulation.residual() <= scene.solver.tolerance.max(1e-3), "{:e}", simulation.residual());
+                assert_eq!(simulation.certificate(), None, "nobody has asked");
+                let certificate = simulation.certify();
+                assert_eq!((certificate.stable, simulation.certificate()), (Some(true), Some(certificate)));
+            }
+            simulation.reset();
+            assert!(place(&simulation) == place(&fresh), "{id} {method:?}");
+            assert_eq!((simulation.status(), simulation.iterations()), (fresh.status(), 0));
+            assert_eq!((simulation.residual(), simulation.certificate()), (fresh.residual(), None));
+        }
+    }
+}
+
+/// Supports balance the moment of the loads too, with the lever arms of the bent body: clamped, and on a roller that has
+/// moved on. Before anything has moved they carry nothing, though the load is there.
+#[test]
+fn reactions_balance_moments() {
+    let beam = || Scene::beam(10.0, 1.0).with_cells(20, 2).with_method(MethodKind::Newton);
+    let clamped = beam().clamp("left").force("right", [300.0, -900.0]);
+    let rolling = beam()
+        .support([0.0, -0.5], &[Axis::X, Axis::Y])
+        .support([10.0, -0.5], &[Axis::Y])
+        .force([5.0, 0.5], [100.0, -6000.0]);
+    for scene in [clamped, rolling] {
+        let unmoved = Simulation::new(&scene).unwrap().solution().reaction;
+        assert!(unmoved.force.norm() < 1e-9 && unmoved.moment.abs() < 1e-9, "{unmoved:?}");
+        let simulation = solved(&scene);
+        let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+        let (mut force, mut moment) = (Vector2::zeros(), 0.0);
+        for (x, f) in places.zip(simulation.forces().external()) {
+            force += f;
+            moment += x.perp(f);
+        }
+        let reaction = simulation.solution().reaction;
+        assert!((reaction.force + force).norm() < 1e-6 * force.norm(), "{reaction:?} {force}");
+        assert!((reaction.moment + moment).abs() < 1e-6 * moment.abs(), "{reaction:?} {moment}");
+        let farthest = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        assert!(farthest > 0.3, "it is bent, so that lever arms differ: {farthest}");
+    }
+}
+
+/// Where nothing else leads there `auto` puts the load on in steps, as Newton's method does, and ends where that ends; out
+/// of iterations it leaves an equilibrium of less load.
+#[test]
+fn auto_takes_load_steps_where_it_must() {
+    for (id, factor) in [("cantilever", 30.0), ("elastica", 30.0)] {
+        let mut scene = scene(id);
+        scene.scale_loads(factor);
+        let newton = solved(&scene.clone().with_method(MethodKind::Newton));
+        let auto = solved(&scene.with_method(MethodKind::Auto));
+        assert_eq!(auto.auto_report().unwrap().decision, Decision::LoadSteps, "{id}");
+        assert_eq!(auto.load_stepping(), newton.load_stepping(), "{id}");
+        assert!(auto.load_stepping().1 > 1);
+        assert!((tip(&auto) - tip(&newton)).norm() < 1e-6 * tip(&newton).norm(), "{id}");
+    }
+    for method in [MethodKind::Newton, MethodKind::Auto] {
+        let mut scene = scene("roll-up").with_method(method);
+        scene.scale_loads(30.0);
+        scene.solver.max_iterations = 60;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert!(matches!(simulation.solve(), Status::NotConverged(Reason::IterationLimit(60))));
+        let (reached, steps) = simulation.load_stepping();
+        assert!(reached > 0.0 && reached < 1.0 && steps > 3, "{method:?}: {reached} in {steps} steps");
+        let (problem, state) = (simulation.problem(), simulation.state());
+        let mut forces = Forces::new(state.displacement().len());
+        problem.linearize(state, &mut forces, None);
+        let residual = problem.balance(state, Kinematics::Corotated, reached, &mut forces);
+        assert!(residual < 2e-3, "{method:?}: {residual}");
+    }
+}
+
+/// Why the warped iteration ends: it converges, goes no further than rounding lets it, stalls, or runs away.
+#[test]
+fn the_warped_iteration_says_why_it_ends() {
+    let end = |factor: f64, tolerance: f64| {
+        let mut scene = scene("cantilever").with_method(MethodKind::Warped);
+        scene.scale_loads(factor);
+        scene.solver.tolerance = tolerance;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let end = (simulation.solve().clone(), simulation.iterations(), simulation.residual());
+        assert_eq!(simulation.load_stepping(), (1.0, 1), "all of the load at once");
+        assert_eq!(simulation.status().is_success(), *simulation.status() == Status::Converged);
+        end
+    };
+    let (status, _, residual) = end(1.0, 1e-8);
+    assert_eq!(status, Status::Converged);
+    assert!(residual <= 1e-8);
+    let (status, iterations, residual) = end(0.5, 1e-14);
+    assert!(matches!(status, Status::NotConverged(Reason::RoundingFloor(30))), "{status:?}");
+    assert!(residual < 1e-12 && iterations > 30);
+    let (status, iterations, residual) = end(10.0, 1e-8);
+    assert!(matches!(status, Status::Diverged(Reason::Stalled(30))), "{status:?}");
+    assert!(residual > 1e-3 && iterations < 60, "{residual} {iterations}");
+    let (status, iterations, _) = end(1e8, 1e-8);
+    assert!(matches!(status, Status::Diverged(Reason::RanAway(_))) && iterations == 1, "{status:?} {iterations}");
+}
+
+/// A new support that holds, in one direction, what has moved away in it lets the body start at rest; one that holds what
+/// has not moved in it does not.
+#[test]
+fn a_support_on_what_has_moved_starts_over() {
+    let scene = Scene::beam(10.0, 1.0).with_cells(10, 2).clamp("left").force("right", [50.0, -300.0]);
+    let mut scene = scene.with_method(MethodKind::Newton);
+    scene.solver.max_iterations = 100;
+    for axis in [Axis::X, Axis::Y] {
+        let mut simulation = solved(&scene);
+        assert!(simulation.displacement().iter().any(|u| u.x.abs() > 1e-3 && u.y.abs() > 1e-3));
+        simulation.change_scene(&scene.clone().support([10.0, 0.5], &[axis])).unwrap();
+        assert!(simulation.displacement().iter().all(|u| u.norm() == 0.0), "{axis:?}");
+    }
+    let mut simulation = solved(&scene);
+    simulation.change_scene(&scene.clone().support([0.0, 0.5], &[Axis::X])).unwrap();
+    assert!(simulation.displacement().iter().any(|u| u.norm() > 0.0), "it holds what was held");
 }

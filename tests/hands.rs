@@ -3,12 +3,15 @@
 
 mod common;
 
+use std::f64::consts::PI;
+
 use common::{ids_of, scene};
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
+use warpbeam::assembly::{Forces, Kinematics, Mass};
 use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::element::ELEMENTS;
 use warpbeam::scene::Analysis;
-use warpbeam::{MethodKind, Scene, Simulation, Status};
+use warpbeam::{IntegratorKind, Material, MethodKind, Scene, Simulation, Status};
 
 /// The simulation with its body held at a node far from what supports it.
 fn held(scene: &Scene) -> Simulation {
@@ -122,4 +125,224 @@ fn a_hand_needs_a_body_and_a_place() {
     simulation.release();
     simulation.step();
     assert!(simulation.state().is_finite());
+}
+
+/// A hand on the free end of a beam in a bent state, within its reach and far beyond it: the force that balances is minus
+/// the gradient of the energy, by differences.
+#[test]
+fn a_hand_pulls_down_the_gradient_of_its_energy() {
+    const STEP: f64 = 1e-6;
+    const FACTOR: f64 = 0.7;
+    let scene = Scene::beam(4.0, 1.0).with_cells(4, 1).clamp("left").with_method(MethodKind::Newton);
+    for element in ELEMENTS {
+        let mut simulation = Simulation::new(&scene.clone().with_element(element.kind)).unwrap();
+        let point = simulation.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap();
+        assert!(simulation.grab(point));
+        let target = simulation.hand().unwrap().0.target();
+        assert!((target - Vector2::new(3.7, 0.2)).norm() < 1e-9, "it holds the point where it is: {target}");
+        for pull in [Vector2::new(0.03, 0.2), Vector2::new(-3.0, 5.0)] {
+            simulation.pull_to(target + pull).unwrap();
+            let problem = simulation.problem();
+            let mut u: Vec<_> = problem.system().mesh().nodes().iter().map(|x| Vector2::new(0.0, 0.01 * x.x)).collect();
+            problem.system().pattern().stop_fixed(&mut u);
+            let state_of = |u: &[Vector2<f64>]| problem.system().state_of(u).unwrap();
+            let (state, mut forces) = (state_of(&u), Forces::new(u.len()));
+            problem.linearize(&state, &mut forces, None);
+            problem.balance(&state, Kinematics::Corotated, FACTOR, &mut forces);
+            let force = problem.hand().unwrap().force_at_rest(&u);
+            let stretch = problem.hand().unwrap().target() - problem.hand().unwrap().position(&u);
+            assert!(force.perp(&stretch).abs() < 1e-9 * force.norm() * stretch.norm(), "along the spring");
+            let (k, cap) = (problem.hand().unwrap().stiffness(), problem.hand().unwrap().largest_force());
+            assert!((force.norm() - (k * stretch.norm()).min(cap)).abs() < 1e-9 * force.norm());
+            assert_eq!(k * stretch.norm() > cap, pull.norm() > 1.0, "one within the reach, one beyond");
+            let scale = force.norm();
+            for node in 0..u.len() {
+                for axis in 0..2 {
+                    let at = u[node][axis];
+                    let mut energy = |value: f64| {
+                        u[node][axis] = value;
+                        problem.energy(&state_of(&u), FACTOR)
+                    };
+                    let slope = (energy(at + STEP) - energy(at - STEP)) / (2.0 * STEP);
+                    energy(at);
+                    let residual = forces.residual()[node][axis];
+                    assert!((slope + residual).abs() < 1e-6 * scale, "{}: {slope} {residual}", element.id);
+                }
+            }
+        }
+    }
+}
+
+/// The energy of a hand goes on smoothly where its force stops growing.
+#[test]
+fn a_hands_energy_is_smooth_at_its_reach() {
+    let scene = Scene::beam(4.0, 1.0).with_cells(4, 1).clamp("left").with_method(MethodKind::Newton);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    assert!(simulation.grab(simulation.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap()));
+    let (hand, _) = simulation.hand().unwrap();
+    let (k, target, reach) = (hand.stiffness(), hand.target(), hand.largest_force() / hand.stiffness());
+    let mut energy = |part: f64| {
+        simulation.pull_to(target + Vector2::new(0.6, -0.8) * (part * reach)).unwrap();
+        simulation.problem().energy(&simulation.system().at_rest(), 1.0) / (k * reach * reach)
+    };
+    for (part, expected) in [(0.5, 0.125), (1.0 - 1e-9, 0.5), (1.0 + 1e-9, 0.5), (3.0, 2.5)] {
+        assert!((energy(part) - expected).abs() < 1e-8, "{part}: {}", energy(part));
+    }
+}
+
+/// How firm a hand is: it makes the whole mass of a body that nothing else holds swing at 5 Hz, damped by 0.7 of what is
+/// critical; where a body is held, and stiffer, it is ten times as stiff as that where it takes hold. In linear theory
+/// one solve finds where that settles.
+#[test]
+fn a_hand_is_as_firm_as_it_says() {
+    let scene = Scene::beam(4.0, 1.0).with_cells(8, 2).with_material(Material::new(1e6, 0.3));
+    let mut free = Simulation::new(&scene.clone().moving(IntegratorKind::TrBdf2, 1e-3)).unwrap();
+    let point = free.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap();
+    assert!(free.grab(point));
+    let mass = scene.material.area_density() * 4.0;
+    let (hand, force) = free.hand().unwrap();
+    assert!((hand.stiffness() / (mass * (10.0 * PI).powi(2)) - 1.0).abs() < 1e-12, "{}", hand.stiffness());
+    assert!((hand.largest_force() / (hand.stiffness() * 0.25 * free.system().size()) - 1.0).abs() < 1e-12);
+    assert_eq!(force, Vector2::zeros());
+    let u = hand.target() - hand.position(free.displacement());
+    let damper = hand.force(u, Vector2::new(0.01, -0.02)) - hand.force(u, Vector2::zeros());
+    let critical = 2.0 * (hand.stiffness() * mass).sqrt();
+    assert!((damper / (-0.7 * critical) - Vector2::new(0.01, -0.02)).norm() < 1e-12, "{damper}");
+
+    // A stiff cantilever: the softest direction at its upper corner, from three loads and the polarisation of their work.
+    let mut scene = scene.clamp("left").with_method(MethodKind::Linear);
+    scene.material.young = 1e9;
+    let corner = Vector2::new(4.0, 0.5);
+    let moved = |force: [f64; 2]| {
+        let loaded = common::solved(&scene.clone().force(<[f64; 2]>::from(corner), force));
+        loaded.displacement()[loaded.system().mesh().nearest_node(corner) as usize]
+    };
+    let (x, y) = (moved([1.0, 0.0]), moved([0.0, 1.0]));
+    let compliance = Matrix2::from_columns(&[x, y]).symmetric_eigenvalues().max();
+    let mut held = common::solved(&scene);
+    let point = held.system().mesh().locate(corner).unwrap();
+    assert!(held.grab(point));
+    let stiffness = held.hand().unwrap().0.stiffness();
+    assert!((stiffness * compliance / 10.0 - 1.0).abs() < 1e-6, "{stiffness} {compliance}");
+    let pull = Vector2::new(0.01, -0.02);
+    held.pull_to(corner + pull).unwrap();
+    assert_eq!(*held.solve(), Status::Converged);
+    assert_eq!(held.iterations(), 1, "its matrix has the spring in it");
+    // Springs in a row: x C⁻¹-soft and k-stiff.
+    let c = Matrix2::from_columns(&[x, y]);
+    let expected = c * (c + Matrix2::identity() / stiffness).try_inverse().unwrap() * pull;
+    let found = held.hand().unwrap().0.position(held.displacement()) - corner;
+    assert!((found - expected).norm() < 1e-6 * pull.norm(), "{found} {expected}");
+    held.release();
+    assert!(held.hand().is_none());
+    assert_eq!(*held.solve(), Status::Converged);
+    assert!(held.displacement().iter().all(|u| u.norm() < 1e-12), "let go, it goes back");
+}
+
+/// A pointer that moves on steadily takes a free body along: after a while the body goes with it, the spring slack, at
+/// every instant of every step.
+#[test]
+fn a_body_goes_along_with_a_steady_pointer() {
+    let (h, velocity) = (1.0 / 60.0, Vector2::new(0.3, -0.2));
+    for integrator in INTEGRATORS {
+        for iterations in if integrator.is_explicit() { 1..=1 } else { 0..=1 } {
+            let mut scene = Scene::beam(1.0, 0.5).with_cells(4, 2).with_material(Material::new(1e5, 0.3));
+            scene.material.density = 100.0;
+            let mut scene = scene.moving(integrator.kind, h);
+            scene.dynamics.iterations = iterations;
+            (scene.dynamics.duration, scene.solver.tolerance) = (1e3, 1e-10);
+            if integrator.is_explicit() {
+                scene.dynamics.time_step = h / 40.0;
+            }
+            let h = scene.dynamics.time_step;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            let middle = Vector2::new(0.5, 0.0);
+            let point = simulation.system().mesh().locate(middle).unwrap();
+            assert!(simulation.grab(point));
+            for step in 1..=(3.0 / h) as u32 {
+                let before = simulation.hand().unwrap().0.target();
+                simulation.pull_to(middle + velocity * (f64::from(step) * h)).unwrap();
+                assert_eq!(simulation.hand().unwrap().0.target(), before, "it sets out from where it is");
+                simulation.step();
+            }
+            let (hand, _) = simulation.hand().unwrap();
+            let target = middle + velocity * simulation.state().time();
+            assert!((hand.target() - target).norm() < 1e-9, "{}: {}", integrator.id, hand.target());
+            // Integrators that keep energy keep what is left of the body's vibrations too, which short steps see more of.
+            let slack = if integrator.is_explicit() { 0.5 } else { 0.02 };
+            let behind = hand.target() - hand.position(simulation.displacement());
+            let way = velocity.norm() * h;
+            assert!(behind.norm() < slack * way, "{} {iterations}: {behind} of {way}", integrator.id);
+        }
+    }
+}
+
+/// A body in a hand gets a support: the hand keeps its hold, and its spring stands where it belongs in the new matrix,
+/// so that steps converge as before.
+#[test]
+fn a_hand_keeps_its_hold_when_a_support_comes() {
+    let mut scene = Scene::beam(2.0, 0.5).with_cells(8, 2).with_material(Material::new(1e5, 0.3));
+    scene.material.density = 100.0;
+    let mut scene = scene.moving(IntegratorKind::EnergyMomentum, 1.0 / 60.0);
+    (scene.dynamics.iterations, scene.dynamics.duration) = (0, 1e3);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let place = Vector2::new(1.6, 0.1);
+    assert!(simulation.grab(simulation.system().mesh().locate(place).unwrap()));
+    scene = scene.clamp("left");
+    simulation.change_scene(&scene).unwrap();
+    let held = simulation.hand().unwrap().0.position(simulation.displacement());
+    assert!((held - place).norm() < 1e-12);
+    for step in 1..=30 {
+        simulation.pull_to(place + Vector2::new(0.0, 0.01 * f64::from(step))).unwrap();
+        simulation.step();
+    }
+    let counts = simulation.motion().unwrap().counts();
+    assert!(counts.halvings == 0 && counts.solves <= 7 * counts.steps, "{counts:?}");
+    let (hand, force) = simulation.hand().unwrap();
+    let lifted = hand.position(simulation.displacement()) - place;
+    assert!(lifted.y > 0.15 && force.norm() > 0.0, "{lifted}");
+}
+
+/// An explicit step bears a hand no stiffer than a quarter of the mass it moves over h²; held against that of a beam it
+/// leads a corner so far, and comes to rest there: its damper is no harder than the step bears either.
+#[test]
+fn an_explicit_step_softens_the_hand() {
+    let static_scene = Scene::beam(1.0, 0.5).with_cells(3, 1).with_material(Material::new(1e6, 0.3)).clamp("left");
+    let corner = Vector2::new(1.0, 0.25);
+    let moved = |force: [f64; 2]| {
+        let scene = static_scene.clone().with_method(MethodKind::Linear).force(<[f64; 2]>::from(corner), force);
+        let loaded = common::solved(&scene);
+        loaded.displacement()[loaded.system().mesh().nearest_node(corner) as usize]
+    };
+    let compliance = Matrix2::from_columns(&[moved([1.0, 0.0]), moved([0.0, 1.0])]);
+    let mut scene = static_scene.clone().moving(IntegratorKind::SymplecticEuler, 1e-5);
+    scene.material.density = 1000.0;
+    (scene.dynamics.damping.mass, scene.dynamics.duration) = (60.0, 1e3);
+    let critical = Simulation::new(&scene).unwrap().motion().unwrap().critical_step().unwrap();
+    for part in [0.75, 0.9] {
+        let h = part * critical;
+        scene.dynamics.time_step = h;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let point = simulation.system().mesh().locate(corner).unwrap();
+        let node = simulation.system().mesh().nearest_node(corner);
+        assert!(simulation.grab(point));
+        let pull = Vector2::new(2e-5, -1e-4);
+        while simulation.state().time() < 2.0 {
+            simulation.pull_to(corner + pull).unwrap();
+            simulation.step();
+        }
+        assert_eq!(simulation.motion().unwrap().counts().halvings, 0);
+        let mass = Mass::new(simulation.system(), scene.material.area_density()).lumped()[node as usize];
+        let (hand, _) = simulation.hand().unwrap();
+        let soft = 0.25 * mass / (h * h);
+        assert!(
+            soft < 0.9 * hand.stiffness(),
+            "the step is too long for the hand as it is: {soft} {}",
+            hand.stiffness()
+        );
+        let expected = compliance * (compliance + Matrix2::identity() / soft).try_inverse().unwrap() * pull;
+        let found = hand.position(simulation.displacement()) - corner;
+        assert!((found - expected).norm() < 1e-3 * pull.norm(), "{part}: {found} {expected}");
+        assert!(simulation.state().velocity()[node as usize].norm() < 1e-3 * pull.norm(), "it has come to rest");
+    }
 }

@@ -140,3 +140,25 @@ fn the_potential_is_the_work_along_a_path() {
     let difference = potential(&states[0]) - potential(states.last().unwrap());
     assert!((work - difference).abs() < 1e-3 * difference.abs(), "{work} {difference}");
 }
+
+/// Between two states the loads' force works by exactly what their potential falls, however far the edge has turned, and
+/// is their ordinary force where the two are one.
+#[test]
+fn between_two_states_the_loads_work_by_their_potential() {
+    let problem = problem();
+    let potential = |state: &State| problem.loads().potential(state, 1.0);
+    for (from, to) in [(0.0, 0.0), (0.4, 0.4), (0.3, 0.3 + 1e-6), (0.1, 0.9), (1.0, -1.5), (3.0, 3.0 + 2.5), (TAU, 8.0)]
+    {
+        let states = [from, to].map(|angle| rolled_state(&problem, angle));
+        let mut force = vec![Vector2::zeros(); states[0].displacement().len()];
+        problem.loads().force_between(problem.system(), [&states[0], &states[1]], &mut force);
+        let way = states[1].displacement().iter().zip(states[0].displacement()).map(|(b, a)| b - a);
+        let work: f64 = way.zip(&force).map(|(way, f)| way.dot(f)).sum();
+        let fall = potential(&states[0]) - potential(&states[1]);
+        assert!((work - fall).abs() < 1e-12 * (1.0 + fall.abs()), "{from} to {to}: {work} {fall}");
+        let mut ordinary = force.clone();
+        problem.loads().force(problem.system(), states[0].displacement(), Kinematics::Corotated, 1.0, &mut ordinary);
+        let off = force.iter().zip(&ordinary).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(if (to - from).abs() < 1e-5 { off < 1e-5 } else { off > 1e-3 }, "{from} to {to}: {off}");
+    }
+}

@@ -142,3 +142,36 @@ impl Momentum {
         Self { linear: nodal.iter().sum(), angular: positions.zip(&nodal).map(|(x, p)| x.perp(p)).sum() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Ledger;
+
+    /// What an integrator has added counts against the energy there was, by how much the potential has changed, and the
+    /// work done since; a loss never does.
+    #[test]
+    fn a_gain_is_measured_by_what_was_there_and_done() {
+        let before = Ledger {
+            kinetic: 3.0,
+            elastic: 2.0,
+            potential: -1.0,
+            integrator: 0.5,
+            pulses: 1.0,
+            hands: -2.0,
+            ..Ledger::default()
+        };
+        // There were 3 + 2 J, and 2.5 J of potential have come; the works since are 1.5 J and 3 J.
+        let after = |added: f64| Ledger {
+            kinetic: 40.0,
+            elastic: 50.0,
+            potential: 1.5,
+            integrator: 0.5 - added,
+            pulses: -0.5,
+            hands: -5.0,
+            ..before
+        };
+        for (added, gained) in [(2.99, false), (3.01, true), (0.0, false), (-10.0, false)] {
+            assert_eq!(after(added).has_gained_since(&before, 0.25), gained, "{added} J of 12 J");
+        }
+    }
+}

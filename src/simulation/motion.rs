@@ -82,6 +82,7 @@ impl Motion {
         self.linear.forget();
         // What came before must not be seen in what comes.
         self.memory.corrector.forget();
+        self.memory.residual = 0.0;
         problem.system().follow(state, self.kinematics(scene));
         problem.set_time(state.time);
         self.counts = Counts::default();

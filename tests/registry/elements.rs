@@ -9,7 +9,7 @@ use warpbeam::element::{ELEMENTS, ElementType, RulePoint, Tangent};
 use warpbeam::mesh::{MaterialPoint, Mesh};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::Rotation;
-use warpbeam::simulation::{Field, Simulation};
+use warpbeam::simulation::{Deformation, Field, Simulation};
 use warpbeam::solver::Factor;
 use warpbeam::{Axis, ElementKind, Load, Material, Plane, Scene, State, Status};
 
@@ -29,6 +29,10 @@ const TESTS: &[Test<ElementKind>] = &[
     ("material_points_are_found_in_curved_elements", material_points_are_found_in_curved_elements),
     ("patch_test", patch_test),
     ("uniform_traction_gives_uniform_strain", uniform_traction_gives_uniform_strain),
+    ("fields_of_a_uniform_stretch", fields_of_a_uniform_stretch),
+    ("the_strains_at_points_hold_the_energy", the_strains_at_points_hold_the_energy),
+    ("areas_and_inversions_are_those_of_the_map", areas_and_inversions_are_those_of_the_map),
+    ("points_are_seen_with_the_rotation_around_them", points_are_seen_with_the_rotation_around_them),
     ("rigid_motions_give_no_force_and_no_energy", rigid_motions_give_no_force_and_no_energy),
     ("the_force_is_the_gradient_of_the_energy", the_force_is_the_gradient_of_the_energy),
     ("the_tangent_is_the_derivative_of_the_force", the_tangent_is_the_derivative_of_the_force),
@@ -348,6 +352,126 @@ fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
     }
 }
 
+/// The fields of a body that is stretched uniformly and turned, in closed form: the strain is S − I, and the von Mises
+/// stress of the Biot stress that of its deviator in space, with what plane strain adds across the plane.
+fn fields_of_a_uniform_stretch(kind: ElementKind) {
+    let degrees = -70.0f64;
+    let turn = Rotation::from_angle(degrees.to_radians());
+    let (xx, xy, yy) = (-0.04, 0.013, 0.02);
+    let strain = Matrix2::new(xx, xy, xy, yy);
+    for plane in [Plane::Stress, Plane::Strain] {
+        let problem = problem(&irregular_scene(plane), kind);
+        let state = state(&problem, |x| turn.apply(x + strain * x) + Vector2::new(2.0, -1.0));
+        // E = 100, ν = 0.3.
+        let (young, poisson) = (100.0, 0.3);
+        let shear = young / (2.0 * (1.0 + poisson));
+        let pressure_part = match plane {
+            Plane::Stress => young * poisson / (1.0 - poisson * poisson),
+            Plane::Strain => young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
+        } * (xx + yy);
+        let (sx, sy, t) = (pressure_part + 2.0 * shear * xx, pressure_part + 2.0 * shear * yy, 2.0 * shear * xy);
+        let z = if plane == Plane::Strain { poisson * (sx + sy) } else { 0.0 };
+        let mean = (sx + sy + z) / 3.0;
+        let deviator = (sx - mean).powi(2) + (sy - mean).powi(2) + (z - mean).powi(2) + 2.0 * t * t;
+        let largest = strain.symmetric_eigenvalues().amax();
+        for (field, expected) in [
+            (Field::BiotVonMises, (1.5 * deviator).sqrt()),
+            (Field::EnergyDensity, 0.5 * (sx * xx + sy * yy) + t * xy),
+            (Field::LargestStrain, largest),
+            (Field::RotationAngle, degrees),
+        ] {
+            let mut values = Vec::new();
+            field.values(&problem, &state, Kinematics::Corotated, &mut values);
+            assert_eq!(values.len(), problem.system().elements().point_count());
+            for value in values {
+                let value = value.unwrap();
+                assert!((value - expected).abs() < 1e-11 * expected.abs(), "{plane:?} {field:?}: {value} {expected}");
+            }
+        }
+        let deformation = Deformation::of(&problem, &state);
+        assert!((deformation.max_rotation_deg - degrees.abs()).abs() < 1e-9, "{deformation:?}");
+        assert!((deformation.max_strain - largest).abs() < 1e-12, "{deformation:?}");
+        assert_eq!(deformation.inverted_elements, 0);
+    }
+}
+
+/// The energy of the strains that are shown is the elastic energy: ∫ ψ over the quadrature points, what an element's own
+/// modes add to the strain included.
+fn the_strains_at_points_hold_the_energy(kind: ElementKind) {
+    for plane in [Plane::Stress, Plane::Strain] {
+        let problem = problem(&irregular_scene(plane), kind);
+        let (elements, moduli) = (problem.system().elements(), problem.material().membrane());
+        for place in [bent, |x: Vector2<f64>| Vector2::new(x.x + 0.2 * x.x * x.y, x.y - 0.1 * x.x * x.x)] {
+            let state = state(&problem, place);
+            let (mut sum, mut next) = (0.0, 0);
+            elements.visit_strains(moduli, state.displacement(), state.rotations(), &mut |q, _, strain| {
+                assert_eq!(q, next);
+                next += 1;
+                sum += elements.point_area(q) * moduli.energy_density(strain);
+            });
+            assert_eq!(next, elements.point_count());
+            let energy = problem.elastic_energy(&state);
+            assert!((sum - energy).abs() < 1e-12 * energy, "{plane:?}: {sum} {energy}");
+        }
+    }
+}
+
+/// Areas over those at rest, and elements that are turned inside out, by the Jacobians of the shape functions.
+fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
+    let problem = problem(&irregular_scene(Plane::Stress), kind);
+    let (entry, mesh) = (kind.entry(), problem.system().mesh());
+    let places: [fn(Vector2<f64>) -> Vector2<f64>; 4] = [
+        |x| x,
+        bent,
+        |x| Vector2::new(x.x * x.x * 0.4, x.y + 0.3 * x.x),
+        // A fold: part of the body is turned inside out.
+        |x| Vector2::new((2.0 * x.x).sin(), x.y + 0.2 * x.x * x.y),
+    ];
+    let mut inversions = Vec::new();
+    for place in places {
+        let state = state(&problem, place);
+        let (mut least, mut inverted) = (f64::INFINITY, 0);
+        for own in mesh.elements() {
+            let rest: Vec<_> = own.iter().map(|&n| mesh.nodes()[n as usize]).collect();
+            let now: Vec<_> = own.iter().zip(&rest).map(|(&n, x)| x + state.displacement()[n as usize]).collect();
+            let area = |nodes: &[Vector2<f64>], at| entry.jacobian(nodes, at).determinant();
+            let ratios: Vec<_> = entry.points.iter().map(|p| area(&now, p.at) / area(&rest, p.at)).collect();
+            inverted += usize::from(ratios.iter().any(|ratio| *ratio <= 0.0));
+            least = ratios.into_iter().fold(least, f64::min);
+        }
+        let found = problem.system().elements().smallest_area_ratio(state.displacement());
+        assert!((found - least).abs() < 1e-12, "{found} {least}");
+        assert_eq!(Deformation::of(&problem, &state).inverted_elements, inverted);
+        inversions.push(inverted);
+    }
+    assert!(inversions[..2] == [0, 0] && inversions[3] > 1 && inversions[3] < mesh.element_count(), "{inversions:?}");
+}
+
+/// Of a body that turns by more than two radians from end to end, every quadrature point is seen with a rotation that is
+/// about its own.
+fn points_are_seen_with_the_rotation_around_them(kind: ElementKind) {
+    let scene = Scene::beam(16.0, 1.0).with_cells(16, 1).with_element(kind).clamp("left");
+    let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
+    let radius = 6.0;
+    let roll = |x: Vector2<f64>| {
+        Rotation::from_angle(x.x / radius).apply(Vector2::new(0.0, x.y - radius)) + Vector2::new(0.0, radius)
+    };
+    let state = state(&problem, roll);
+    let elements = problem.system().elements();
+    assert_eq!(elements.point_count(), elements.points_per_element() * problem.system().mesh().element_count());
+    assert_eq!(elements.points_per_element(), kind.entry().points.len());
+    let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+    let moduli = problem.material().membrane();
+    elements.visit_strains(moduli, state.displacement(), state.rotations(), &mut |q, h, _| {
+        let own = warpbeam::rotation::polar(&(Matrix2::identity() + h)).unwrap();
+        let seen = state.rotations()[elements.rotation_of(q)];
+        let off = (own.c * seen.s - own.s * seen.c).atan2(own.c * seen.c + own.s * seen.s);
+        assert!(off.abs() < 0.12, "point {q}: {own:?} {seen:?}");
+        (first, last) = (first.min(own.angle()), last.max(own.angle()));
+    });
+    assert!(last - first > 2.0, "{first} to {last}");
+}
+
 fn rigid_motions_give_no_force_and_no_energy(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Strain), kind);
     for degrees in [0.0f64, 1e-6, 10.0, 90.0, 179.0, -135.0] {
@@ -521,6 +645,13 @@ fn damping_is_the_stiffness_at_rest_and_blind_to_turning(kind: ElementKind) {
         force(&middle, StrainRate::Difference(&[(1.0, b), (-1.0, a)]))
     };
     assert!(between(u, &turned).iter().all(|f| f.norm() < 1e-11));
+    // Green's strain is quadratic in x: its difference is its rate half way, whatever the time between.
+    let halves: Vec<_> = rest.iter().zip(u).map(|(a, b)| (a + b) * 0.5).collect();
+    let quick: Vec<_> = u.iter().map(|u| u * 4.0).collect();
+    let by_rate = force(&halves, StrainRate::Velocity(&quick));
+    let by_difference = force(&halves, StrainRate::Difference(&[(4.0, u), (-1.0, &rest), (-3.0, &rest)]));
+    let size = by_rate.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    assert!(by_rate.iter().zip(&by_difference).all(|(a, b)| (a - b).norm() < 1e-12 * size));
     let work = |a: &[Vector2<f64>], b: &[Vector2<f64>]| -> f64 {
         between(a, b).iter().zip(a.iter().zip(b)).map(|(f, (a, b))| f.dot(&(b - a))).sum()
     };
