@@ -86,8 +86,8 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     dashed(&inside, place(0.0, asked), place(most, asked), Stroke::new(1.0, palette.secondary));
     if let Some(rho) = rho {
         // Through the last point, as it goes on from there; where that goes nowhere, through the lowest.
-        let points = residuals.iter().enumerate().map(|(i, &r)| (i as f64 + 1.0, decade(r)));
-        let anchor = if rho < 1.0 { points.last() } else { points.min_by(|a, b| a.1.total_cmp(&b.1)) };
+        let mut points = residuals.iter().enumerate().map(|(i, &r)| (i as f64 + 1.0, decade(r)));
+        let anchor = if rho < 1.0 { points.next_back() } else { points.min_by(|a, b| a.1.total_cmp(&b.1)) };
         let (k, r) = anchor.unwrap_or((0.0, 0.0));
         let line = |at: f64| place(at, r + (at - k) * rho.log10());
         dashed(&inside, line(0.0), line(most), Stroke::new(1.8, palette.exact));
