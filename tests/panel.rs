@@ -377,9 +377,12 @@ fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
             assert!(harness.state().view_rect().right() > size[0] - 20.0, "the sheet is over the body");
         }
         let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
-        for name in
-            ["Pause", "Run", "Step", "Reset", "Explore", "Budget", "Help", "Theme", "Panel", "Load curve", "why?"]
-        {
+        // Where there is no room for them side by side, the modes are a list.
+        let listed = harness.query_by_role_and_label(Role::ComboBox, "Mode").is_some();
+        assert_eq!(listed, size[0] < 700.0, "{size:?}");
+        let modes: &[&str] = if listed { &["Mode"] } else { &["Explore", "Learn", "Budget"] };
+        let others = ["Pause", "Run", "Step", "Reset", "Help", "Theme", "Panel", "Load curve", "why?"];
+        for &name in others.iter().chain(modes) {
             let node = harness.query_by_label(name);
             assert!(node.is_some() || ["Pause"].contains(&name), "{size:?}: no {name}");
             assert!(node.is_none_or(|n| window.contains_rect(n.rect())), "{size:?}: {name} is clipped");
