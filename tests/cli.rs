@@ -77,6 +77,8 @@ fn json_has_every_field_of_the_contract() {
             "status",
             "reason",
             "stable",
+            "jumped",
+            "jumped_at",
             "iterations",
             "load_steps",
             "residual",
@@ -91,6 +93,7 @@ fn json_has_every_field_of_the_contract() {
             "probes",
             "energy",
             "reaction",
+            "supports",
             "time_us",
         ];
         assert_eq!(keys, contract, "{id}");
@@ -784,7 +787,7 @@ fn solve_tells_the_reaction_of_every_support() {
     let sum: f64 = supports.iter().map(|s| s["force"][1].as_f64().unwrap()).sum();
     assert!(sum.abs() < 1e-3, "{sum}");
     let text = stdout(&warpbeam(&[&["solve", "snap", "--no-truth"][..], &set].concat()));
-    assert!(text.contains("support right, moved by (-5, 0) mm, turned by 30 °: reaction ("), "{text}");
+    assert!(text.contains("support right, moved by (-5, 0) mm, turned by 30°: reaction ("), "{text}");
     let wrong = warpbeam(&["solve", "snap", "--set", "support.1.turn=3 mm"]);
     assert!(stderr(&wrong).contains("`3 mm` is a length (m); expected an angle (rad)"), "{}", stderr(&wrong));
 }

@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::lab::{type_into, unfold};
 use common::{scene, solve_json};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
@@ -149,7 +150,7 @@ fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
     let mut harness = harness("article");
     // An arrow along the beam, its tip over the body.
     let mut inwards = harness.state().scene().clone();
-    inwards.set_force(0, [-20_000.0, 0.0]).unwrap();
+    inwards.set_force(0, [-2_000.0, 0.0]).unwrap();
     harness.state_mut().set_scene(inwards).unwrap();
     harness.run();
     let (camera, tip) = (harness.state().camera(), tip(harness.state()));
@@ -203,6 +204,7 @@ fn edits_are_undone_and_done_again() {
     let tip_now = tip(harness.state());
     drag(&mut harness, tip_now, tip_now + vec2(-30.0, -12.0), Modifiers::NONE);
     let dragged = force(harness.state());
+    unfold(&mut harness, "Poisson ν");
     let slider = harness.get_by_role_and_label(Role::Slider, "Poisson ν").rect();
     let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
     drag(&mut harness, at(0.3), at(0.6), Modifiers::NONE);
@@ -465,18 +467,6 @@ fn settings_go_from_one_lab_to_the_next() {
     assert_eq!(second.ctx.theme(), first.ctx.theme());
 }
 
-/// Types a number into the field of this label.
-fn type_into(harness: &mut Harness<'_, Lab>, label: &str, text: &str) {
-    harness.get_by_role_and_label(Role::SpinButton, label).click();
-    harness.run();
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    harness.event(Event::Text(text.to_owned()));
-    harness.step();
-    harness.key_press(Key::Enter);
-    harness.run();
-}
-
 /// A moment goes on an edge that can turn, whatever the edges are called, and moves the body there.
 #[test]
 fn a_moment_goes_on_an_edge_that_can_turn() {
@@ -499,8 +489,7 @@ fn a_moment_goes_on_an_edge_that_can_turn() {
 #[test]
 fn loads_and_supports_are_put_on_other_edges() {
     let mut harness = harness("cantilever");
-    harness.get_by_label("Edges").click();
-    harness.run();
+    unfold(&mut harness, "Held at");
     harness.get_by_role_and_label(Role::ComboBox, "Force on").click();
     harness.run();
     assert!(harness.query_by_role_and_label(Role::Button, "left").is_none(), "a load on a held edge does nothing");

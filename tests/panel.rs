@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::lab::{pick, type_into, unfold};
 use common::{scene, solve_json};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
@@ -49,50 +50,6 @@ fn force(lab: &Lab) -> [f64; 2] {
 
 fn tip(lab: &Lab) -> [f64; 2] {
     lab.simulation().solution().probes[0].u.into()
-}
-
-/// What is behind a fold of the panel.
-const FOLDS: [(&str, &[&str]); 4] = [
-    ("Gravity, moment: ", &["Gravity", "Moment"]),
-    ("Material: ", &["Young E", "Poisson ν", "Density ρ", "Thickness t", "strain"]),
-    ("Mesh: ", &["Cells along", "Cells across"]),
-    ("Details: ", &["stable"]),
-];
-
-/// Opens the fold that something is behind, if it is shut, and shuts the others: all of them are longer than the window.
-fn unfold(harness: &mut Harness<'_, Lab>, label: &str) {
-    if !FOLDS.iter().any(|(_, labels)| labels.contains(&label)) {
-        return;
-    }
-    for (fold, labels) in FOLDS {
-        let is_open = harness.query_all_by_label(labels[0]).next().is_some();
-        if is_open != labels.contains(&label) {
-            harness.get_by_label_contains(fold).click();
-            harness.run_steps(8);
-            harness.run();
-        }
-    }
-}
-
-/// Picks an entry of a picker.
-fn pick(harness: &mut Harness<'_, Lab>, picker: &str, entry: &str) {
-    harness.get_by_role_and_label(Role::ComboBox, picker).click();
-    harness.run();
-    harness.get_by_role_and_label(Role::Button, entry).click();
-    harness.run();
-}
-
-/// Types a number into the field of this label.
-fn type_into(harness: &mut Harness<'_, Lab>, label: &str, text: &str) {
-    unfold(harness, label);
-    harness.get_by_role_and_label(Role::SpinButton, label).click();
-    harness.run();
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    harness.event(egui::Event::Text(text.to_owned()));
-    harness.step();
-    harness.key_press(Key::Enter);
-    harness.run();
 }
 
 /// Dragging the force slider changes the deflection to what `solve` gives for that force.
@@ -520,7 +477,11 @@ fn a_support_is_dragged_and_its_reaction_is_shown() {
     type_into(&mut harness, "Move y", "-3 mm");
     assert_eq!(harness.state().scene().supports[2].displacement, [0.0, -0.003]);
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    unfold(&mut harness, "stable");
     assert!(harness.query_by_label("(0, -80.53) N").is_some());
+    harness.get_by_label_contains("Details: ").click();
+    harness.run_steps(8);
+    harness.run();
     let slider = harness.get_by_role_and_label(Role::Slider, "Move y").rect();
     let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
     harness.hover_at(at(0.4));

@@ -192,10 +192,12 @@ fn assignments_take_units_with_and_without_quotes() {
     assert_eq!(scene_with("article", &["name=12 kN"]).name, "12 kN");
 }
 
-/// No scene that ships changes by being read with units.
+/// No scene of plain numbers changes by being read with units.
 #[test]
 fn plain_numbers_are_si() {
-    for built_in in registry::BUILT_IN {
+    // One ships with units.
+    let plain = registry::BUILT_IN.iter().filter(|built_in| built_in.id != "clip");
+    for built_in in plain {
         let direct: Scene = toml::from_str(built_in.toml).unwrap();
         let mut opened = scene(built_in.id);
         if let Some(mesh) = &mut opened.mesh {

@@ -88,6 +88,8 @@ pub struct Lab {
     view: ViewOptions,
     panel: PanelState,
     eye: Eye,
+    /// What it keeps free around the body.
+    margins: Margins,
     /// Whether the view takes its time on the way to where it looks.
     eases: bool,
     view_rect: Rect,
@@ -176,6 +178,7 @@ impl Lab {
             view: ViewOptions::default(),
             panel: PanelState::default(),
             eye: Eye::new([low, high]),
+            margins: FIT_MARGINS,
             eases: false,
             view_rect: Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1.0, 1.0)),
             pointer: Pointer::default(),
@@ -779,7 +782,9 @@ impl Lab {
         self.running = setup.start != Start::Waiting;
         if setup.start != Start::Now {
             self.reset();
-            // The view follows what has converged; until then there is room for the beam to bend.
+            // The view follows what has converged; until then there is room for the beam to bend, and for its arrow.
+            const ARROW: f64 = 120.0;
+            self.margins = Margins { bottom: CARD_MARGINS.bottom + ARROW, ..CARD_MARGINS };
             let (low, high) = self.simulation.system().mesh().bounds();
             self.eye.follow([low - Vector2::new(0.3, 0.8) * (high.x - low.x), high]);
         }
@@ -1039,6 +1044,7 @@ impl Lab {
             include(&mut self.exact().iter().flatten().copied());
             self.swept = Some([low, high]).filter(|_| self.moves());
             self.eye.follow([low, high]);
+            self.margins = self.with_room_for_arrows(Camera::fit(low, high, size, self.least_margins()), size);
         }
         let [low, high] = self.eye.whole();
         let fitted = self.fit(low, high, size);
@@ -1061,12 +1067,11 @@ impl Lab {
                 (low, high) = (ghost_low, ghost_high);
             }
         }
-        let margins = self.with_room_for_arrows(Camera::fit(low, high, view, self.margins()), view);
-        Camera::fit(low, high, view, margins)
+        Camera::fit(low, high, view, self.margins)
     }
 
     /// What is kept free around the body, whatever its loads.
-    fn margins(&self) -> Margins {
+    fn least_margins(&self) -> Margins {
         if self.learn.is_some() { CARD_MARGINS } else { FIT_MARGINS }
     }
 
@@ -1076,7 +1081,7 @@ impl Lab {
         const BEYOND: f32 = 36.0;
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
-        let least = self.margins();
+        let least = self.least_margins();
         if self.learn.as_ref().is_some_and(|learn| learn.is_apart()) {
             return least;
         }

@@ -88,11 +88,13 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
             march(&mut simulation, writer)
         }
     };
-    let certified = Instant::now();
-    let jump = (status == Status::Converged && !no_certificate && !simulation.is_linear())
-        .then(|| LoadPath::jump_before(&scene, simulation.displacement()))
-        .flatten();
-    let certify_path = certified.elapsed();
+    let mut certify_path = Duration::ZERO;
+    let mut jump = None;
+    if status == Status::Converged && !no_certificate && !simulation.is_linear() {
+        let certified = Instant::now();
+        jump = LoadPath::jump_before(&scene, simulation.displacement());
+        certify_path = certified.elapsed();
+    }
     let recovered = Instant::now();
     let stress = simulation.stress_result();
     let stress_time = recovered.elapsed();

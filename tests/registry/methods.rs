@@ -107,8 +107,9 @@ fn extremes_stay_finite(method: MethodKind) {
             let mut values = Vec::new();
             for field in Field::ALL {
                 simulation.field(field, &mut values);
-                // What is turned inside out has no Cauchy stress.
-                let all = field != Field::VonMises || s.deformation.inverted_elements == 0;
+                // What is turned inside out, or thinned to nothing by its strain, has no Cauchy stress.
+                let is_whole = s.deformation.inverted_elements == 0 && s.deformation.max_strain < 1.0;
+                let all = field != Field::VonMises || is_whole;
                 assert!(!all || values.iter().all(Option::is_some), "{id} {set:?} {field:?}");
                 assert!(values.iter().flatten().all(|v| v.is_finite()), "{id} {set:?} {field:?}");
             }

@@ -1,0 +1,55 @@
+//! The controls of the window, found by their names.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use warpbeam::app::Lab;
+
+/// What is behind a fold of the panel.
+const FOLDS: [(&str, &[&str]); 5] = [
+    ("Gravity, moment: ", &["Gravity", "Moment"]),
+    ("Edges: ", &["Force on", "Held at", "Moment on"]),
+    ("Material: ", &["Young E", "Poisson ν", "Density ρ", "Thickness t", "strain"]),
+    ("Mesh: ", &["Cells along", "Cells across"]),
+    ("Details: ", &["stable"]),
+];
+
+/// Opens the fold that something is behind, if it is shut, and shuts the others: all of them are longer than the window.
+pub fn unfold(harness: &mut Harness<'_, Lab>, label: &str) {
+    if !FOLDS.iter().any(|(_, labels)| labels.contains(&label)) {
+        return;
+    }
+    for (fold, labels) in FOLDS {
+        let is_open = harness.query_all_by_label(labels[0]).next().is_some();
+        if is_open != labels.contains(&label) {
+            harness.get_by_label_contains(fold).click();
+            harness.run_steps(8);
+            harness.run();
+        }
+    }
+}
+
+/// Picks an entry of a picker.
+pub fn pick(harness: &mut Harness<'_, Lab>, picker: &str, entry: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, picker).click();
+    harness.run();
+    // The list may be longer than what is seen of it.
+    harness.get_by_role_and_label(Role::Button, entry).scroll_to_me();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, entry).click();
+    harness.run();
+}
+
+/// Types a number into the field of this label.
+pub fn type_into(harness: &mut Harness<'_, Lab>, label: &str, text: &str) {
+    unfold(harness, label);
+    harness.get_by_role_and_label(Role::SpinButton, label).click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.event(egui::Event::Text(text.to_owned()));
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run();
+}
