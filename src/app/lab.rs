@@ -786,7 +786,7 @@ impl Lab {
             const ARROW: f64 = 120.0;
             self.margins = Margins { bottom: CARD_MARGINS.bottom + ARROW, ..CARD_MARGINS };
             let (low, high) = self.simulation.system().mesh().bounds();
-            self.eye.follow([low - Vector2::new(0.3, 0.8) * (high.x - low.x), high]);
+            self.eye.follow([low - Vector2::new(0.3, 1.15) * (high.x - low.x), high]);
         }
     }
 
