@@ -340,6 +340,7 @@ fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
             "Step",
             "Reset",
             "Explore",
+            "Learn",
             "Compare",
             "Budget",
             "Help",

@@ -66,6 +66,8 @@ pub(super) enum Action {
     Copy,
     /// Start the study, or call it off.
     Measure(bool),
+    /// Show the card of this number, from 0, and set its scene up.
+    Card(usize),
     /// Use a measured setting.
     Apply(Setting),
 }

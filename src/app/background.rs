@@ -43,8 +43,8 @@ pub(super) struct Background {
     receiver: Receiver<Message>,
     cancel: Arc<AtomicBool>,
     /// Fraction that is done, and what is measured now.
-    pub fraction: f32,
-    pub now: String,
+    fraction: f32,
+    now: String,
 }
 
 impl Background {
@@ -52,12 +52,19 @@ impl Background {
     ///
     /// # Errors
     /// [`BackgroundError::NoThread`].
-    pub(super) fn start(scene: Scene) -> Result<Self, BackgroundError> {
+    pub(super) fn start(scene: Scene, extent: Extent) -> Result<Self, BackgroundError> {
         let (sender, receiver) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let cancelled = cancel.clone();
-        std::thread::Builder::new().name("study".to_owned()).spawn(move || work(&scene, &sender, &cancelled))?;
+        std::thread::Builder::new()
+            .name("study".to_owned())
+            .spawn(move || work(&scene, extent, &sender, &cancelled))?;
         Ok(Self { receiver, cancel, fraction: 0.0, now: String::new() })
+    }
+
+    /// Fraction that is done, and what is measured now.
+    pub(super) fn progress(&self) -> (f32, &str) {
+        (self.fraction, &self.now)
     }
 
     /// Takes what has been heard since; measurements go to `study`.
@@ -85,7 +92,7 @@ impl Drop for Background {
     }
 }
 
-fn work(scene: &Scene, sender: &Sender<Message>, cancelled: &AtomicBool) {
+fn work(scene: &Scene, extent: Extent, sender: &Sender<Message>, cancelled: &AtomicBool) {
     // Nobody listening is as good as being called off.
     let mut observe = |progress: Progress<'_>| {
         let heard = match progress.so_far {
@@ -98,6 +105,6 @@ fn work(scene: &Scene, sender: &Sender<Message>, cancelled: &AtomicBool) {
             ControlFlow::Continue(())
         }
     };
-    let done = Study::new(scene, Extent::Full, &mut observe);
+    let done = Study::new(scene, extent, &mut observe);
     let _ = sender.send(Message::Done(done));
 }

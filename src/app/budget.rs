@@ -12,7 +12,7 @@ use crate::element::ELEMENTS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, Scene, SolverSettings, limits};
 use crate::study::plot::drawn_error;
-use crate::study::{Demand, Measurement, Setting, Study};
+use crate::study::{Demand, Extent, Measurement, Setting, Study};
 use crate::words::{engineering, number, percent, three_digits};
 
 /// The study of the lab's scene, and the limits within which its settings are looked for.
@@ -62,9 +62,9 @@ pub(super) fn question(scene: &Scene) -> Scene {
 
 impl Budget {
     /// Starts to measure a scene; what was measured before goes.
-    pub(super) fn measure(&mut self, scene: &Scene) {
+    pub(super) fn measure(&mut self, scene: &Scene, extent: Extent) {
         *self = Self { of: Some(question(scene)), limits: self.limits, ..Self::default() };
-        match Background::start(scene.clone()) {
+        match Background::start(scene.clone(), extent) {
             Ok(background) => self.background = Some(background),
             Err(error) => self.error = Some(error),
         }
@@ -73,6 +73,11 @@ impl Budget {
     /// Calls the study off; what has been measured stays.
     pub(super) fn cancel(&mut self) {
         self.background = None;
+    }
+
+    /// Fraction that is done and what is measured now, while a study runs.
+    pub(super) fn progress(&self) -> Option<(f32, &str)> {
+        self.background.as_ref().map(Background::progress)
     }
 
     /// Whether a study runs.
@@ -116,7 +121,7 @@ impl Budget {
             demand,
             meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
             current: self.of.as_ref() == Some(&question(scene)),
-            progress: self.background.as_ref().map(|b| (b.fraction, b.now.as_str())),
+            progress: self.background.as_ref().map(Background::progress),
             error: self.error.as_ref().map(ToString::to_string),
             iterations,
         };

@@ -18,6 +18,7 @@ use super::eye::Eye;
 use super::file_dialog::{Answer, FileDialog, Purpose};
 use super::finder::{Finder, LISTEN};
 use super::intro::Intro;
+use super::learn::{self, Learn, Shown, Start};
 use super::mode::Mode;
 use super::overlay::{self, Overlay, Projection};
 use super::palette::{self, Palette};
@@ -39,7 +40,7 @@ use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{Jump, LoadPath, Reference, Study};
+use crate::study::{Extent, Jump, LoadPath, Reference, Study};
 use crate::timings::Timings;
 
 /// Width of the panel, points.
@@ -53,6 +54,8 @@ const HEADLINE_HEIGHT: f32 = 42.0;
 
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
+/// The same over a card, which leaves less of the view.
+const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 48.0, bottom: 44.0 };
 
 /// Height of what is shown under the body, points; at most a part of the window's.
 const DRAWER_HEIGHT: f32 = 270.0;
@@ -124,6 +127,10 @@ pub struct Lab {
     residuals: Vec<f64>,
     /// The first seconds, while they last.
     intro: Option<Intro>,
+    /// The cards, in the mode that has them.
+    learn: Option<Box<Learn>>,
+    /// The card that was shown last, from 0.
+    card: usize,
 }
 
 /// Why a scene is not shown.
@@ -177,6 +184,8 @@ impl Lab {
             timings: Timings::default(),
             residuals: Vec::new(),
             intro: None,
+            learn: None,
+            card: 0,
         };
         lab.solve_linear();
         lab
@@ -202,9 +211,34 @@ impl Lab {
         self.view.drawer = Some(Drawer::Curve);
     }
 
+    /// Shows a card of the mode Learn, which count from 1; the lab as it is comes back at the end of the mode.
+    pub fn show_card(&mut self, number: usize) {
+        let card = number.saturating_sub(1).min(learn::CARDS.len() - 1);
+        if self.learn.is_some() {
+            self.go_to_card(card);
+        } else {
+            self.card = card;
+            self.view.mode = Mode::Learn;
+            self.enter_or_leave();
+        }
+    }
+
+    /// The number of the card that is shown, from 1, and of how many; `None` in other modes.
+    #[must_use]
+    pub fn card(&self) -> Option<(usize, usize)> {
+        self.learn.as_ref().map(|_| (self.card + 1, learn::CARDS.len()))
+    }
+
+    /// How it is looked at.
+    pub(super) fn view(&self) -> &ViewOptions {
+        &self.view
+    }
+
     /// Shows a study under the body.
     pub fn show_study(&mut self, study: Study) {
-        self.view.mode = Mode::Budget;
+        if self.learn.is_none() {
+            self.view.mode = Mode::Budget;
+        }
         self.budget.set(&self.scene, study);
     }
 
@@ -367,7 +401,9 @@ impl Lab {
             egui::ThemePreference::Light => Some(ThemeChoice::Light),
             egui::ThemePreference::System => None,
         };
-        let ViewOptions { panel, drawer, field, .. } = self.view;
+        // The cards have a view of their own, which is not remembered.
+        let ViewOptions { panel, drawer, field, .. } =
+            *self.learn.as_ref().map_or(&self.view, |learn| learn.view_before());
         let mut settings = self.settings.clone();
         (settings.theme, settings.panel, settings.drawer) = (theme, panel, drawer);
         settings.set_color(field);
@@ -417,6 +453,9 @@ impl Lab {
         self.simulation.certify();
         self.quality.follow(&self.simulation);
         self.truth.settle(&self.scene);
+        if let Some(learn) = &mut self.learn {
+            learn.settle(&self.scene);
+        }
         if self.view.mode == Mode::Compare {
             self.compare.settle(&self.scene, self.simulation.system());
         }
@@ -451,7 +490,8 @@ impl Lab {
             Some(Drawer::Motion) => self.frequency.is_open(),
             _ => false,
         };
-        open || (self.truth.is_open() || self.jump.is_open()) && !self.moves()
+        let learns = self.learn.as_ref().is_some_and(|learn| learn.is_looking());
+        open || learns || (self.truth.is_open() || self.jump.is_open()) && !self.moves()
     }
 
     /// What is drawn of the body, as of the last [`Self::ui`].
@@ -687,6 +727,90 @@ impl Lab {
         (compare, input)
     }
 
+    /// The cards, under the body.
+    pub(super) fn learn(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        // What cards remember is apart from what they show.
+        let Some(mut learn) = self.learn.take() else { return };
+        let shown = Shown { input: self.input(), study: self.budget.study(), progress: self.budget.progress() };
+        // What lies over the body has Escape first.
+        let sheet = self.view.narrow && self.view.sheet;
+        let keys = self.dialog.is_none() && !self.view.help && !sheet;
+        learn.show(ui, &shown, keys, actions);
+        self.learn = Some(learn);
+    }
+
+    /// Puts the lab aside for another with the article's beam where the mode asks for cards, and takes it back after.
+    fn enter_or_leave(&mut self) {
+        match (self.view.mode == Mode::Learn, self.learn.take()) {
+            (true, None) => {
+                let article = learn::article()
+                    .and_then(|(source, scene)| Some(Self::new(source, scene.clone(), Simulation::new(&scene).ok()?)));
+                let Some(mut lab) = article else {
+                    self.view.mode = Mode::Explore;
+                    return;
+                };
+                lab.adapter.clone_from(&self.adapter);
+                lab.settings = std::mem::take(&mut self.settings);
+                lab.eases = self.eases;
+                let (bars, panel, narrow) = (self.view.bars, self.view.panel, self.view.narrow);
+                lab.view = ViewOptions { mode: Mode::Learn, bars, panel, narrow, raw: true, ..ViewOptions::default() };
+                (lab.view_rect, lab.card) = (self.view_rect, self.card);
+                self.intro = None;
+                self.view.mode = Mode::Explore;
+                let before = Box::new(std::mem::replace(self, lab));
+                self.learn = Some(Box::new(Learn::new(before, self.card)));
+                self.set_card_up();
+            }
+            (false, Some(learn)) => {
+                let (mode, drawer) = (self.view.mode, self.view.drawer);
+                let (before, card) = learn.leave();
+                let settings = std::mem::take(&mut self.settings);
+                *self = *before;
+                (self.card, self.settings) = (card, settings);
+                self.view.mode = if (mode.entry().serves)(&self.scene) { mode } else { Mode::Explore };
+                // Plots that were asked for from a card are shown.
+                self.view.drawer = drawer.map(|_| Drawer::of(&self.scene)).or(self.view.drawer);
+            }
+            (_, same) => self.learn = same,
+        }
+    }
+
+    fn go_to_card(&mut self, card: usize) {
+        if let Some(learn) = &mut self.learn {
+            learn.go_to(card);
+            self.card = card;
+            self.set_card_up();
+        }
+    }
+
+    /// Makes scene and view what the card wants.
+    fn set_card_up(&mut self) {
+        let Some(setup) = self.learn.as_ref().map(|learn| learn.card().setup) else { return };
+        let Some((source, mut scene)) = learn::article() else { return };
+        (setup.edit)(&mut scene);
+        // The article's beam has every card's scene.
+        if self.set_scene(scene).is_err() {
+            return;
+        }
+        self.document = Document::new(source, self.scene.clone());
+        self.edits = Edits::default();
+        self.panel.clear();
+        self.view.color_with(setup.field);
+        self.view.fixed_range = None;
+        (self.view.exact, self.view.rest_outline, self.view.ghost) = (setup.exact, setup.rest, false);
+        self.eye.fit();
+        self.iterations = 1;
+        self.running = setup.start != Start::Waiting;
+        if setup.start != Start::Now {
+            self.reset();
+            // The view follows what has converged; until then there is room for the beam to bend, and for its arrow.
+            const ARROW: f64 = 120.0;
+            self.margins = Margins { bottom: CARD_MARGINS.bottom + ARROW, ..CARD_MARGINS };
+            let (low, high) = self.simulation.system().mesh().bounds();
+            self.eye.follow([low - Vector2::new(0.3, 1.15) * (high.x - low.x), high]);
+        }
+    }
+
     /// Takes a scene that should be as good as the present one; says so where it is not.
     fn edit(&mut self, ctx: &egui::Context, scene: Scene) {
         if let Err(error) = self.set_scene(scene) {
@@ -698,26 +822,34 @@ impl Lab {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         // What is pressed is what was seen: the last picture.
         let projection = Projection { camera: self.camera(), rect: self.view_rect };
-        let arrows = self.forces().arrows(&projection);
+        // Elements that are drawn elsewhere cannot be pulled.
+        let apart = self.learn.as_ref().is_some_and(|learn| learn.is_apart());
+        let arrows = if apart { Vec::new() } else { self.forces().arrows(&projection) };
         let size = [rect.width(), rect.height()].map(f64::from);
         let reach = Reach {
             camera: projection.camera,
             positions: &self.shape.nodes,
             outline: &self.drawing.boundary,
             arrows: &arrows,
+            apart,
             scales: self.eye.scales(size),
         };
         self.view_rect = rect;
         let wish = self.pointer.follow(ui, &response, &reach, Some((&mut self.simulation, &mut self.playback)));
         self.take_wish(ui.ctx(), &wish, requests);
         self.update_shape(ui.visuals());
+        if let Some(learn) = &self.learn {
+            learn.place(&self.simulation, &self.drawing, &mut self.shape.points);
+        }
         match wish.look {
             Look::Same => {}
             Look::At(camera) => self.eye.look(camera),
             Look::Fit => self.eye.fit(),
         }
         self.follow(ui, size);
-        if let (Some(Some(point)), Some(click)) = (wish.clicked, response.interact_pointer_pos()) {
+        // On a card a click takes a triangle.
+        let probed = wish.clicked.flatten().filter(|_| self.learn.is_none());
+        if let (Some(point), Some(click)) = (probed, response.interact_pointer_pos()) {
             let kept = self.probe.and_then(|kept| self.in_view(kept));
             self.probe = (!kept.is_some_and(|kept| probe::is_on(kept, click))).then_some(point);
         }
@@ -734,6 +866,7 @@ impl Lab {
             options: &self.view,
             camera: self.camera(),
             positions: &self.shape.nodes,
+            apart,
             ghost: self.ghost(),
             exact: if self.intro.is_some() { &[] } else { self.exact() },
             errors: if self.intro.is_some() { Errors::default() } else { errors },
@@ -748,7 +881,23 @@ impl Lab {
             warning: (bad && !self.view.bars).then_some(&words),
         };
         overlay::paint(&painter, rect, &overlay, ui.visuals());
-        self.show_values(ui, &painter);
+        if let Some(learn) = &mut self.learn {
+            let view = learn::View {
+                simulation: &self.simulation,
+                drawing: &self.drawing,
+                points: &self.shape.points,
+                camera: self.eye.camera(),
+                rect,
+                palette: Palette::new(ui.visuals()),
+            };
+            if let (true, Some(at)) = (response.clicked(), response.interact_pointer_pos()) {
+                learn.pick(&view, at);
+            }
+            learn.paint(&painter, &view);
+        }
+        if !apart {
+            self.show_values(ui, &painter);
+        }
         if self.view.bars && self.intro.is_none() {
             let mut free = rect;
             if self.view.narrow && self.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
@@ -784,7 +933,9 @@ impl Lab {
                     }
                 });
             }
-            if let Some(remedy) = verdict::remedy(&input, errors) {
+            // A card has its own way on.
+            let remedy = verdict::remedy(&input, errors).filter(|_| self.learn.is_none());
+            if let Some(remedy) = remedy {
                 chip(palette.error_chip).show(ui, |ui| {
                     ui.horizontal_wrapped(|ui| {
                         ui.colored_label(palette.error, &remedy.words);
@@ -919,7 +1070,7 @@ impl Lab {
             include(&mut self.exact().iter().flatten().copied());
             self.swept = Some([low, high]).filter(|_| self.moves());
             self.eye.follow([low, high]);
-            self.margins = self.with_room_for_arrows(Camera::fit(low, high, size, FIT_MARGINS), size);
+            self.margins = self.with_room_for_arrows(Camera::fit(low, high, size, self.least_margins()), size);
         }
         let [low, high] = self.eye.whole();
         let fitted = self.fit(low, high, size);
@@ -945,19 +1096,28 @@ impl Lab {
         Camera::fit(low, high, view, self.margins)
     }
 
+    /// What is kept free around the body, whatever its loads.
+    fn least_margins(&self) -> Margins {
+        if self.learn.is_some() { CARD_MARGINS } else { FIT_MARGINS }
+    }
+
     /// What is kept free around the body: also what the loads' arrows need beyond the view of this camera.
     fn with_room_for_arrows(&self, camera: Camera, view: [f64; 2]) -> Margins {
         /// Beyond a tip, points: its force stands there.
         const BEYOND: f32 = 36.0;
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
-        self.forces().arrows(&projection).iter().fold(FIT_MARGINS, |margins, arrow| {
+        let least = self.least_margins();
+        if self.learn.as_ref().is_some_and(|learn| learn.is_apart()) {
+            return least;
+        }
+        self.forces().arrows(&projection).iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
             let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
             Margins {
-                sides: margins.sides.max(FIT_MARGINS.sides + beyond((-tip.x).max(tip.x - size.x))),
-                top: margins.top.max(FIT_MARGINS.top + beyond(-tip.y)),
-                bottom: margins.bottom.max(FIT_MARGINS.bottom + beyond(tip.y - size.y)),
+                sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x))),
+                top: margins.top.max(least.top + beyond(-tip.y)),
+                bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y)),
             }
         })
     }
@@ -1035,7 +1195,15 @@ impl Lab {
             Action::Toggle(Toggle::Mode(mode)) if !(mode.entry().serves)(&self.scene) => {
                 self.say(ctx, mode.entry().unless.to_owned());
             }
-            Action::Toggle(what) => self.view.toggle(what),
+            Action::Toggle(what) => {
+                self.view.toggle(what);
+                self.enter_or_leave();
+                ctx.request_repaint();
+            }
+            Action::Card(card) => {
+                self.go_to_card(card);
+                ctx.request_repaint();
+            }
             Action::Color(field) => self.view.color_with(field),
             Action::ToggleTheme => {
                 let dark = ctx.theme() == egui::Theme::Dark;
@@ -1044,7 +1212,10 @@ impl Lab {
             Action::Screenshot => requests.push(Request::Screenshot),
             Action::Record => self.record(ctx),
             Action::Copy => self.copy(ctx),
-            Action::Measure(true) => self.budget.measure(&self.scene),
+            Action::Measure(true) => {
+                let extent = if self.learn.is_some() { Extent::Quick } else { Extent::Full };
+                self.budget.measure(&self.scene, extent);
+            }
             Action::Measure(false) => self.budget.cancel(),
             Action::Apply(setting) => {
                 let before = self.snapshot();
@@ -1085,6 +1256,7 @@ impl Lab {
     fn reset(&mut self) {
         self.playback.reset(&mut self.simulation);
         self.compare.reset();
+        self.residuals.clear();
         self.swept = None;
     }
 

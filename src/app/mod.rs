@@ -25,6 +25,7 @@ mod history;
 mod intro;
 mod keys;
 pub mod lab;
+mod learn;
 mod mode;
 mod motion_plot;
 mod overlay;

@@ -12,6 +12,8 @@ pub(super) enum Mode {
     /// The body, its load and its numbers.
     #[default]
     Explore,
+    /// The article on a row of cards.
+    Learn,
     /// Two to four settings beside each other under one load.
     Compare,
     /// Error against time, and the settings within limits.
@@ -41,6 +43,15 @@ pub(super) const MODES: &[ModeEntry] = &[
         serves: |_| true,
         unless: "",
         show: Lab::plots,
+        view: Lab::body_view,
+    },
+    ModeEntry {
+        mode: Mode::Learn,
+        name: "Learn",
+        about: "The article's method, walked through on eight cards; your own scene comes back at the end",
+        serves: |_| true,
+        unless: "",
+        show: Lab::learn,
         view: Lab::body_view,
     },
     ModeEntry {

@@ -25,6 +25,8 @@ pub(super) struct Overlay<'a> {
     pub camera: Camera,
     /// Where the nodes are, m.
     pub positions: &'a [Vector2<f64>],
+    /// Whether the elements are drawn elsewhere: nothing is painted where the body would be then.
+    pub apart: bool,
     /// Displacement of the linear solution, m, where its outline is wanted.
     pub ghost: Option<&'a [Vector2<f64>]>,
     /// The true outline, m: closed lines.
@@ -159,7 +161,9 @@ pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
         let color = palette.integrator(companion.integrator);
         draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
     }
-    draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, own_color(overlay, &palette)));
+    if !overlay.apart {
+        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, own_color(overlay, &palette)));
+    }
     for line in overlay.exact {
         // On a ground of its own: over the body its colour alone would be lost.
         dashed(painter, &projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
@@ -178,9 +182,11 @@ pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
             }
         }
     }
-    supports(painter, &projection, overlay, &palette);
-    loads(painter, &projection, overlay, &palette, visuals);
-    moved_supports(painter, &projection, overlay, &palette, visuals);
+    if !overlay.apart {
+        supports(painter, &projection, overlay, &palette);
+        loads(painter, &projection, overlay, &palette, visuals);
+        moved_supports(painter, &projection, overlay, &palette, visuals);
+    }
 }
 
 /// The colour of the body's own solution.

@@ -75,6 +75,8 @@ pub(super) struct Reach<'a> {
     pub positions: &'a [Vector2<f64>],
     pub outline: &'a [Segment],
     pub arrows: &'a [Arrow],
+    /// Whether the elements are drawn elsewhere: there is nothing to reach then.
+    pub apart: bool,
     /// Magnifications that the wheel may reach.
     pub scales: RangeInclusive<f64>,
 }
@@ -87,6 +89,9 @@ impl Reach<'_> {
     }
 
     fn point(&self, simulation: &Simulation, place: Vector2<f64>) -> Option<MaterialPoint> {
+        if self.apart {
+            return None;
+        }
         simulation.system().mesh().pick(self.positions, self.outline, place, NEAR / self.camera.scale)
     }
 }

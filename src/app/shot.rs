@@ -29,6 +29,8 @@ pub struct ShotOptions {
     pub curve: bool,
     /// Whether error against time is, measured now; in the place of the load curve.
     pub study: bool,
+    /// A card of the mode Learn, from 1: with the article's beam, whatever the scene.
+    pub learn: Option<usize>,
     /// Whether the plot of a motion's energy is, and the integrators that are shown beside the scene's.
     pub motion: Option<Vec<IntegratorKind>>,
     /// The settings that are compared in panes; none for one view of the scene's own.
@@ -46,6 +48,7 @@ impl Default for ShotOptions {
             study: false,
             motion: None,
             compare: Vec::new(),
+            learn: None,
             theme: ThemeChoice::default(),
         }
     }
@@ -69,8 +72,12 @@ pub fn shot(
     if options.curve {
         lab.show_curve();
     }
+    if let Some(card) = options.learn {
+        lab.show_card(card);
+    }
     if options.study {
-        match Study::new(lab.scene(), Extent::Full, &mut |_| ControlFlow::Continue(())) {
+        let extent = if options.learn.is_some() { Extent::Quick } else { Extent::Full };
+        match Study::new(lab.scene(), extent, &mut |_| ControlFlow::Continue(())) {
             Ok(study) => lab.show_study(study),
             Err(error) => log::error!("no study: {error}"),
         }

@@ -24,7 +24,7 @@ static ABOUTS: LazyLock<Vec<(&'static str, String)>> = LazyLock::new(|| {
 const WORDS: f32 = 900.0;
 
 /// Below this width, points, modes have a row of their own.
-const ONE_ROW: f32 = 780.0;
+const ONE_ROW: f32 = 860.0;
 
 /// The height of the bar in a window of this width, points.
 pub(super) fn height(width: f32) -> f32 {

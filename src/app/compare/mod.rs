@@ -495,6 +495,7 @@ impl Compare {
         let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
         let arrows = pane.arrows(place, camera, input.direction);
         let reach = Reach {
+            apart: false,
             camera,
             positions: &pane.shape.nodes,
             outline: &pane.drawing.boundary,
@@ -515,6 +516,7 @@ impl Compare {
         let painter = ui.painter_at(place);
         if let (Some(system), Some(scene)) = (pane.system(), pane.scene()) {
             let overlay = Overlay {
+                apart: false,
                 scene,
                 system,
                 drawing: &pane.drawing,

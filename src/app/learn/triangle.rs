@@ -1,0 +1,95 @@
+//! What the article makes of the elements of a body.
+
+use nalgebra::{DMatrix, Matrix2, Vector2};
+
+use crate::article::affine::Affine2;
+use crate::article::stiffness::ElementStiffness;
+use crate::element::QuadraturePoint;
+use crate::rotation::{Rotation, polar};
+use crate::scene::ElementKind;
+use crate::simulation::Simulation;
+
+/// A three-node triangle, at rest and now.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Triangle {
+    pub nodes: [u32; 3],
+    /// Its corners at rest, m.
+    pub rest: [Vector2<f64>; 3],
+    /// F, the linear part of the map from there to where they are (article eqs. 12–15).
+    pub gradient: Matrix2<f64>,
+    /// R and S of F = R S (eqs. 37–39).
+    pub rotation: Rotation,
+    pub stretch: Matrix2<f64>,
+}
+
+impl Triangle {
+    /// An element of a body of three-node triangles; `None` of other elements, and where F has no polar decomposition.
+    pub(super) fn of(simulation: &Simulation, element: usize) -> Option<Self> {
+        let mesh = simulation.system().mesh();
+        if mesh.element() != ElementKind::T3 {
+            return None;
+        }
+        let nodes: [u32; 3] = mesh.elements().nth(element)?.try_into().ok()?;
+        let u = simulation.displacement();
+        let rest = nodes.map(|n| mesh.nodes()[n as usize]);
+        let now = nodes.map(|n| mesh.nodes()[n as usize] + u[n as usize]);
+        let gradient = Affine2::from_triangle(rest, now).ok()?.linear;
+        let rotation = polar(&gradient)?;
+        let stretch = rotation.matrix().transpose() * gradient;
+        Some(Self { nodes, rest, gradient, rotation, stretch: (stretch + stretch.transpose()) * 0.5 })
+    }
+
+    /// Ke, N/m (eqs. 1, 3).
+    pub(super) fn stiffness(&self, simulation: &Simulation) -> Option<ElementStiffness> {
+        let entry = ElementKind::T3.entry();
+        let point = entry.points.first()?;
+        let point = QuadraturePoint::<3>::new(entry, &self.rest, point.at, point.weight);
+        Some(ElementStiffness::new(&[point], simulation.problem().material().membrane()))
+    }
+
+    /// The unknowns (2 · node + axis) of its six rows.
+    pub(super) fn unknowns(&self) -> [usize; 6] {
+        std::array::from_fn(|i| 2 * self.nodes[i / 2] as usize + i % 2)
+    }
+}
+
+/// Σ R Ke Rᵀ over all nodes, N/m, before clamping, with the R that the method uses. `None` of other elements.
+pub(super) fn assembled(simulation: &Simulation) -> Option<DMatrix<f64>> {
+    let count = 2 * simulation.system().mesh().nodes().len();
+    let mut sum = DMatrix::zeros(count, count);
+    for (element, rotation) in frames(simulation).into_iter().enumerate() {
+        let triangle = Triangle::of(simulation, element)?;
+        let turned = triangle.stiffness(simulation)?.rkrt(rotation);
+        let unknowns = triangle.unknowns();
+        for (row, &i) in unknowns.iter().enumerate() {
+            for (column, &j) in unknowns.iter().enumerate() {
+                sum[(i, j)] += turned[(row, column)];
+            }
+        }
+    }
+    Some(sum)
+}
+
+/// The frame of every element: its R, of several quadrature points the mean. Linear theory turns none.
+pub(super) fn frames(simulation: &Simulation) -> Vec<Rotation> {
+    let elements = simulation.system().elements();
+    let per_element = (elements.rotation_count() / simulation.system().mesh().element_count().max(1)).max(1);
+    let mean = |own: &[Rotation]| {
+        let (c, s) = own.iter().fold((0.0, 0.0), |(c, s), r| (c + r.c, s + r.s));
+        polar(&Matrix2::new(c, -s, s, c)).unwrap_or(Rotation::IDENTITY)
+    };
+    simulation.state().rotations().chunks(per_element).map(mean).collect()
+}
+
+/// How much the area of a body has grown, percent of that at rest: ∫ det F dA.
+pub(super) fn area_growth(simulation: &Simulation) -> f64 {
+    let (problem, state) = (simulation.problem(), simulation.state());
+    let elements = problem.system().elements();
+    let (mut rest, mut now) = (0.0, 0.0);
+    elements.visit_strains(problem.material().lame(), state.displacement(), state.rotations(), &mut |q, h, _| {
+        let area = elements.point_area(q);
+        rest += area;
+        now += area * (Matrix2::identity() + h).determinant();
+    });
+    100.0 * (now / rest - 1.0)
+}
