@@ -1,4 +1,4 @@
-//! The study of a body in motion, and the atlas in time.
+//! The trade of a body at rest and of one in motion, the atlas in time, and how an iteration scales.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -8,14 +8,46 @@ use std::ops::ControlFlow;
 
 use common::{scene, scene_with, stderr, stdout, warpbeam};
 use nalgebra::Vector2;
+use warpbeam::method::METHODS;
 use warpbeam::scene::Scene;
 use warpbeam::study::extremes::motion::{MotionOutcome, cases};
 use warpbeam::study::motion::{Ending, EnergyBehaviour, MotionMeasurement, MotionReference};
-use warpbeam::study::{Demand, Extent, MotionStudy, Study, StudyError, Tuning};
+use warpbeam::study::{Demand, Extent, Measurement, MotionStudy, Study, StudyError, Tuning};
 use warpbeam::{ElementKind, IntegratorKind, MethodKind};
 
 fn go_on(_: warpbeam::study::Progress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
+}
+
+/// What one row of quadrilaterals can do is measured, under every method: an error that takes six-node triangles at least
+/// twice the unknowns. What that is in time is the machine's.
+#[test]
+fn single_rows_of_bending_elements_are_studied() {
+    for id in ["cantilever", "elastica"] {
+        let study = Study::new(&scene(id), Extent::Quick, &mut go_on).unwrap();
+        let fewest = |element| {
+            let close = study.measurements.iter().filter(|m| m.setting.element == element && m.error.bound() <= 1.0);
+            close.min_by_key(|m| m.dofs).unwrap()
+        };
+        let [q4, t6] = [ElementKind::Q4, ElementKind::T6].map(fewest);
+        assert!(
+            2 * q4.dofs <= t6.dofs,
+            "{id}: {} unknowns {}, {} unknowns {}",
+            q4.dofs,
+            q4.setting,
+            t6.dofs,
+            t6.setting
+        );
+        for method in METHODS.iter().map(|m| m.kind) {
+            for cells in [5, 10, 20, 40].map(|along| [along, 1]) {
+                let measured = |m: &Measurement| {
+                    let s = m.setting;
+                    (s.element, s.cells, s.method) == (ElementKind::Q4, Some(cells), method)
+                };
+                assert!(study.measurements.iter().any(|m| measured(m)), "{id}: {} {cells:?}", method.id());
+            }
+        }
+    }
 }
 
 /// The swing's study: its errors go with the step as the integrators' orders say, its energy as they promise, and its

@@ -74,16 +74,19 @@ impl Scaling {
         let all: f64 = unknowns.iter().sum::<f64>() * ElementKind::all().count() as f64;
         let mut study = Self { scene: scene.name.clone(), points: Vec::new(), is_partial: false };
         let mut done = 0.0;
-        for (element, &unknowns) in ElementKind::all().flat_map(|e| unknowns.iter().map(move |n| (e, n))) {
+        // Small meshes first, of all elements: what the allocator keeps of one is no more than the next takes anyway.
+        let memory = PeakMemory::watch();
+        for (&unknowns, element) in unknowns.iter().flat_map(|n| ElementKind::all().map(move |e| (n, e))) {
             let cells = cells(element, beam.length / beam.height, unknowns);
             let now = super::trade::mesh_words(element, Some(cells));
             if observe(Progress { fraction: done / all, now: &now, so_far: None }).is_break() {
                 study.is_partial = true;
                 break;
             }
-            study.points.push(measure(scene, element, cells)?);
+            study.points.push(measure(scene, element, cells, memory.as_ref())?);
             done += unknowns;
         }
+        study.points.sort_by_key(|p| p.element as usize);
         if study.points.is_empty() { Err(StudyError::Cancelled) } else { Ok(study) }
     }
 
@@ -170,9 +173,14 @@ fn cells(element: ElementKind, slenderness: f64, unknowns: f64) -> [u32; 2] {
     [along as u32, across as u32]
 }
 
-fn measure(scene: &Scene, element: ElementKind, cells: [u32; 2]) -> Result<ScalingPoint, StudyError> {
+fn measure(
+    scene: &Scene,
+    element: ElementKind,
+    cells: [u32; 2],
+    memory: Option<&PeakMemory>,
+) -> Result<ScalingPoint, StudyError> {
     let setting = super::Setting { element, cells: Some(cells), method: MethodKind::Newton, iterations: 1 };
-    let memory = PeakMemory::watch();
+    PeakMemory::begin();
     let mut simulation = Simulation::new(&setting.apply(scene))?;
     let mut times = Vec::new();
     let began = Instant::now();
@@ -186,19 +194,25 @@ fn measure(scene: &Scene, element: ElementKind, cells: [u32; 2]) -> Result<Scali
     times.remove(0);
     times.sort_unstable();
     let milliseconds = times[times.len() / 2].as_secs_f64() * 1e3;
-    let peak_mib = memory.and_then(|memory| memory.taken()).filter(|&mib| mib >= RESOLVED);
+    let peak_mib = memory.and_then(PeakMemory::taken).filter(|&mib| mib >= RESOLVED);
     Ok(ScalingPoint { element, cells, dofs: simulation.system().dofs(), milliseconds, peak_mib })
 }
 
-/// The most memory that the process holds while this is watched: Linux's `VmHWM`, set back at the start.
+/// The most memory that the process holds over what it has when this is made: Linux's `VmHWM`, set back by
+/// [`Self::begin`].
 struct PeakMemory {
     before: f64,
 }
 
 impl PeakMemory {
     fn watch() -> Option<Self> {
-        std::fs::write("/proc/self/clear_refs", "5").ok()?;
-        Some(Self { before: status_mib("VmRSS:")? })
+        let memory = Self { before: status_mib("VmRSS:")? };
+        Self::begin().then_some(memory)
+    }
+
+    /// Sets the mark to what is held now; whether the system lets it.
+    fn begin() -> bool {
+        std::fs::write("/proc/self/clear_refs", "5").is_ok()
     }
 
     fn taken(&self) -> Option<f64> {

@@ -347,6 +347,11 @@ impl MeshEnds {
     }
 }
 
+/// An element that bends needs few rows: these are measured beside cells about as high as long …
+const MOST_FEW: u32 = 2;
+/// … where their cells are no more than so many times as high as long.
+const HIGHEST_CELL: f64 = 4.0;
+
 /// The meshes of a scene, coarse to fine for each element.
 pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
     let mut meshes = Vec::new();
@@ -362,10 +367,14 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
         for &nodes_along in nodes_along {
             let along = nodes_along.div_ceil(pieces);
             let pieces = f64::from(pieces);
-            let across = (f64::from(along) * beam.height / beam.length / pieces).round().max(1.0) as u32;
-            let nodes = f64::from(along) * f64::from(across) * pieces * pieces;
-            // The setting up of a mesh takes some time too.
-            meshes.push(MeshChoice { element, cells: Some([along, across]), weight: 30.0 + nodes });
+            let squares = f64::from(along) * beam.height / beam.length;
+            let as_high = (squares / pieces).round().max(1.0) as u32;
+            let few = |across: u32| across <= MOST_FEW && squares / f64::from(across) <= HIGHEST_CELL;
+            for across in (1..=as_high).filter(|&across| across == as_high || few(across)) {
+                let nodes = f64::from(along) * f64::from(across) * pieces * pieces;
+                // The setting up of a mesh takes some time too.
+                meshes.push(MeshChoice { element, cells: Some([along, across]), weight: 30.0 + nodes });
+            }
         }
     }
     meshes
