@@ -383,7 +383,11 @@ fn a_body_in_motion_is_pulled_let_go_and_reset() {
     window.point(1200.0, 735.0);
     window.settle();
     window.key("r");
-    window.wait_for_picture("the same end of the same motion", &before);
+    // The colours' range grows with the pictures that were seen of the motion: it is not quite the same each time.
+    wait_for("the same end of the same motion", || {
+        let image = window.image();
+        (image.len() == before.len() && changed(&image, &before) < 100_000).then_some(())
+    });
     let (code, said) = window.close();
     assert_eq!(code, Some(0), "{said}");
     assert!(!said.contains("panicked"), "{said}");
@@ -422,7 +426,8 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     std::fs::write(&path, scene("article").to_toml().unwrap()).unwrap();
     let window = Window::open(&desktop, &["run", path.to_str().unwrap()]);
     let harness = laid_out();
-    let (tip, corner) = (harness.state().arrow_tips()[0].1, (1270.0, 790.0));
+    // Where there is nothing that a pointer lights up.
+    let (tip, corner) = (harness.state().arrow_tips()[0].1, (420.0, 735.0));
     window.point(corner.0, corner.1);
     let before = window.settle();
     window.point(tip.x, tip.y);

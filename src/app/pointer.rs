@@ -124,11 +124,17 @@ impl Pointer {
         reach: &Reach<'_>,
         mut body: Option<(&mut Simulation, &mut Playback)>,
     ) -> Wish {
-        let (pressed, origin, down, at, fingers, snap) = ui.input(|i| {
+        let (pressed, origin, down, at, let_go_at, fingers, snap) = ui.input(|i| {
             let pointer = &i.pointer;
             let fingers = i.multi_touch().map(|touch| touch.translation_delta);
             let (pressed, down) = (pointer.primary_pressed(), pointer.primary_down());
-            (pressed, pointer.press_origin(), down, pointer.interact_pos(), fingers, i.modifiers.shift)
+            let let_go_at = i.events.iter().rev().find_map(|event| match event {
+                egui::Event::PointerButton { pos, button: egui::PointerButton::Primary, pressed: false, .. } => {
+                    Some(*pos)
+                }
+                _ => None,
+            });
+            (pressed, pointer.press_origin(), down, pointer.interact_pos(), let_go_at, fingers, i.modifiers.shift)
         });
         self.at = at;
         let mut wish = Wish::default();
@@ -140,7 +146,10 @@ impl Pointer {
             let at = origin.or(at);
             self.held = at.map_or(Held::Nothing, |at| Self::take(response, reach, &mut body, at));
         }
-        self.drag(response, reach, &mut body, snap, &mut wish);
+        // After it was let go the pointer may have moved on, too.
+        if let Some(at) = let_go_at.or(at) {
+            self.drag(response, reach, &mut body, (at, snap), &mut wish);
+        }
         if response.double_clicked() {
             match self.held {
                 Held::Tip(arrow, _) => wish.restore = Some(arrow.load),
@@ -194,10 +203,9 @@ impl Pointer {
         response: &Response,
         reach: &Reach<'_>,
         body: &mut Option<(&mut Simulation, &mut Playback)>,
-        snap: bool,
+        (at, snap): (Pos2, bool),
         wish: &mut Wish,
     ) {
-        let Some(at) = self.at else { return };
         match self.held {
             Held::Tip(arrow, pressed) if (at - pressed).length() >= STILL => {
                 let (magnitude, degrees) = arrow.dragged(at - pressed, snap);

@@ -412,8 +412,9 @@ impl Elements for IncompatibleQuads {
             let mean = k * ((back(r[0], q[0]) + back(r[1], q[1])) * 0.5);
             let sum_of_q = back(middle, q[0] + q[1]);
             let inverse = [following(r[0], &h[0]), following(r[1], &h[1])];
-            // Where a rotation is undefined, in a body crushed to nothing, nothing follows: 1/∞ = 0.
-            let inverse_sum = 1.0 / (1.0 / inverse[0] + 1.0 / inverse[1]);
+            // Where a rotation is undefined, in a body crushed to nothing, nothing follows.
+            let inverse_sum =
+                if inverse[0] > 0.0 && inverse[1] > 0.0 { 1.0 / (1.0 / inverse[0] + 1.0 / inverse[1]) } else { 0.0 };
             let (twist, turn) = (middle.apply(mean) * half.c, -mean.dot(&quarter(sum_of_q)) * inverse_sum);
             let mut own = [Vector2::zeros(); 4];
             for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
