@@ -114,10 +114,21 @@ pub fn percent(value: f64) -> String {
 /// The nearest number of three significant digits: as much as a slider, a pointer or a clock is good for.
 #[must_use]
 pub fn three_digits(value: f64) -> f64 {
+    rounded(value, 3)
+}
+
+/// The nearest number of two significant digits: as much as a time that varies, or a residual, has to say.
+#[must_use]
+pub fn two_digits(value: f64) -> f64 {
+    rounded(value, 2)
+}
+
+/// The nearest number of so many significant digits.
+fn rounded(value: f64, digits: usize) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
-    format!("{value:.2e}").parse().unwrap_or(value)
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
 /// The largest of 1, 2, 5 · 10ⁿ that is not above `length`.

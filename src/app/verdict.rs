@@ -5,7 +5,7 @@ use super::panel::PanelInput;
 use crate::method::rho_words;
 use crate::scene::{ElementKind, MethodKind, Scene, limits};
 use crate::simulation::{Simulation, Status, probe_results};
-use crate::words::{count, engineering, number, percent};
+use crate::words::{count, engineering, number, percent, two_digits};
 
 /// Where most of an error comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,7 +151,7 @@ pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
         );
         return lines;
     }
-    let residual = number(significant_residual(simulation.residual()));
+    let residual = number(two_digits(simulation.residual()));
     let asked = number(input.scene.solver.tolerance);
     lines.push(match simulation.status() {
         Status::Converged => {
@@ -185,11 +185,6 @@ pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
         }
     }
     lines
-}
-
-/// A residual needs no more than two digits.
-fn significant_residual(residual: f64) -> f64 {
-    format!("{residual:.1e}").parse().unwrap_or(residual)
 }
 
 /// Something that would make a result better, in words, and the scene that has it.
@@ -246,5 +241,5 @@ pub(super) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> 
 
 /// ρ as it is shown: two digits, three above one tenth.
 pub(super) fn rho_number(rho: f64) -> String {
-    engineering(format!("{rho:.1e}").parse().unwrap_or(rho), "")
+    engineering(two_digits(rho), "")
 }

@@ -13,6 +13,7 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
+use super::clipboard::Clipboard;
 use super::lab::{Lab, Request};
 use super::settings::Settings;
 use super::shot::picture;
@@ -104,6 +105,7 @@ struct OpenWindow {
     configuration: wgpu::SurfaceConfiguration,
     stage: Stage,
     input: egui_winit::State,
+    clipboard: Clipboard,
     gpu: Gpu,
     instance: wgpu::Instance,
     window: Arc<Window>,
@@ -152,7 +154,8 @@ impl OpenWindow {
             Some(gpu.max_side() as usize),
         );
         let stage = Stage::new(&gpu, format);
-        Ok(Self { surface, configuration, stage, input, gpu, instance, window, hidden: false, failures: 0 })
+        let clipboard = Clipboard::open();
+        Ok(Self { surface, configuration, stage, input, clipboard, gpu, instance, window, hidden: false, failures: 0 })
     }
 
     fn resize(&mut self, width: u32, height: u32) {
@@ -232,6 +235,7 @@ impl App {
         let input = open.input.take_egui_input(&open.window);
         let mut requests = Vec::new();
         let mut output = self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui)));
+        open.clipboard.after(&output.platform_output);
         open.input.handle_platform_output_with_event_loop(
             &open.window,
             event_loop,
@@ -335,6 +339,7 @@ impl ApplicationHandler for App {
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
+        open.clipboard.before(&event, &mut open.input);
         let wants = open.input.on_window_event(&open.window, &event);
         match event {
             WindowEvent::CloseRequested | WindowEvent::Destroyed => {

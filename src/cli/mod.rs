@@ -21,6 +21,8 @@ mod args;
 mod commands;
 #[cfg(feature = "app")]
 mod draw_args;
+#[cfg(feature = "app")]
+mod driver;
 mod json;
 mod manual;
 mod progress;
@@ -87,7 +89,12 @@ impl CliError {
 #[must_use]
 pub fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error,wgpu_hal=off")).init();
-    let result = match Cli::parse().command {
+    let command = Cli::parse().command;
+    #[cfg(feature = "app")]
+    if matches!(command, None | Some(Command::Run { .. } | Command::Shot(_) | Command::Record(_))) {
+        driver::silence();
+    }
+    let result = match command {
         #[cfg(feature = "app")]
         None => window::run_default(),
         // clap has asked for a command.

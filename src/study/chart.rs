@@ -1,15 +1,23 @@
-//! Error over time as a picture (SVG), both logarithmic, with the Pareto front and a legend.
+//! Pictures (SVG) over axes: error over time, both logarithmic, with the Pareto front and a legend; lines of elements; and
+//! the axes of all of them.
 
 use std::fmt::Write as _;
 
 use crate::scene::ElementKind;
 use crate::words::number;
 
-const SIZE: [f64; 2] = [860.0, 560.0];
-const LEFT: f64 = 80.0;
-const RIGHT: f64 = 190.0;
-const TOP: f64 = 48.0;
-const BOTTOM: f64 = 60.0;
+/// Size of every picture.
+pub(super) const SIZE: [f64; 2] = [860.0, 560.0];
+
+/// Where the axes are in a picture: what lies around them.
+pub(super) struct Margins {
+    pub left: f64,
+    pub right: f64,
+    pub top: f64,
+    pub bottom: f64,
+}
+
+const MARGINS: Margins = Margins { left: 80.0, right: 190.0, top: 48.0, bottom: 60.0 };
 const ROW: f64 = 22.0;
 
 /// A measurement in a picture.
@@ -46,40 +54,42 @@ pub(super) struct Chart<'a> {
 struct Axis {
     from: f64,
     to: f64,
-    start: f64,
-    length: f64,
+    ends: [f64; 2],
 }
 
 impl Axis {
-    /// Decades around these values.
-    fn new(values: impl Iterator<Item = f64>, start: f64, length: f64) -> Self {
+    /// Decades around these values, between two places.
+    fn new(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Self {
         let (low, high) = values
             .filter(|v| *v > 0.0 && v.is_finite())
             .map(f64::log10)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
         if low > high {
-            return Self { from: 0.0, to: 1.0, start, length };
+            return Self { from: 0.0, to: 1.0, ends };
         }
-        Self { from: low.floor(), to: high.ceil().max(low.floor() + 1.0), start, length }
+        Self { from: low.floor(), to: high.ceil().max(low.floor() + 1.0), ends }
     }
 
     fn place(&self, value: f64) -> f64 {
         let fraction = (value.max(f64::MIN_POSITIVE).log10() - self.from) / (self.to - self.from);
-        self.start + self.length * fraction.clamp(0.0, 1.0)
+        let [start, end] = self.ends;
+        start + (end - start) * fraction.clamp(0.0, 1.0)
     }
 
-    fn decades(&self) -> impl Iterator<Item = f64> {
-        (self.from as i32..=self.to as i32).map(|e| 10f64.powi(e))
+    /// The decades: where they are, and their numbers.
+    fn ticks(&self) -> Vec<(f64, String)> {
+        let decades = (self.from as i32..=self.to as i32).map(|e| 10f64.powi(e));
+        decades.map(|value| (self.place(value), number(value))).collect()
     }
 }
 
 impl Chart<'_> {
     pub fn svg(&self) -> String {
         let times = self.points.iter().map(|p| p.time).chain(self.mark.iter().map(|m| m.time));
-        let x = Axis::new(times, LEFT, SIZE[0] - LEFT - RIGHT);
-        let y = Axis::new(self.points.iter().map(|p| p.error), SIZE[1] - BOTTOM, -(SIZE[1] - TOP - BOTTOM));
-        let mut svg = head(&self.title);
-        grid(&mut svg, [&x, &y], [self.time_label, self.error_label]);
+        let x = Axis::new(times, MARGINS.across());
+        let y = Axis::new(self.points.iter().map(|p| p.error), MARGINS.up());
+        let mut svg = MARGINS.head(&self.title);
+        MARGINS.grid(&mut svg, [x.ticks(), y.ticks()], [self.time_label, self.error_label]);
         self.mark(&mut svg, &x);
         let mut front: Vec<&Point> = self.points.iter().filter(|p| p.front).collect();
         front.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -100,22 +110,22 @@ impl Chart<'_> {
     }
 
     fn mark(&self, svg: &mut String, x: &Axis) {
-        let bottom = SIZE[1] - BOTTOM;
+        let [bottom, top] = MARGINS.up();
         if let Some(mark) = &self.mark {
             let at = x.place(mark.time);
             let _ = writeln!(
                 svg,
-                "<line x1=\"{at}\" y1=\"{TOP}\" x2=\"{at}\" y2=\"{bottom}\" stroke=\"#555\" stroke-width=\"1.5\" stroke-dasharray=\"6 4\"/>\
+                "<line x1=\"{at}\" y1=\"{top}\" x2=\"{at}\" y2=\"{bottom}\" stroke=\"#555\" stroke-width=\"1.5\" stroke-dasharray=\"6 4\"/>\
                  <text x=\"{at}\" y=\"{}\" text-anchor=\"middle\" fill=\"#333\">{}</text>",
-                TOP - 6.0,
+                top - 6.0,
                 mark.label
             );
         }
     }
 
     fn key(&self, svg: &mut String) {
-        let right = SIZE[0] - RIGHT;
-        let mut row = TOP + 10.0;
+        let [_, right] = MARGINS.across();
+        let mut row = MARGINS.top + 10.0;
         let mut add = |symbol: &str, words: &str, row: &mut f64| {
             let _ = writeln!(svg, "{symbol}<text x=\"{}\" y=\"{}\">{words}</text>", right + 36.0, *row + 4.0);
             *row += ROW;
@@ -145,49 +155,56 @@ impl Chart<'_> {
     }
 }
 
-/// The start of a picture.
-fn head(title: &str) -> String {
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" font-family=\"Ubuntu, sans-serif\" font-size=\"13\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{LEFT}\" y=\"28\" font-size=\"16\">{}</text>\n",
-        SIZE[0],
-        SIZE[1],
-        escape(title)
-    )
-}
+impl Margins {
+    /// Left and right ends of the horizontal axis.
+    pub fn across(&self) -> [f64; 2] {
+        [self.left, SIZE[0] - self.right]
+    }
 
-/// The lines of the decades with their numbers, and what the axes mean.
-fn grid(svg: &mut String, [x, y]: [&Axis; 2], labels: [&str; 2]) {
-    let (right, bottom) = (SIZE[0] - RIGHT, SIZE[1] - BOTTOM);
-    for t in x.decades() {
-        let at = x.place(t);
+    /// Lower and upper ends of the vertical axis.
+    pub fn up(&self) -> [f64; 2] {
+        [SIZE[1] - self.bottom, self.top]
+    }
+
+    /// The start of a picture.
+    pub fn head(&self, title: &str) -> String {
+        let ([width, height], left) = (SIZE, self.left);
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" font-family=\"Ubuntu, sans-serif\" font-size=\"13\">\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{left}\" y=\"28\" font-size=\"16\">{}</text>\n",
+            escape(title)
+        )
+    }
+
+    /// Lines at places of both axes with their words, and what the axes mean.
+    pub fn grid(&self, svg: &mut String, [x, y]: [Vec<(f64, String)>; 2], [x_label, y_label]: [&str; 2]) {
+        let ([left, right], [bottom, top]) = (self.across(), self.up());
+        for (at, words) in x {
+            let _ = writeln!(
+                svg,
+                "<line x1=\"{at:.1}\" y1=\"{top}\" x2=\"{at:.1}\" y2=\"{bottom}\" stroke=\"#ddd\"/><text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{words}</text>",
+                bottom + 18.0
+            );
+        }
+        for (at, words) in y {
+            let _ = writeln!(
+                svg,
+                "<line x1=\"{left}\" y1=\"{at:.1}\" x2=\"{right}\" y2=\"{at:.1}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{words}</text>",
+                left - 8.0,
+                at + 4.0
+            );
+        }
         let _ = writeln!(
             svg,
-            "<line x1=\"{at}\" y1=\"{TOP}\" x2=\"{at}\" y2=\"{bottom}\" stroke=\"#ddd\"/><text x=\"{at}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-            bottom + 18.0,
-            number(t)
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n\
+             <text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+            0.5 * (left + right),
+            SIZE[1] - 14.0,
+            escape(x_label),
+            0.5 * (top + bottom),
+            escape(y_label)
         );
     }
-    for e in y.decades() {
-        let at = y.place(e);
-        let _ = writeln!(
-            svg,
-            "<line x1=\"{LEFT}\" y1=\"{at}\" x2=\"{right}\" y2=\"{at}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
-            LEFT - 8.0,
-            at + 4.0,
-            number(e)
-        );
-    }
-    let _ = writeln!(
-        svg,
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n\
-         <text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-        0.5 * (LEFT + right),
-        SIZE[1] - 14.0,
-        labels[0],
-        0.5 * (TOP + bottom),
-        labels[1]
-    );
 }
 
 /// Lines over logarithmic axes, one an element.
@@ -208,10 +225,10 @@ pub(super) struct Series {
 impl LogLog<'_> {
     pub fn svg(&self) -> String {
         let points = || self.series.iter().flat_map(|s| &s.points);
-        let x = Axis::new(points().map(|p| p.0), LEFT, SIZE[0] - LEFT - RIGHT);
-        let y = Axis::new(points().map(|p| p.1), SIZE[1] - BOTTOM, -(SIZE[1] - TOP - BOTTOM));
-        let mut svg = head(&self.title);
-        grid(&mut svg, [&x, &y], [self.x_label, self.y_label]);
+        let x = Axis::new(points().map(|p| p.0), MARGINS.across());
+        let y = Axis::new(points().map(|p| p.1), MARGINS.up());
+        let mut svg = MARGINS.head(&self.title);
+        MARGINS.grid(&mut svg, [x.ticks(), y.ticks()], [self.x_label, self.y_label]);
         for (i, Series { element, color, points }) in self.series.iter().enumerate() {
             let [r, g, b] = color;
             let places: Vec<[f64; 2]> = points.iter().map(|p| [x.place(p.0), y.place(p.1)]).collect();
@@ -223,9 +240,10 @@ impl LogLog<'_> {
             for [x, y] in places {
                 let _ = writeln!(svg, "{}", shape(x, y, *element, *color, 4.5));
             }
-            let row = TOP + 10.0 + ROW * i as f64;
-            let symbol = shape(SIZE[0] - RIGHT + 22.0, row, *element, *color, 5.0);
-            let at = [SIZE[0] - RIGHT + 36.0, row + 4.0];
+            let [_, right] = MARGINS.across();
+            let row = MARGINS.top + 10.0 + ROW * i as f64;
+            let symbol = shape(right + 22.0, row, *element, *color, 5.0);
+            let at = [right + 36.0, row + 4.0];
             let _ = writeln!(svg, "{symbol}<text x=\"{}\" y=\"{}\">{}</text>", at[0], at[1], element.id());
         }
         svg.push_str("</svg>\n");

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::chart::escape;
+use super::chart::Margins;
 use super::{LoadPath, PathState, support_name};
 use crate::scene::Scene;
 use crate::words::{number, prefix};
@@ -122,11 +122,7 @@ impl Drawn {
     }
 }
 
-const SIZE: [f64; 2] = [860.0, 560.0];
-const LEFT: f64 = 86.0;
-const RIGHT: f64 = 36.0;
-const TOP: f64 = 56.0;
-const BOTTOM: f64 = 64.0;
+const MARGINS: Margins = Margins { left: 86.0, right: 36.0, top: 56.0, bottom: 64.0 };
 
 /// Values from one end of the picture to the other.
 struct Axis {
@@ -162,46 +158,11 @@ pub fn svg(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> String {
     let drawn = drawn(path, scene, ordinate);
     let (x, y) =
         (Axis::around(drawn.points.iter().map(|(p, _)| p[0])), Axis::around(drawn.points.iter().map(|(p, _)| p[1])));
-    let (across, up) = ([LEFT, SIZE[0] - RIGHT], [SIZE[1] - BOTTOM, TOP]);
+    let (across, up) = (MARGINS.across(), MARGINS.up());
     let at = |p: [f64; 2]| [x.place(p[0], across), y.place(p[1], up)];
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" font-family=\"Ubuntu, sans-serif\" font-size=\"13\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{LEFT}\" y=\"30\" font-size=\"16\">{}: load path</text>\n",
-        SIZE[0],
-        SIZE[1],
-        escape(&path.scene)
-    );
-    for value in x.ticks() {
-        let [at, _] = at([value, 0.0]);
-        let _ = writeln!(
-            svg,
-            "<line x1=\"{at:.1}\" y1=\"{TOP}\" x2=\"{at:.1}\" y2=\"{}\" stroke=\"#ddd\"/><text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-            up[0],
-            up[0] + 18.0,
-            tick(value)
-        );
-    }
-    for value in y.ticks() {
-        let [_, at] = at([0.0, value]);
-        let _ = writeln!(
-            svg,
-            "<line x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{}\" y2=\"{at:.1}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-            across[1],
-            LEFT - 8.0,
-            at + 4.0,
-            tick(value)
-        );
-    }
-    let _ = writeln!(
-        svg,
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n\
-         <text transform=\"translate(24 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-        0.5 * (across[0] + across[1]),
-        SIZE[1] - 16.0,
-        escape(&drawn.x_label),
-        0.5 * (up[0] + up[1]),
-        escape(&drawn.y_label)
-    );
+    let mut svg = MARGINS.head(&format!("{}: load path", path.scene));
+    let ticks = |axis: &Axis, ends| axis.ticks().map(|value| (axis.place(value, ends), tick(value))).collect();
+    MARGINS.grid(&mut svg, [ticks(&x, across), ticks(&y, up)], [&drawn.x_label, &drawn.y_label]);
     let jumps = path.jump.is_some_and(|jump| jump.distance > 0.0);
     for (points, stable) in drawn.pieces(path) {
         let line: Vec<String> = points.iter().map(|&p| at(p)).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();

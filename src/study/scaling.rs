@@ -1,9 +1,10 @@
 //! How the time of an iteration and the memory it takes grow with the number of unknowns.
 
 use std::fmt::Write as _;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::chart::{LogLog, Series};
+use super::timing::{Runs, median_time};
 use super::{Extent, Observer, Progress, StudyError};
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
@@ -182,18 +183,13 @@ fn measure(
     let setting = super::Setting { element, cells: Some(cells), method: MethodKind::Newton, iterations: 1 };
     PeakMemory::begin();
     let mut simulation = Simulation::new(&setting.apply(scene))?;
-    let mut times = Vec::new();
-    let began = Instant::now();
     // The first warms up.
-    while times.len() <= FEWEST || (times.len() <= MOST && began.elapsed() < ENOUGH) {
-        simulation.reset();
-        let start = Instant::now();
+    simulation.step();
+    let runs = Runs { count: FEWEST..=MOST, enough: ENOUGH };
+    let time = median_time(runs, &mut simulation, Simulation::reset, |simulation| {
         simulation.step();
-        times.push(start.elapsed());
-    }
-    times.remove(0);
-    times.sort_unstable();
-    let milliseconds = times[times.len() / 2].as_secs_f64() * 1e3;
+    });
+    let milliseconds = time.as_secs_f64() * 1e3;
     let peak_mib = memory.and_then(PeakMemory::taken).filter(|&mib| mib >= RESOLVED);
     Ok(ScalingPoint { element, cells, dofs: simulation.system().dofs(), milliseconds, peak_mib })
 }

@@ -1,5 +1,6 @@
 //! What iterations from rest cost: medians over repetitions, warmed up, stages apart.
 
+use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
 use crate::simulation::{Simulation, Status};
@@ -52,19 +53,25 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
         .collect()
 }
 
-/// Repetitions of a run that is not warmed up: one goes before it.
-const RUNS: usize = 5;
+/// How often a run is timed.
+#[derive(Clone, Debug)]
+pub(super) struct Runs {
+    /// Not more often than this, and not less often.
+    pub count: RangeInclusive<usize>,
+    /// Nor once the runs have taken so long together: long times vary less.
+    pub enough: Duration,
+}
 
-/// The time that a run takes, without what prepares it. No more of them once they have taken `enough` together: long times
-/// vary less.
+/// The median time that a run takes, without what prepares it.
 pub(super) fn median_time<T>(
-    enough: Duration,
+    runs: Runs,
     subject: &mut T,
     prepare: impl Fn(&mut T),
     mut run: impl FnMut(&mut T),
 ) -> Duration {
-    let mut times = Vec::with_capacity(RUNS);
-    while times.len() < RUNS && times.iter().sum::<Duration>() < enough {
+    let Runs { count, enough } = runs;
+    let mut times = Vec::new();
+    while times.len() < *count.start() || (times.len() < *count.end() && times.iter().sum::<Duration>() < enough) {
         prepare(subject);
         let start = Instant::now();
         run(subject);

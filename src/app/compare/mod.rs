@@ -28,7 +28,7 @@ use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::{Reference, Setting};
-use crate::words::{count, engineering, percent, prefix, three_digits};
+use crate::words::{count, engineering, percent, prefix, three_digits, two_digits};
 
 mod pane;
 mod setting;
@@ -445,7 +445,7 @@ impl Compare {
                 Some(reason) => (true, format!("Does not converge: {reason}.")),
                 None => {
                     let stopped = if end.status.is_success() { "" } else { ", stopped" };
-                    let time = engineering(format!("{:.1e}", end.seconds).parse().unwrap_or(0.0), "s");
+                    let time = engineering(two_digits(end.seconds), "s");
                     // Pictures without bars have nothing that differs from run to run.
                     let time = if input.view.bars { format!("{time} · ") } else { String::new() };
                     (false, format!("{time}{}{stopped}", count(end.iterations, "iteration")))

@@ -8,7 +8,7 @@ use crate::app::palette::{Palette, SMALL};
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::{Measurement, Study};
-use crate::words::{engineering, percent};
+use crate::words::{engineering, percent, two_digits};
 
 /// Errors that can be asked for, percent.
 pub(super) const ASKED: [f64; 3] = [10.0, 1.0, 0.1];
@@ -77,7 +77,7 @@ fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, bool)>) {
         ui.label(RichText::new("\u{2013}").color(palette.secondary));
         return;
     };
-    let time = engineering(format!("{:.1e}", 1e-3 * m.milliseconds()).parse().unwrap_or(0.0), "s");
+    let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
     let words = if *good { time.clone() } else { format!("{} off", percent(m.error.bound())) };
     let color = if *good { palette.text } else { palette.secondary };
     let tip = format!("{}: {time}, error {}", m.setting, percent(m.error.bound()));

@@ -11,7 +11,7 @@ pub use self::reference::MotionReference;
 use self::reference::fine_path;
 use super::pareto;
 use super::reference::{finest_element, first_probe, system_of};
-use super::timing::median_time;
+use super::timing::{Runs, median_time};
 use super::trade::{Extent, Observer, Progress, Setting, StudyError, check, mesh_words};
 use crate::assembly::{Mass, System};
 use crate::dynamics::{Counts, INTEGRATORS, IntegratorEntry, critical_step};
@@ -266,6 +266,9 @@ const FULL: Plan = Plan {
     timing: Duration::from_millis(200),
 };
 
+/// Runs of a setting that are timed, at most.
+const RUNS: usize = 5;
+
 /// Steps of the reference in the shortest of the others.
 const REFERENCE_STEPS: u32 = 4;
 
@@ -478,7 +481,8 @@ impl MotionStudy {
         let (counts, drift) = simulation.motion().map(|m| (m.counts(), m.ledger().drift())).unwrap_or_default();
         simulation.keep_ledger(false);
         let mut simulated = 0.0;
-        let time = median_time(plan.timing, &mut simulation, Simulation::reset, |simulation| {
+        let runs = Runs { count: 1..=RUNS, enough: plan.timing };
+        let time = median_time(runs, &mut simulation, Simulation::reset, |simulation| {
             run(simulation, steps_of_run);
             simulated = simulation.state().time();
         });
