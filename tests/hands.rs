@@ -108,7 +108,7 @@ fn no_pointer_is_too_wild() {
             // Known defect: thrown about like this, q4 under energy–momentum has steps whose loss is not booked (three of
             // 480 steps measured, at most 8e-6 of the throughput).
             let is_known = element.id == "q4" && integrator.id == "energy-momentum";
-            let bound = if is_known { 1e-5 } else { 1e-9 };
+            let bound = if is_known { 1e-9 } else { 1e-9 };
             assert!(ledger.imbalance().abs() < bound * ledger.throughput, "{case}: {ledger:?}");
         }
     }

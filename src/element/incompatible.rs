@@ -107,16 +107,18 @@ impl Quad {
     }
 }
 
-/// 1 / tr S where R is the polar factor that belongs to H, bit for bit: R follows x then. Zero where it is another, and
-/// stays what it is.
+/// tr S where R is the polar factor that belongs to H, bit for bit: R follows x then. `None` where it is another, and stays
+/// what it is.
 #[inline]
-fn following(r: Rotation, h: &Matrix2<f64>) -> f64 {
+fn following(r: Rotation, h: &Matrix2<f64>) -> Option<f64> {
     let f = Matrix2::identity() + h;
-    if polar(&f) != Some(r) {
-        return 0.0;
-    }
-    let trace = r.c * (f.m11 + f.m22) + r.s * (f.m21 - f.m12);
-    1.0 / trace.max(SMALLEST_STRETCH_TRACE)
+    (polar(&f) == Some(r)).then(|| r.c * (f.m11 + f.m22) + r.s * (f.m21 - f.m12))
+}
+
+/// 1 / tr S, bounded where the element is crushed; zero where R does not follow x.
+#[inline]
+fn inverse_trace(r: Rotation, h: &Matrix2<f64>) -> f64 {
+    following(r, h).map_or(0.0, |trace| 1.0 / trace.max(SMALLEST_STRETCH_TRACE))
 }
 
 /// The gradients of ξη and of the modes at a point, 1/m.
@@ -363,7 +365,7 @@ impl Elements for IncompatibleQuads {
             let u = gather(nodes, u);
             let h = quad.centre.displacement_gradient(&u);
             let r = rotations.see(e, &h);
-            let (strain, inverse_trace) = (warped_strain(r, &h), following(r, &h));
+            let (strain, inverse_trace) = (warped_strain(r, &h), inverse_trace(r, &h));
             let k = symmetric(k) * moduli.mu;
             let twisted = Twisted::new(&k, back(r, quad.twist(&u)));
             let stress = r.matrix() * moduli.stress(&strain) * quad.centre.area;
@@ -411,10 +413,10 @@ impl Elements for IncompatibleQuads {
             let middle = Rotation { c: r[1].c * half.c + r[1].s * half.s, s: r[1].s * half.c - r[1].c * half.s };
             let mean = k * ((back(r[0], q[0]) + back(r[1], q[1])) * 0.5);
             let sum_of_q = back(middle, q[0] + q[1]);
-            let inverse = [following(r[0], &h[0]), following(r[1], &h[1])];
-            // Where a rotation is undefined, in a body crushed to nothing, nothing follows.
-            let inverse_sum =
-                if inverse[0] > 0.0 && inverse[1] > 0.0 { 1.0 / (1.0 / inverse[0] + 1.0 / inverse[1]) } else { 0.0 };
+            // Where a rotation is undefined, in a body crushed to nothing, nothing follows. A bound on 1 / tr S would cost
+            // energy that nobody has.
+            let traces = following(r[0], &h[0]).zip(following(r[1], &h[1]));
+            let inverse_sum = traces.map_or(0.0, |(t0, t1)| 1.0 / (t0 + t1).max(f64::MIN_POSITIVE));
             let (twist, turn) = (middle.apply(mean) * half.c, -mean.dot(&quarter(sum_of_q)) * inverse_sum);
             let mut own = [Vector2::zeros(); 4];
             for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
