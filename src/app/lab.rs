@@ -17,6 +17,7 @@ use super::edits::{Edits, Snapshot};
 use super::eye::Eye;
 use super::file_dialog::{Answer, FileDialog, Purpose};
 use super::finder::{Finder, LISTEN};
+use super::gallery::Gallery;
 use super::intro::Intro;
 use super::learn::{self, Learn, Shown, Start};
 use super::mode::Mode;
@@ -118,6 +119,7 @@ pub struct Lab {
     /// Of a body in motion: all that it has swept, m.
     swept: Option<[Vector2<f64>; 2]>,
     recorder: Option<Recorder>,
+    gallery: Gallery,
     quality: Quality,
     /// Iterations a displayed frame.
     iterations: u32,
@@ -179,6 +181,7 @@ impl Lab {
             playback: Playback::default(),
             swept: None,
             recorder: None,
+            gallery: Gallery::default(),
             quality: Quality::default(),
             iterations: 1,
             timings: Timings::default(),
@@ -588,7 +591,9 @@ impl Lab {
             .exact_size(toolbar::height(ui.ctx().content_rect().width()))
             .resizable(false)
             .frame(bar(ui));
-        top.show(ui, |ui| toolbar::show(ui, &self.input(), &self.view, actions));
+        let mut gallery = std::mem::take(&mut self.gallery);
+        top.show(ui, |ui| toolbar::show(ui, &self.input(), &mut gallery, &self.view, actions));
+        self.gallery = gallery;
         // Compared panes have each their own.
         if self.view.mode != Mode::Compare {
             let bottom = Panel::bottom("headline").exact_size(HEADLINE_HEIGHT).resizable(false).frame(bar(ui));
@@ -751,6 +756,7 @@ impl Lab {
                 };
                 lab.adapter.clone_from(&self.adapter);
                 lab.settings = std::mem::take(&mut self.settings);
+                lab.gallery = std::mem::take(&mut self.gallery);
                 lab.eases = self.eases;
                 let (bars, panel, narrow) = (self.view.bars, self.view.panel, self.view.narrow);
                 lab.view = ViewOptions { mode: Mode::Learn, bars, panel, narrow, raw: true, ..ViewOptions::default() };
@@ -764,9 +770,9 @@ impl Lab {
             (false, Some(learn)) => {
                 let (mode, drawer) = (self.view.mode, self.view.drawer);
                 let (before, card) = learn.leave();
-                let settings = std::mem::take(&mut self.settings);
+                let (settings, gallery) = (std::mem::take(&mut self.settings), std::mem::take(&mut self.gallery));
                 *self = *before;
-                (self.card, self.settings) = (card, settings);
+                (self.card, self.settings, self.gallery) = (card, settings, gallery);
                 self.view.mode = if (mode.entry().serves)(&self.scene) { mode } else { Mode::Explore };
                 // Plots that were asked for from a card are shown.
                 self.view.drawer = drawer.map(|_| Drawer::of(&self.scene)).or(self.view.drawer);

@@ -19,6 +19,7 @@ mod eye;
 mod field;
 mod file_dialog;
 mod finder;
+mod gallery;
 mod headline;
 mod help;
 mod history;

@@ -162,7 +162,7 @@ pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
         draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
     }
     if !overlay.apart {
-        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, own_color(overlay, &palette)));
+        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
     }
     for line in overlay.exact {
         // On a ground of its own: over the body its colour alone would be lost.
@@ -186,14 +186,6 @@ pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
         supports(painter, &projection, overlay, &palette);
         loads(painter, &projection, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
-    }
-}
-
-/// The colour of the body's own solution.
-fn own_color(overlay: &Overlay<'_>, palette: &Palette) -> Color32 {
-    match overlay.scene.analysis {
-        Analysis::Static => palette.method(overlay.scene.solver.method),
-        Analysis::Dynamic => palette.integrator(overlay.scene.dynamics.integrator),
     }
 }
 
@@ -226,7 +218,7 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     let playback = overlay.playback;
     let companions = playback.companions().iter().filter(|c| !c.has_stopped());
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
-    for (history, color) in std::iter::once((&playback.history, own_color(overlay, palette))).chain(others) {
+    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
         let points: Vec<Vector2<f64>> = history.last(DURATION).map(|s| s.position).collect();
         let stride = points.len().div_ceil(MOST_PIECES).max(1);
         let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
@@ -495,7 +487,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         Analysis::Static => with_error(overlay.scene.solver.method.id(), overlay.errors.own),
         Analysis::Dynamic => overlay.scene.dynamics.integrator.id().to_owned(),
     };
-    let mut lines = vec![(own_color(overlay, palette), Mark::Line, own)];
+    let mut lines = vec![(palette.solution(overlay.scene), Mark::Line, own)];
     for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
         lines.push((palette.integrator(companion.integrator), Mark::Line, companion.integrator.id().to_owned()));
     }

@@ -3,7 +3,7 @@
 use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
 
 use crate::render::colormap::ColorMap;
-use crate::scene::{IntegratorKind, MethodKind};
+use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene};
 use crate::simulation::Field;
 
 /// Size of text that is read, points.
@@ -122,6 +122,14 @@ impl Palette {
     pub(super) fn integrator(&self, integrator: IntegratorKind) -> Color32 {
         let [r, g, b] = integrator.entry().color(self.dark);
         Color32::from_rgb(r, g, b)
+    }
+
+    /// The colour of what solves a scene: its method, or its integrator.
+    pub(super) fn solution(&self, scene: &Scene) -> Color32 {
+        match scene.analysis {
+            Analysis::Static => self.method(scene.solver.method),
+            Analysis::Dynamic => self.integrator(scene.dynamics.integrator),
+        }
     }
 
     /// Colours of the kinds of energy: kinetic, elastic, potential, dissipated, lost, put in.

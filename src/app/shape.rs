@@ -75,6 +75,11 @@ impl Shape {
         self.map = palette.map(field);
     }
 
+    /// Where the drawn points are, m, the values at the corners of what is drawn, and their range.
+    pub(super) fn into_parts(self) -> (Vec<Vector2<f64>>, Vec<[Option<f64>; 3]>, [f64; 2]) {
+        (self.points, self.values, self.range)
+    }
+
     /// What the body's pass draws.
     pub(super) fn frame<'a>(&'a self, drawing: &'a Drawing, wireframe: bool) -> Frame<'a> {
         Frame {

@@ -632,12 +632,12 @@ fn pick<T: Copy + PartialEq>(
     let mut menu = |ui: &mut Ui| {
         ui.set_width(280.0);
         for (kind, id, about) in entries.clone() {
-            if choice(ui, palette, *value == Some(kind), id, about, false).clicked() {
+            if choice(ui, palette, *value == Some(kind), id, about).clicked() {
                 *value = Some(kind);
             }
         }
         let about = format!("{panels} at present; follows the panel");
-        if choice(ui, palette, value.is_none(), of_panel, &about, false).clicked() {
+        if choice(ui, palette, value.is_none(), of_panel, &about).clicked() {
             *value = None;
         }
     };
@@ -670,7 +670,7 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
     combo(ui, pane, "mesh", &text, width, &mut |ui| {
         ui.set_width(200.0);
         let about = format!("{} at present; follows the panel", words(own));
-        if choice(ui, palette, cells.is_none(), "the panel's", &about, false).clicked() {
+        if choice(ui, palette, cells.is_none(), "the panel's", &about).clicked() {
             *cells = None;
         }
         let coarser = own.map(|n| n.div_ceil(2));
@@ -684,7 +684,7 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
                 _ if offered[0] < own[0] => "coarser",
                 _ => "finer",
             };
-            if choice(ui, palette, *cells == Some(offered), &words(offered), about, false).clicked() {
+            if choice(ui, palette, *cells == Some(offered), &words(offered), about).clicked() {
                 *cells = Some(offered);
             }
         }

@@ -205,7 +205,7 @@ fn picker<'a>(
             .height(420.0)
             .show_ui(ui, |ui| {
                 for (id, about) in entries {
-                    if choice(ui, &palette, id == chosen.0, id, about, false).clicked() && id != chosen.0 {
+                    if choice(ui, &palette, id == chosen.0, id, about).clicked() && id != chosen.0 {
                         picked = Some(id);
                     }
                 }
