@@ -214,6 +214,8 @@ pub(super) fn install(ctx: &egui::Context) {
             style.spacing.button_padding = egui::vec2(8.0, 3.0);
             style.spacing.interact_size.y = 24.0;
             style.spacing.slider_rail_height = 5.0;
+            // A long list takes the height that it asks for.
+            style.spacing.default_area_size.y = 4000.0;
         });
     }
 }

@@ -2,8 +2,8 @@
 
 use egui::text::LayoutJob;
 use egui::{
-    Align, Align2, Button, FontId, Layout, Painter, Pos2, Rect, Response, Role, Sense, Shape,
-    Stroke, StrokeKind, TextFormat, Ui, WidgetInfo, pos2, vec2,
+    Align, Align2, Button, FontId, Layout, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind,
+    TextFormat, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::action::{Action, Toggle, ViewOptions};

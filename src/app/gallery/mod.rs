@@ -130,6 +130,8 @@ impl Gallery {
                         }
                         if response.clicked() {
                             actions.push(Action::Open(entry.id));
+                            // A key closes nothing by itself.
+                            ui.close();
                         }
                     }
                 });
@@ -160,7 +162,13 @@ impl Gallery {
         ui.painter().rect_filled(plate, 4.0, palette.canvas);
         match self.thumbnails.get(entry.id) {
             Some(thumbnail) => thumbnail.paint(&ui.painter_at(plate), plate, palette),
-            None => _ = ui.painter().hline(plate.center().x - 8.0..=plate.center().x + 8.0, plate.center().y, (2.0, palette.line)),
+            None => {
+                _ = ui.painter().hline(
+                    plate.center().x - 8.0..=plate.center().x + 8.0,
+                    plate.center().y,
+                    (2.0, palette.line),
+                )
+            }
         }
         let left = plate.right() + TEXT;
         let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
@@ -176,5 +184,24 @@ impl Gallery {
         let at = egui::pos2(left, rect.center().y - 0.5 * galley.size().y);
         ui.painter().galley(at, galley, palette.text);
         response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every scene gets its thumbnail, made by a thread; then nothing is waited for.
+    #[test]
+    fn thumbnails_come_in_beside_the_window() {
+        let ctx = Context::default();
+        let mut gallery = Gallery::default();
+        assert!(matches!(gallery.work, Work::NotBegun), "nothing is made before it is opened");
+        while !matches!(gallery.work, Work::Ended) {
+            gallery.listen(&ctx);
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        assert_eq!(gallery.thumbnails.len(), ENTRIES.len());
+        assert_eq!(ENTRIES.len(), registry::BUILT_IN.len());
     }
 }

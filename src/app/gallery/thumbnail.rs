@@ -135,8 +135,10 @@ mod tests {
         for built_in in registry::BUILT_IN {
             let thumbnail = of(built_in.id);
             let size = {
-                let (low, high) =
-                    thumbnail.rest.iter().fold((thumbnail.rest[0], thumbnail.rest[0]), |(l, h), p| (l.inf(p), h.sup(p)));
+                let (low, high) = thumbnail
+                    .rest
+                    .iter()
+                    .fold((thumbnail.rest[0], thumbnail.rest[0]), |(l, h), p| (l.inf(p), h.sup(p)));
                 (high - low).norm()
             };
             let way = thumbnail.rest.iter().zip(&thumbnail.moved).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max);
