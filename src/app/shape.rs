@@ -7,6 +7,7 @@ use super::action::ViewOptions;
 use super::drawing::Drawing;
 use super::palette::{self, Palette};
 use super::panel;
+use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::Frame;
 use crate::render::colormap::ColorMap;
 use crate::simulation::{Field, Simulation};
@@ -25,7 +26,7 @@ pub(super) struct Shape {
     /// At quadrature points or nodes.
     pub known: Vec<Option<f64>>,
     /// At the corners of what is drawn.
-    values: Vec<[Option<f64>; 3]>,
+    pub values: Vec<[Option<f64>; 3]>,
     /// The field's values at the two ends of the colour map.
     pub range: [f64; 2],
     /// What the range is of.
@@ -73,6 +74,14 @@ impl Shape {
         self.absent_color = opaque(palette.absent);
         self.line_color = palette.wire;
         self.map = palette.map(field);
+    }
+
+    /// The value of the field at a material point.
+    pub(super) fn value_at(&self, view: &ViewOptions, mesh: &Mesh, point: MaterialPoint) -> Option<f64> {
+        match &self.nodal {
+            Some(nodal) if view.is_smooth() => view.field.smooth_at(mesh, nodal, point),
+            _ => Field::raw_at(mesh, &self.known, point),
+        }
     }
 
     /// What the body's pass draws.
