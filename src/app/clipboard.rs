@@ -2,33 +2,39 @@
 
 use egui::{OutputCommand, PlatformOutput};
 use winit::event::{ElementState, KeyEvent, WindowEvent};
-use winit::keyboard::{Key, KeyCode, NamedKey, PhysicalKey};
+use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-/// A connection to the system's clipboard, if there is one. Without it, copies stay in the window.
-pub(super) struct Clipboard(Option<arboard::Clipboard>);
+/// The system's clipboard.
+pub(super) struct Clipboard {
+    /// `None` where there is none: copies stay in the window.
+    system: Option<arboard::Clipboard>,
+    modifiers: ModifiersState,
+}
 
 impl Clipboard {
     /// Connects to the clipboard.
     pub(super) fn open() -> Self {
-        Self(arboard::Clipboard::new().inspect_err(|error| log::warn!("no clipboard: {error}")).ok())
+        let system = arboard::Clipboard::new().inspect_err(|error| log::warn!("no clipboard: {error}")).ok();
+        Self { system, modifiers: ModifiersState::empty() }
     }
 
     /// Brings what another program has copied, before egui-winit meets the key that pastes.
     pub(super) fn before(&mut self, event: &WindowEvent, input: &mut egui_winit::State) {
-        let WindowEvent::KeyboardInput { event: key, .. } = event else { return };
-        let modifiers = input.egui_input().modifiers;
-        // What it holds may be an image, or nothing.
-        if (modifiers.command || modifiers.shift)
-            && may_paste(key)
-            && let Some(Ok(text)) = self.0.as_mut().map(arboard::Clipboard::get_text)
-        {
-            input.set_clipboard_text(text);
+        match event {
+            WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),
+            // What the clipboard holds may be an image, or nothing.
+            WindowEvent::KeyboardInput { event: key, .. } if !self.modifiers.is_empty() && may_paste(key) => {
+                if let Some(Ok(text)) = self.system.as_mut().map(arboard::Clipboard::get_text) {
+                    input.set_clipboard_text(text);
+                }
+            }
+            _ => {}
         }
     }
 
     /// Hands on to other programs what has been copied in a frame.
     pub(super) fn after(&mut self, output: &PlatformOutput) {
-        let Some(system) = &mut self.0 else { return };
+        let Some(system) = &mut self.system else { return };
         for command in &output.commands {
             if let OutputCommand::CopyText(text) = command
                 && let Err(error) = system.set_text(text.clone())
@@ -39,7 +45,7 @@ impl Clipboard {
     }
 }
 
-/// Whether a key pastes, if a modifier is held: V of any layout, Insert, or a key made for it.
+/// Whether a key pastes where a modifier is held: V of any layout, Insert, or a key made for it.
 fn may_paste(key: &KeyEvent) -> bool {
     let named = matches!(key.logical_key, Key::Named(NamedKey::Insert | NamedKey::Paste));
     let letter = matches!(&key.logical_key, Key::Character(text) if text.eq_ignore_ascii_case("v"));
