@@ -16,10 +16,8 @@ pub(super) fn silence() {
         return;
     }
     if let Ok(program) = std::env::current_exe() {
-        let error = std::process::Command::new(program)
-            .args(std::env::args_os().skip(1))
-            .env(NO_DEVICE_SELECTION, "1")
-            .exec();
+        let error =
+            std::process::Command::new(program).args(std::env::args_os().skip(1)).env(NO_DEVICE_SELECTION, "1").exec();
         log::debug!("not started anew: {error}");
     }
 }
