@@ -4,7 +4,7 @@
 mod common;
 
 use common::pictures::{difference, distance, lab, pixel, read_png};
-use common::{scene, warpbeam};
+use common::{program, scene, stderr, warpbeam};
 use warpbeam::app::picture;
 use warpbeam::picture::Picture;
 use warpbeam::render::Gpu;
@@ -73,4 +73,15 @@ fn pictures_of_extremes_and_of_tiny_views() {
             assert_eq!(picture.rgba.len(), (4 * size[0] * size[1]) as usize);
         }
     }
+}
+
+/// Where nobody is logged in to a desktop the graphics libraries have nothing to say either.
+#[test]
+fn a_picture_without_a_desktop_prints_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut shot = program(folder.path(), &["shot", "article", "-o", "x.png", "--size", "320x200"]);
+    let output = shot.env_remove("XDG_RUNTIME_DIR").env_remove("NODEVICE_SELECT").output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(stderr(&output), "");
+    assert!(folder.path().join("x.png").exists());
 }
