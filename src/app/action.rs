@@ -58,6 +58,8 @@ pub(super) enum Action {
     Color(Field),
     /// Light or dark.
     ToggleTheme,
+    /// The other language.
+    ToggleLanguage,
     /// Save a picture.
     Screenshot,
     /// Record the scene, or end the recording.

@@ -7,12 +7,13 @@ use std::ops::RangeInclusive;
 use egui::{Align, DragValue, Key, Layout, Response, Slider, SliderClamping, Ui};
 use thiserror::Error;
 
+use super::language::{tr, translated};
 use crate::scene::OutOfRange;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
 use crate::words::{editable, number, three_digits};
 
-/// Messages next to fields, by the field's label.
+/// Messages next to fields, by the field's label, in English.
 pub(super) type Messages = BTreeMap<&'static str, String>;
 
 /// A number to show and edit.
@@ -50,7 +51,7 @@ impl NumberField {
         let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
         let label = ui
             .horizontal(|ui| {
-                let label = ui.label(self.label).on_hover_text(self.tooltip);
+                let label = ui.label(tr(self.label)).on_hover_text(tr(self.tooltip));
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     let mut typed = value;
                     let drag = DragValue::new(&mut typed)
@@ -153,14 +154,14 @@ impl NumberField {
 pub(super) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
     if let Some(message) = messages.get(label) {
         let color = ui.visuals().error_fg_color;
-        ui.add(egui::Label::new(egui::RichText::new(message).color(color).small()).wrap());
+        ui.add(egui::Label::new(egui::RichText::new(translated(message)).color(color).small()).wrap());
     }
 }
 
 /// A tooltip that stays away from what is dragged: it would cover the row below.
 fn quiet_tip(response: Response, tip: &str) {
     if !response.dragged() && !response.has_focus() {
-        response.on_hover_text(tip);
+        response.on_hover_text(tr(tip));
     }
 }
 

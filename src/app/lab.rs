@@ -18,6 +18,7 @@ use super::eye::Eye;
 use super::file_dialog::{Answer, FileDialog, Purpose};
 use super::finder::{Finder, LISTEN};
 use super::intro::Intro;
+use super::language::{self, Language, fill, tr, translated};
 use super::learn::{self, Learn, Shown, Start};
 use super::mode::Mode;
 use super::overlay::{self, Overlay, Projection};
@@ -334,7 +335,8 @@ impl Lab {
     #[must_use]
     pub fn title(&self) -> String {
         let edited = if self.scene == self.document.original { "" } else { "*" };
-        format!("{}{edited} \u{2013} warpbeam", self.scene.name)
+        language::speak(self.settings.language);
+        format!("{}{edited} \u{2013} warpbeam", tr(&self.scene.name))
     }
 
     /// Makes the iterations of one displayed frame if it runs, or the time steps that are due at `now`, s of any clock
@@ -376,6 +378,7 @@ impl Lab {
 
     /// Looks as it was left.
     pub fn set_settings(&mut self, ctx: &egui::Context, settings: Settings) {
+        palette::install(ctx);
         if let Some(theme) = settings.theme {
             ctx.set_theme(egui::Theme::from(theme));
         }
@@ -386,6 +389,17 @@ impl Lab {
         if let Some(path) = self.document.path() {
             self.settings.add_recent(path);
         }
+    }
+
+    /// Shows everything in this language from now on.
+    pub fn set_language(&mut self, language: Language) {
+        self.settings.language = language;
+    }
+
+    /// What it is shown in.
+    #[must_use]
+    pub fn language(&self) -> Language {
+        self.settings.language
     }
 
     /// The window that shows it has this size, points.
@@ -538,12 +552,14 @@ impl Lab {
             can_undo: self.edits.can_undo(),
             can_redo: self.edits.can_redo(),
             adapter: &self.adapter,
+            language: self.settings.language,
         }
     }
 
     /// Shows everything but the body, which is drawn under it, and does what was asked for.
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
         palette::install(ui.ctx());
+        language::speak(self.settings.language);
         let mut actions = Vec::new();
         self.edits.listen(ui.ctx());
         self.hear_of_files(ui.ctx(), &mut actions);
@@ -814,7 +830,7 @@ impl Lab {
     /// Takes a scene that should be as good as the present one; says so where it is not.
     fn edit(&mut self, ctx: &egui::Context, scene: Scene) {
         if let Err(error) = self.set_scene(scene) {
-            self.say(ctx, error.to_string());
+            self.say(ctx, translated(&error.to_string()));
         }
     }
 
@@ -950,10 +966,10 @@ impl Lab {
             chip(tint).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.colored_label(if bad { palette.error } else { palette.text }, words);
-                    if verdict::is_stale(&input) && ui.button("Step now").clicked() {
+                    if verdict::is_stale(&input) && ui.button(tr("Step now")).clicked() {
                         actions.push(Action::Step);
                     }
-                    let why = ui.selectable_label(self.view.why, egui::RichText::new("why?").color(palette.accent));
+                    let why = ui.selectable_label(self.view.why, egui::RichText::new(tr("why?")).color(palette.accent));
                     if why.clicked() {
                         actions.push(Action::Toggle(Toggle::Why));
                     }
@@ -1141,7 +1157,7 @@ impl Lab {
             Action::Save => match self.document.path().map(Path::to_owned) {
                 Some(path) => {
                     let saved = self.save(&path);
-                    self.say(ctx, saved.unwrap_or_else(|reason| format!("Not saved: {reason}")));
+                    self.say(ctx, saved.unwrap_or_else(|reason| fill!("Not saved: %{reason}", reason = reason)));
                 }
                 None => self.ask_where_to_save(),
             },
@@ -1183,7 +1199,7 @@ impl Lab {
             Action::Mark => {
                 self.playback.mark(&self.simulation);
                 let words = if self.playback.is_marked() { "Reset goes to here" } else { "Reset goes to the start" };
-                self.say(ctx, words.to_owned());
+                self.say(ctx, tr(words).to_owned());
             }
             Action::Speed(speed) => self.playback.pace.set_speed(speed),
             Action::Compare(integrator) => self.compare_with(integrator),
@@ -1193,7 +1209,7 @@ impl Lab {
                 self.compare.fit();
             }
             Action::Toggle(Toggle::Mode(mode)) if !(mode.entry().serves)(&self.scene) => {
-                self.say(ctx, mode.entry().unless.to_owned());
+                self.say(ctx, tr(mode.entry().unless).to_owned());
             }
             Action::Toggle(what) => {
                 self.view.toggle(what);
@@ -1209,6 +1225,7 @@ impl Lab {
                 let dark = ctx.theme() == egui::Theme::Dark;
                 ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
             }
+            Action::ToggleLanguage => self.settings.language = self.settings.language.other(),
             Action::Screenshot => requests.push(Request::Screenshot),
             Action::Record => self.record(ctx),
             Action::Copy => self.copy(ctx),
@@ -1249,7 +1266,7 @@ impl Lab {
         };
         match gone {
             Ok(()) => self.iterations = iterations,
-            Err(error) => self.say(ctx, error.to_string()),
+            Err(error) => self.say(ctx, translated(&error.to_string())),
         }
     }
 
@@ -1297,7 +1314,7 @@ impl Lab {
     /// Opens a scene in the place of the present one; says so where that fails.
     fn open(&mut self, ctx: &egui::Context, source: Source) {
         if let Err(error) = self.try_open(source) {
-            self.say(ctx, error.to_string());
+            self.say(ctx, translated(&error.to_string()));
         }
     }
 
@@ -1333,10 +1350,10 @@ impl Lab {
 
     /// Saves the scene to a file; returns what there is to say of it, or why it failed.
     fn save(&mut self, path: &Path) -> Result<String, String> {
-        self.document = self.document.save(&self.scene, path).map_err(|reason| reason.to_string())?;
+        self.document = self.document.save(&self.scene, path).map_err(|reason| translated(&reason.to_string()))?;
         self.settings.add_recent(path);
         self.is_outdated = false;
-        Ok(format!("Saved {}", path.display()))
+        Ok(fill!("Saved %{file}", file = path.display()))
     }
 
     fn ask_where_to_save(&mut self) {
@@ -1390,11 +1407,11 @@ impl Lab {
         area.show(ctx, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(format!("{} has changed on disk.", self.document.source.name.display()));
-                    if ui.button("Reload").clicked() {
+                    ui.label(fill!("%{file} has changed on disk.", file = self.document.source.name.display()));
+                    if ui.button(tr("Reload")).clicked() {
                         actions.push(Action::Reload);
                     }
-                    if ui.button("Keep this one").clicked() {
+                    if ui.button(tr("Keep this one")).clicked() {
                         self.document.ignore_change();
                         self.is_outdated = false;
                     }
@@ -1428,9 +1445,9 @@ impl Lab {
         match self.scene.to_toml() {
             Ok(toml) => {
                 ctx.copy_text(format!("# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}"));
-                self.say(ctx, "Scene copied as TOML".to_owned());
+                self.say(ctx, tr("Scene copied as TOML").to_owned());
             }
-            Err(error) => self.say(ctx, format!("The scene could not be written as TOML: {error}")),
+            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
         }
     }
 
@@ -1440,9 +1457,9 @@ impl Lab {
             return recorder.stop();
         }
         let theme = if ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
-        match Recorder::start(self.document.source.clone(), self.scene.clone(), theme) {
+        match Recorder::start(self.document.source.clone(), self.scene.clone(), theme, self.settings.language) {
             Ok(recorder) => self.recorder = Some(recorder),
-            Err(reason) => self.say(ctx, format!("No recording: {reason}")),
+            Err(reason) => self.say(ctx, fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
         }
     }
 
@@ -1453,7 +1470,8 @@ impl Lab {
             self.recorder = None;
             return self.say(ui.ctx(), words);
         }
-        let words = format!("{}: {:.0} % (V stops it)", recorder.words, 100.0 * recorder.fraction);
+        let percent = format!("{:.0}", 100.0 * recorder.fraction);
+        let words = fill!("%{doing}: %{percent} % (V stops it)", doing = recorder.words, percent = percent);
         let place = rect.center_bottom() - egui::vec2(0.0, 48.0);
         let color = ui.visuals().strong_text_color();
         overlay::boxed_text(painter, place, egui::Align2::CENTER_BOTTOM, &words, ui.visuals(), color, 400.0);

@@ -25,6 +25,7 @@ mod history;
 mod intro;
 mod keys;
 pub mod lab;
+mod language;
 mod learn;
 mod mode;
 mod motion_plot;
@@ -49,6 +50,7 @@ mod window;
 
 pub use compare::{Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
 pub use lab::{Lab, PANEL_WIDTH};
+pub use language::Language;
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use settings::Settings;
 pub use shot::{Canvas, MAX_SHOT_SIDE, ShotOptions, picture, shot};

@@ -8,10 +8,10 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use thiserror::Error;
 
+use super::language::{self, Language, count, fill, tr, translated};
 use super::record::{Phase, RecordOptions, RecordProgress, record};
 use super::{NoName, ThemeChoice, free_name};
 use crate::scene::{Scene, Source};
-use crate::words::count;
 
 /// Pixels of the recording.
 const SIZE: [u32; 2] = [640, 400];
@@ -46,12 +46,17 @@ impl Recorder {
     ///
     /// # Errors
     /// [`RecorderError`].
-    pub(super) fn start(source: Source, scene: Scene, theme: ThemeChoice) -> Result<Self, RecorderError> {
+    pub(super) fn start(
+        source: Source,
+        scene: Scene,
+        theme: ThemeChoice,
+        language: Language,
+    ) -> Result<Self, RecorderError> {
         let path = free_name("gif")?;
         let (sender, receiver) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let cancelled = cancel.clone();
-        let work = move || work(&source, scene, theme, &path, &sender, &cancelled);
+        let work = move || work(&source, scene, (theme, language), &path, &sender, &cancelled);
         std::thread::Builder::new().name("record".to_owned()).spawn(work)?;
         Ok(Self { receiver, cancel, fraction: 0.0, words: String::new() })
     }
@@ -68,7 +73,7 @@ impl Recorder {
                 Ok(Message::Progress(fraction, words)) => (self.fraction, self.words) = (fraction, words),
                 Ok(Message::Done(words)) => return Some(words),
                 Err(TryRecvError::Empty) => return None,
-                Err(TryRecvError::Disconnected) => return Some("The recording ended unexpectedly".to_owned()),
+                Err(TryRecvError::Disconnected) => return Some(tr("The recording ended unexpectedly").to_owned()),
             }
         }
     }
@@ -83,25 +88,28 @@ impl Drop for Recorder {
 fn work(
     source: &Source,
     scene: Scene,
-    theme: ThemeChoice,
+    (theme, language): (ThemeChoice, Language),
     path: &Path,
     sender: &Sender<Message>,
     cancelled: &AtomicBool,
 ) {
+    language::speak(language);
     let mut observe = |progress: RecordProgress| {
         let words = match progress.phase {
-            Phase::Looking => "Looking ahead".to_owned(),
-            Phase::Drawing => format!("Recording {}", path.display()),
+            Phase::Looking => tr("Looking ahead").to_owned(),
+            Phase::Drawing => fill!("Recording %{file}", file = path.display()),
         };
         // Nobody listening is as good as being called off.
         let heard = sender.send(Message::Progress(progress.fraction as f32, words)).is_ok();
         if heard && !cancelled.load(Ordering::Relaxed) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
-    let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, theme };
+    let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, theme, language };
     let words = match record(source, scene, &options, path, &mut observe) {
-        Ok(recorded) if recorded.pictures == 0 => "Nothing was recorded".to_owned(),
-        Ok(recorded) => format!("Saved {}, {}", path.display(), count(recorded.pictures, "picture")),
-        Err(error) => format!("No recording: {error}"),
+        Ok(recorded) if recorded.pictures == 0 => tr("Nothing was recorded").to_owned(),
+        Ok(recorded) => {
+            fill!("Saved %{file}, %{pictures}", file = path.display(), pictures = count(recorded.pictures, "picture"))
+        }
+        Err(error) => fill!("No recording: %{reason}", reason = translated(&error.to_string())),
     };
     let _ = sender.send(Message::Done(words));
 }

@@ -14,6 +14,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 use super::lab::{Lab, Request};
+use super::language::fill;
 use super::settings::Settings;
 use super::shot::picture;
 use super::stage::Stage;
@@ -276,8 +277,8 @@ impl App {
             Ok(path)
         });
         let message = match saved {
-            Ok(path) => format!("Saved {}", path.display()),
-            Err(reason) => format!("No screenshot: {reason}"),
+            Ok(path) => fill!("Saved %{file}", file = path.display()),
+            Err(reason) => fill!("No screenshot: %{reason}", reason = reason),
         };
         self.lab.say(&self.ctx, message);
         open.window.request_redraw();

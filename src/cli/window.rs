@@ -10,10 +10,10 @@ use crate::app;
 use crate::scene::{self, registry};
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
-    let ShotArgs { scene, output, size, no_panel, curve, study, learn, motion, compare, theme } = args;
+    let ShotArgs { scene, output, size, no_panel, curve, study, learn, motion, compare, theme, language } = args;
     let compare = compare.map(|panes| panes.0).unwrap_or_default();
     let learn = learn.map(usize::from);
-    let options = app::ShotOptions { size, panel: !no_panel, curve, study, learn, motion, compare, theme };
+    let options = app::ShotOptions { size, panel: !no_panel, curve, study, learn, motion, compare, theme, language };
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
     if !options.compare.is_empty() && scene.analysis == scene::Analysis::Dynamic {
