@@ -323,6 +323,57 @@ fn pickers_change_their_pane_alone() {
     panes_agree_with_solves(&harness);
 }
 
+/// Where texts that begin so are painted.
+fn painted(harness: &Harness<'_, Lab>, begin: &str) -> Vec<(egui::Pos2, String)> {
+    fn texts(shape: &egui::Shape, found: &mut Vec<(egui::Pos2, String)>) {
+        match shape {
+            egui::Shape::Text(text) => found.push((text.pos, text.galley.text().to_owned())),
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| texts(shape, found)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    harness.output().shapes.iter().for_each(|clipped| texts(&clipped.shape, &mut found));
+    found.retain(|(_, text)| text.starts_with(begin));
+    found
+}
+
+/// The value under the pointer is shown in every pane, at the same point of the body, whatever the mesh.
+#[test]
+fn every_pane_says_its_value_at_the_point_under_the_pointer() {
+    let mut harness = compared("article", "linear,warped,newton:t6");
+    let panes = |lab: &Lab| -> Vec<egui::Rect> { lab.panes().iter().map(|pane| pane.place().unwrap()).collect() };
+    let places = panes(harness.state());
+    // Near the clamp all have a body there.
+    let lab = harness.state();
+    let pane = lab.panes()[1].simulation().unwrap();
+    let rest = nalgebra::Vector2::new(1.0, 0.1);
+    let mesh = pane.system().mesh();
+    let weights = mesh.weights(mesh.locate(rest).unwrap()).unwrap();
+    let u: nalgebra::Vector2<f64> = weights.iter().map(|&(n, w)| pane.displacement()[n as usize] * w).sum();
+    let [x, y] = lab.camera().to_view(rest + u);
+    harness.hover_at(places[1].center() + egui::vec2(x as f32, y as f32));
+    harness.step();
+    harness.step();
+    let said = painted(&harness, "von Mises (Cauchy): ");
+    assert_eq!(said.len(), 3, "{said:?}");
+    for (place, (at, text)) in places.iter().zip(&said) {
+        assert!(place.contains(*at), "{text} at {at:?}, not in {place:?}");
+    }
+    assert!(
+        said[1].1.contains(&format!("u = {}", {
+            let round = [u.x, u.y].map(warpbeam::words::three_digits);
+            warpbeam::words::engineering_pair(round, "m")
+        })),
+        "{said:?} {u}"
+    );
+    // Beside the body nothing is said.
+    harness.hover_at(places[1].left_bottom() + egui::vec2(8.0, -8.0));
+    harness.step();
+    harness.step();
+    assert!(painted(&harness, "von Mises (Cauchy): ").is_empty());
+}
+
 /// A motion is not compared, and that is said.
 #[test]
 fn motions_are_not_compared() {

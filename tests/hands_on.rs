@@ -261,6 +261,202 @@ fn a_double_click_on_the_tip_resets_the_force() {
     assert_eq!(force(harness.state()), before);
 }
 
+/// Clicks twice in one place, as fast as a double click is.
+fn double_click(harness: &mut Harness<'_, Lab>, at: Pos2) {
+    harness.hover_at(at);
+    harness.run();
+    for _ in 0..2 {
+        harness.drag_at(at);
+        harness.step();
+        harness.drop_at(at);
+        harness.step();
+    }
+    harness.run();
+}
+
+/// A double click on a slider or its number, or Delete on the slider, brings the scene's own value back, in one step.
+#[test]
+fn values_go_back_to_those_of_the_scene() {
+    let mut harness = harness("cantilever");
+    for label in ["Force", "Direction", "Young E", "Density ρ", "Cells along"] {
+        unfold(&mut harness, label);
+        let text = if label == "Direction" { "-60" } else { "77" };
+        for by in ["slider", "number", "key"] {
+            type_into(&mut harness, label, text);
+            let edited = harness.state().scene().clone();
+            assert_ne!(edited, scene("cantilever"), "{label}");
+            match by {
+                "slider" => {
+                    let place = harness.get_by_role_and_label(Role::Slider, label).rect().center();
+                    double_click(&mut harness, place);
+                }
+                "number" => {
+                    let place = harness.get_by_role_and_label(Role::SpinButton, label).rect().center();
+                    double_click(&mut harness, place);
+                    assert!(!harness.ctx.text_edit_focused(), "{label}: still being typed");
+                }
+                _ => {
+                    harness.get_by_role_and_label(Role::Slider, label).focus();
+                    harness.run();
+                    key(&mut harness, Modifiers::NONE, Key::Delete);
+                }
+            }
+            assert_eq!(*harness.state().scene(), scene("cantilever"), "{label} by {by}");
+            key(&mut harness, Modifiers::COMMAND, Key::Z);
+            assert_eq!(*harness.state().scene(), edited, "{label} by {by}: not one step");
+            key(&mut harness, Modifiers::COMMAND, Key::Z);
+            assert_eq!(*harness.state().scene(), scene("cantilever"), "{label} by {by}");
+        }
+    }
+    // Two drags are two steps.
+    let slider = harness.get_by_role_and_label(Role::Slider, "Force").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    drag(&mut harness, at(0.4), at(0.5), Modifiers::NONE);
+    let once = harness.state().scene().clone();
+    harness.run_steps(10);
+    drag(&mut harness, at(0.5), at(0.6), Modifiers::NONE);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), once);
+    // It is said beside the control.
+    harness.hover_at(at(0.2));
+    harness.run_steps(60);
+    assert!(harness.query_all_by_label_contains("Double click, or Delete on the slider: 1 kN").next().is_some());
+}
+
+fn moment(lab: &Lab) -> f64 {
+    let moments = lab.scene().loads.iter();
+    moments.filter_map(|l| if let Load::Moment { moment, .. } = l { Some(*moment) } else { None }).next().unwrap()
+}
+
+/// The end of a moment's arrow is dragged round: further round is more, back beyond its beginning is the other sense;
+/// the body follows as `solve` says, and a drag is one step.
+#[test]
+fn the_end_of_a_moments_arrow_sets_it() {
+    let mut harness = harness("roll-up");
+    let before = moment(harness.state());
+    let center = |lab: &Lab| {
+        let mesh = lab.simulation().system().mesh();
+        let (nodes, u) = (mesh.edge_nodes("right").unwrap(), lab.simulation().displacement());
+        let sum: Vector2<f64> = nodes.iter().map(|&n| mesh.nodes()[n as usize] + u[n as usize]).sum();
+        in_window(lab, sum / nodes.len() as f64)
+    };
+    // By way of many places, as a hand goes round; clockwise in the window is less.
+    let turn = |harness: &mut Harness<'_, Lab>, degrees: f32, modifiers: Modifiers| {
+        let (middle, from) = (center(harness.state()), tip(harness.state()));
+        harness.hover_at(from);
+        harness.run();
+        harness.drag_at(from);
+        harness.step();
+        harness.event(Event::ModifiersChanged(modifiers));
+        let mut to = from;
+        for i in 1..=8_u8 {
+            let rotation = egui::emath::Rot2::from_angle(degrees.to_radians() * f32::from(i) / 8.0);
+            to = middle + rotation * (from - middle);
+            harness.hover_at(to);
+            harness.run();
+        }
+        harness.drop_at(to);
+        harness.run();
+        harness.event(Event::ModifiersChanged(Modifiers::NONE));
+        harness.run();
+    };
+    turn(&mut harness, 30.0, Modifiers::NONE);
+    let less = moment(harness.state());
+    assert!((0.2..0.5).contains(&(less / before)), "{before} {less}: half a decade less");
+    unfold(&mut harness, "Moment");
+    let shown = harness.get_by_role_and_label(Role::SpinButton, "Moment").accesskit_node().value().unwrap();
+    assert_eq!(shown, warpbeam::words::editable(less, "N m"));
+    let json = solve_json(&["roll-up", "--set", &format!("load.0.moment={less}")]);
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    let u = harness.state().simulation().solution().probes[0].u;
+    let solved = Vector2::from([0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap()));
+    assert!((u - solved).norm() < 1e-5 * solved.norm(), "{u} {solved}");
+    // On through nothing to the other sense: the beam bends down.
+    turn(&mut harness, 300.0, Modifiers::NONE);
+    assert!(moment(harness.state()) < -0.01 * before, "{}", moment(harness.state()));
+    assert!(harness.state().simulation().solution().probes[0].u.y < 0.0);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(moment(harness.state()), less);
+    turn(&mut harness, -11.0, Modifiers::SHIFT);
+    assert_eq!(moment(harness.state()), 5e3);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), scene("roll-up"));
+    // A double click on the end brings the scene's own back.
+    turn(&mut harness, 20.0, Modifiers::NONE);
+    assert_ne!(moment(harness.state()), before);
+    harness.run_steps(10);
+    let end = tip(harness.state());
+    double_click(&mut harness, end);
+    assert_eq!(moment(harness.state()), before);
+}
+
+/// The middle of the force slider is a force that does something: not so little that nothing moves, not so much that
+/// nothing is left.
+#[test]
+fn the_force_slider_spans_what_a_slender_body_can_bear() {
+    for id in ["article", "cantilever", "elastica", "bracket", "clip", "jump"] {
+        let mut harness = harness(id);
+        let [x, y] = force(harness.state());
+        let own = x.hypot(y);
+        let slider = harness.get_by_role_and_label(Role::Slider, "Force").rect();
+        let mut press = |share: f32| {
+            let at = egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+            harness.hover_at(at);
+            harness.step();
+            harness.drag_at(at);
+            harness.step();
+            harness.drop_at(at);
+            harness.step();
+            let [x, y] = force(harness.state());
+            x.hypot(y)
+        };
+        let [little, middle, much] = [0.12, 0.5, 0.97].map(&mut press);
+        assert!(little < 0.2 * own, "{id}: {own} N is among the first points: {little} N are");
+        assert!((0.02..50.0).contains(&(middle / own)), "{id}: {middle} N in the middle, for {own} N");
+        assert!(much > 10.0 * own, "{id}: at most {much} N, for {own} N");
+        assert!(press(0.0) == 0.0, "{id}: no force at the left end");
+    }
+}
+
+/// The gallery is a list of all scenes with what they are, within a window of any size, and is gone through by keys.
+#[test]
+fn the_gallery_is_gone_through_by_keys() {
+    for size in [[640.0, 480.0], [1280.0, 800.0]] {
+        let mut harness = harness("cantilever");
+        harness.set_size(size.into());
+        harness.run();
+        harness.get_by_role_and_label(Role::ComboBox, "Scene").focus();
+        harness.run();
+        key(&mut harness, Modifiers::NONE, Key::Enter);
+        harness.run_steps(20);
+        for id in common::scene_ids() {
+            let entry = harness.get_by_role_and_label(Role::Button, id);
+            assert_eq!(entry.accesskit_node().description(), Some(scene(id).about), "{id}");
+            let rect = entry.rect();
+            assert!(rect.left() >= 0.0 && rect.right() <= size[0], "{size:?}: {id} at {rect:?}");
+        }
+        let window = egui::Rect::from_min_size(Pos2::ZERO, size.into());
+        let present = harness.get_by_role_and_label(Role::Button, "cantilever");
+        assert!(present.accesskit_node().is_focused() && window.contains_rect(present.rect()), "{size:?}");
+        // Down to one that is not seen at first, and opened.
+        let mut presses = 0;
+        while !harness.get_by_role_and_label(Role::Button, "chime").accesskit_node().is_focused() {
+            key(&mut harness, Modifiers::NONE, Key::Tab);
+            harness.run_steps(4);
+            presses += 1;
+            assert!(presses < 60, "{size:?}: the last scene cannot be reached");
+        }
+        harness.run_steps(20);
+        let last = harness.get_by_role_and_label(Role::Button, "chime").rect();
+        assert!(window.contains_rect(last), "{size:?}: what has the focus is at {last:?}");
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        assert_eq!(harness.state().scene().name, "Chime");
+        assert!(harness.query_by_role_and_label(Role::Button, "cantilever").is_none(), "{size:?}: it stays open");
+    }
+}
+
 /// Resting on the body shows the field there; a click keeps the numbers of the point, another one on them lets them go.
 #[test]
 fn the_body_says_its_values_and_a_click_keeps_them() {

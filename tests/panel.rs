@@ -242,6 +242,66 @@ fn space_on_a_focused_button_is_the_buttons() {
     assert_eq!(harness.state().simulation().iterations(), 1, "and nothing runs");
 }
 
+/// What is typed into a number is the number's, though it ends within the frame that it comes in.
+#[test]
+fn keys_that_end_a_text_in_their_frame_are_the_texts() {
+    let mut harness = harness("article");
+    let converged = harness.state().simulation().iterations();
+    harness.get_by_role_and_label(Role::SpinButton, "Force").click();
+    harness.run();
+    let key = |key, text: &str| {
+        let press =
+            egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
+        [press, egui::Event::Text(text.to_owned())]
+    };
+    // R resets, Space pauses.
+    let typed = [key(Key::Num3, "30"), key(Key::Space, " "), key(Key::N, "kN")].into_iter().flatten();
+    let [enter, _] = key(Key::Enter, "");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.input_mut().events.extend(typed.chain([enter]));
+    harness.run();
+    assert_eq!(force(harness.state()), [0.0, -30_000.0]);
+    assert_eq!(harness.state().simulation().iterations(), converged, "a key has stepped or reset the beam");
+    assert!(harness.query_by_label_contains("Paused").is_none());
+}
+
+/// The ends of a fixed range of colours are set to anything, negative too; the scale stays where it is while one of them
+/// is dragged.
+#[test]
+fn a_fixed_range_of_colours_is_set() {
+    let mut harness = harness("article");
+    harness.key_press(Key::Num4);
+    harness.run();
+    harness.get_by_label_contains("View: ").click();
+    harness.run_steps(8);
+    harness.run();
+    harness.get_by_label("Fixed colour range").click();
+    harness.run();
+    type_into(&mut harness, "Lowest", "-200");
+    let shown = |harness: &Harness<'_, Lab>, end: &str| {
+        let node = harness.get_by_role_and_label(Role::SpinButton, end);
+        node.accesskit_node().value().unwrap_or_default()
+    };
+    assert!(harness.query_by_label_contains("expected").is_none(), "{:?}", texts(&harness));
+    let (low, high) = (shown(&harness, "Lowest"), shown(&harness, "Highest"));
+    type_into(&mut harness, "Highest", "-100 MPa");
+    assert_eq!((shown(&harness, "Lowest"), shown(&harness, "Highest")), (low, high), "a refused value is shown");
+    let slider = harness.get_by_role_and_label(Role::Slider, "Highest").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    harness.hover_at(at(0.7));
+    harness.drag_at(at(0.7));
+    harness.run();
+    let first = shown(&harness, "Highest");
+    for share in [0.9, 0.98, 0.7] {
+        harness.hover_at(at(share));
+        harness.run();
+    }
+    harness.drop_at(at(0.7));
+    harness.run();
+    assert_eq!(shown(&harness, "Highest"), first, "the scale has moved under the pointer");
+}
+
 /// Arrow keys change a value by a hundredth of it.
 #[test]
 fn arrow_keys_step_a_slider_finely() {
@@ -402,7 +462,8 @@ fn keys_are_listed_and_work() {
     let mut harness = harness("article");
     harness.key_press(Key::F1);
     harness.run();
-    for words in ["Run or pause", "Save a screenshot", "Copy the scene", "Zoom to the pointer"] {
+    for words in ["Run or pause", "Save a screenshot", "Copy the scene", "Zoom to the pointer", "on the cards of Learn"]
+    {
         assert!(harness.query_by_label_contains(words).is_some(), "{words}");
     }
     harness.key_press(Key::Escape);

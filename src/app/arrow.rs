@@ -1,6 +1,6 @@
 //! The arrow of a force: how long it is, where its tip is, and which force a dragged tip asks for.
 
-use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
+use egui::{Align, Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 use nalgebra::Vector2;
 
 use super::overlay::{Projection, boxed_text};
@@ -16,7 +16,7 @@ const DECADE: f64 = 26.0;
 /// The smallest force over the largest that slider and arrow tell from zero.
 pub(super) const SMALLEST: f64 = 1e-5;
 /// So near to a tip, points, a press takes hold of it.
-const NEAR: f32 = 13.0;
+pub(super) const NEAR: f32 = 13.0;
 /// Directions snap to multiples of this while Shift is down, degrees.
 const SNAP: f64 = 15.0;
 /// Direction of a force of which none is known, degrees.
@@ -40,11 +40,22 @@ pub(super) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
     [magnitude * c, magnitude * s]
 }
 
-/// A force that strains the whole section by 1, N, rounded up to a power of ten: as far as anything can be seen.
-pub(super) fn largest_force(material: &Material, mesh: &Mesh) -> f64 {
-    let (low, high) = mesh.bounds();
-    let section = material.thickness * (high - low).min();
-    10f64.powf((material.young * section).clamp(1e-6, 1e14).log10().ceil())
+/// As far as anything can be seen, N, rounded up to a power of ten: a force that strains the whole section by 1, or, of
+/// what is slender, a thousand times the one that bends it by its length under linear theory.
+pub(super) fn largest_force(material: &Material, system: &System) -> f64 {
+    const TIMES: f64 = 1e3;
+    let [length, height] = system.strip();
+    let axial = material.young * material.thickness * height;
+    // 3EI/L² with I = t h³/12.
+    let bending = 0.25 * axial * (height / length).powi(2);
+    power_of_ten_above(axial.min(TIMES * bending))
+}
+
+/// The power of ten that is not below a value; never too small or too large to count with.
+pub(super) fn power_of_ten_above(value: f64) -> f64 {
+    /// What is above a power of ten only by rounding is that.
+    const ROUNDING: f64 = 1e-9;
+    10f64.powf((value.clamp(1e-6, 1e14).log10() - ROUNDING).ceil())
 }
 
 /// Between a force and the length of its arrow: logarithmic, with a stub for no force.
@@ -112,7 +123,7 @@ impl Forces<'_> {
     /// The arrows of all forces that pull at the present time.
     pub(super) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
         let mesh = self.system.mesh();
-        let scale = Scale::up_to(largest_force(&self.scene.material, mesh));
+        let scale = Scale::up_to(largest_force(&self.scene.material, self.system));
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let arrows = shown.filter_map(|(load, of)| {
             let Load::Force { place, force, .. } = of else { return None };
@@ -131,12 +142,6 @@ pub(super) fn is_seen(load: &Load, time: f64) -> bool {
     /// Less than this part of a pulse is not drawn.
     const SEEN: f64 = 0.02;
     load.pulse().is_none_or(|pulse| pulse.factor(time) >= SEEN)
-}
-
-/// The arrow whose tip a press here takes hold of.
-pub(super) fn at(arrows: &[Arrow], pointer: Pos2) -> Option<&Arrow> {
-    let near = arrows.iter().map(|arrow| (arrow.tip().distance(pointer), arrow)).filter(|(d, _)| *d <= NEAR);
-    near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, arrow)| arrow)
 }
 
 impl Arrow {
@@ -170,13 +175,7 @@ impl Arrow {
             painter.circle_stroke(grip, 8.5, Stroke::new(1.0, faint.gamma_multiply(0.6)));
         }
         let label = engineering(self.magnitude, "N");
-        let (anchor, at) = if direction.y.abs() > direction.x.abs() {
-            let below = direction.y > 0.0;
-            let anchor = if below { Align2::CENTER_TOP } else { Align2::CENTER_BOTTOM };
-            (anchor, tip + vec2(0.0, 11.0 * direction.y.signum()))
-        } else {
-            (Align2::CENTER_BOTTOM, tip - direction * 20.0 - vec2(0.0, 15.0))
-        };
+        let (anchor, at) = label_place(tip, direction);
         boxed_text(painter, at, anchor, &label, visuals, faint, 200.0);
     }
 
@@ -188,6 +187,22 @@ impl Arrow {
         painter.circle_stroke(self.from, 3.0, stroke);
         painter.circle(tip, 7.0, color.gamma_multiply(0.35), Stroke::new(2.0, color));
     }
+}
+
+/// Where the force of an arrow stands: beyond its tip, or over it where it lies nearly level; never on the arrow.
+fn label_place(tip: Pos2, direction: Vec2) -> (Align2, Pos2) {
+    /// The sine of 22.5 degrees: less is level, or upright.
+    const SLIGHT: f32 = 0.383;
+    if direction.y.abs() < SLIGHT {
+        return (Align2::CENTER_BOTTOM, tip - direction * 20.0 - vec2(0.0, 15.0));
+    }
+    let across = match direction.x {
+        x if x.abs() < SLIGHT => Align::Center,
+        x if x > 0.0 => Align::Min,
+        _ => Align::Max,
+    };
+    let down = if direction.y > 0.0 { Align::Min } else { Align::Max };
+    (Align2([across, down]), tip + vec2(6.0 * direction.x, 11.0 * direction.y.signum()))
 }
 
 /// Paints an arrow from a point along a way; returns its tip.
@@ -233,6 +248,23 @@ mod tests {
                 |i| scale.length(10f64.powf(f64::from(i) * 0.1)) > scale.length(10f64.powf(f64::from(i - 1) * 0.1))
             )
         );
+    }
+
+    /// Whatever its direction and length, the words are beside the arrow.
+    #[test]
+    fn labels_do_not_cover_arrows() {
+        let size = vec2(48.0, 17.0);
+        for degrees in 0..360u16 {
+            let direction = Vec2::angled(f32::from(degrees).to_radians());
+            for length in [22.0, 60.0, 150.0] {
+                let tip = Pos2::ZERO + direction * length;
+                let (anchor, at) = label_place(tip, direction);
+                let label = anchor.anchor_size(at, size);
+                let covers = (0..=100u8).map(|i| Pos2::ZERO + direction * (length * f32::from(i) / 100.0));
+                let covers = covers.filter(|p| label.expand(2.0).contains(*p)).count();
+                assert_eq!(covers, 0, "{degrees} degrees, {length} points: {label:?}");
+            }
+        }
     }
 
     #[test]

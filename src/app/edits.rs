@@ -26,14 +26,24 @@ pub(super) struct Edits {
     future: Vec<Snapshot>,
     /// What the present press has edited: to edit it again is the same step.
     edited: Option<&'static str>,
+    /// What the press before has edited, and when that was over, s: both clicks of a double click are one step.
+    before: Option<(&'static str, f64)>,
 }
 
 impl Edits {
     /// Follows the pointer: what one press edits is one step.
     pub(super) fn listen(&mut self, ctx: &Context) {
-        let goes_on = ctx.input(|i| (i.pointer.any_down() || i.pointer.any_released()) && !i.pointer.any_pressed());
-        if !goes_on {
-            self.edited = None;
+        let (now, is_pressed, goes_on) =
+            ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down() || i.pointer.any_released()));
+        if goes_on && !is_pressed {
+            return;
+        }
+        if let Some(label) = self.edited.take() {
+            self.before = Some((label, now));
+        }
+        if is_pressed {
+            let delay = ctx.options(|options| options.input_options.max_double_click_delay);
+            self.edited = self.before.take().filter(|(_, over)| now - over <= delay).map(|(label, _)| label);
         }
     }
 

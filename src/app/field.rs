@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use egui::{Align, DragValue, Key, Layout, Response, Slider, SliderClamping, Ui};
+use egui::{Align, DragValue, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
 use thiserror::Error;
 
 use super::language::{tr, translated};
@@ -46,7 +46,20 @@ const VALUE_WIDTH: f32 = 104.0;
 impl NumberField {
     /// Shows the row; returns a new value that is within the limit, once there is one.
     pub(super) fn show(&self, ui: &mut Ui, messages: &mut Messages, value: f64) -> Option<f64> {
+        self.show_beside(ui, messages, value, None)
+    }
+
+    /// [`Self::show`] of a value that had an original: a double click, or Delete on the slider, brings that back.
+    pub(super) fn show_beside(
+        &self,
+        ui: &mut Ui,
+        messages: &mut Messages,
+        value: f64,
+        original: Option<f64>,
+    ) -> Option<f64> {
         let mut edited = None;
+        let mut is_reset = false;
+        let tip = self.tip(original);
         let refused = RefCell::new(None);
         let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
         let label = ui
@@ -82,7 +95,12 @@ impl NumberField {
                     if response.changed() {
                         edited = Some(if response.dragged() { three_digits(typed) } else { typed });
                     }
-                    quiet_tip(response, self.tooltip);
+                    if response.double_clicked() && original.is_some() {
+                        is_reset = true;
+                        // The first click has begun to edit the text.
+                        ui.memory_mut(|memory| memory.surrender_focus(response.id));
+                    }
+                    quiet_tip(response, &tip);
                 });
                 label
             })
@@ -99,7 +117,12 @@ impl NumberField {
         } else if response.changed() {
             edited = Some(if self.whole { slid.round() } else { three_digits(slid) });
         }
-        quiet_tip(response, self.tooltip);
+        is_reset |= is_reset_by(ui, &response);
+        quiet_tip(response, &tip);
+        if let (true, Some(original)) = (is_reset, original) {
+            refused.replace(None);
+            edited = Some(original);
+        }
         let accepted = match (refused.into_inner(), edited) {
             (Some(reason), _) => {
                 messages.insert(self.label, reason);
@@ -119,6 +142,15 @@ impl NumberField {
         };
         show_message(ui, messages, self.label);
         accepted.filter(|&new| new != value)
+    }
+
+    /// What it does, and how to have the original back.
+    fn tip(&self, original: Option<f64>) -> String {
+        let back = original.map(|original| editable(original, self.limit.unit));
+        back.map_or_else(
+            || self.tooltip.to_owned(),
+            |back| format!("{}\nDouble click, or Delete on the slider: {back}, as in the scene.", self.tooltip),
+        )
     }
 
     /// What the arrow keys make of a value: one per cent of it, of a straight scale a 360th, and whole numbers one by one.
@@ -156,6 +188,14 @@ pub(super) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
         let color = ui.visuals().error_fg_color;
         ui.add(egui::Label::new(egui::RichText::new(translated(message)).color(color).small()).wrap());
     }
+}
+
+/// Whether a slider was clicked twice, or has the focus of a key that deletes.
+fn is_reset_by(ui: &Ui, slider: &Response) -> bool {
+    // A slider senses drags only: a click is a drag that has gone nowhere.
+    let clicked_twice = slider.drag_stopped() && ui.input(|i| i.pointer.button_double_clicked(PointerButton::Primary));
+    let deletes = || ui.input(|i| i.key_pressed(Key::Delete) || i.key_pressed(Key::Backspace));
+    clicked_twice || slider.has_focus() && deletes()
 }
 
 /// A tooltip that stays away from what is dragged: it would cover the row below.

@@ -1,6 +1,11 @@
 //! The bar along the bottom: three numbers that say it all, the residual's way down, and the drawer with the plots.
 
-use egui::{Align, Color32, FontId, Layout, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use std::sync::Arc;
+
+use egui::{
+    Align, Color32, FontId, Galley, Layout, Painter, Pos2, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 use super::action::{Action, Drawer, Toggle, ViewOptions};
 use super::language::{fill, percent, tr, translated};
@@ -185,11 +190,12 @@ fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Res
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let middle = rect.center().y;
     let mut x = rect.left();
-    let mut put = |galley: std::sync::Arc<egui::Galley>, width: f32, bold: bool| {
+    let mut put = |galley: Arc<Galley>, width: f32, bold: bool| {
         let at = pos2(x, middle - 0.5 * galley.size().y);
-        // The font has one weight: drawn twice, a hair apart, it is semibold.
-        for shift in if bold { &[0.0, 0.45][..] } else { &[0.0] } {
-            ui.painter().galley(at + vec2(*shift, 0.0), galley.clone(), color);
+        if bold {
+            semibold(ui.painter(), at, &galley, color);
+        } else {
+            ui.painter().galley(at, galley, color);
         }
         x += width + GAP;
     };
@@ -221,6 +227,13 @@ fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Res
     }
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} {value} {word}").trim_end()));
     response.on_hover_text(tip)
+}
+
+/// Paints text whose font has one weight as if it had another: drawn twice, a hair apart, it is semibold.
+pub(super) fn semibold(painter: &Painter, at: Pos2, galley: &Arc<Galley>, color: Color32) {
+    for shift in [0.0, 0.45] {
+        painter.galley(at + vec2(shift, 0.0), galley.clone(), color);
+    }
 }
 
 /// How the residual has fallen, iteration by iteration, down to what is asked for.

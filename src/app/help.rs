@@ -5,13 +5,19 @@ use egui::{Align2, Context};
 use super::keys::SHORTCUTS;
 use super::language::tr;
 
+/// Keys that belong to what is shown or has the focus.
+const HERE: &[(&str, &str)] = &[
+    ("Left, Right", "On a slider: a little less or more; on the cards of Learn: the card before or after"),
+    ("Delete", "On a slider: the scene's own value"),
+];
+
 const MOUSE: &[(&str, &str)] = &[
-    ("Drag an arrow's tip", "Set a force; Shift: its direction in steps of 15°"),
+    ("Drag an arrow's tip", "Set a force or a moment; Shift: in steps of 15°, or to a round moment"),
     ("Drag the body", "Pull it with a spring; let go and it springs back"),
     ("Drag beside it, two fingers", "Move the view"),
     ("Rest over the body", "Its values under the pointer; a click keeps them"),
     ("Scroll, pinch", "Zoom to the pointer"),
-    ("Double click", "Fit the view; on an arrow's tip: the scene's own force"),
+    ("Double click", "Fit the view; on an arrow's tip, a slider or a number: the scene's own"),
     ("Drop a file", "Open it"),
 ];
 
@@ -36,7 +42,7 @@ pub(super) fn show(ctx: &Context, open: &mut bool) {
                     ui.label(tr(shortcut.does));
                     ui.end_row();
                 }
-                for (gesture, does) in MOUSE {
+                for (gesture, does) in HERE.iter().chain(MOUSE) {
                     ui.strong(tr(gesture));
                     ui.label(tr(does));
                     ui.end_row();

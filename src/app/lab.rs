@@ -17,6 +17,8 @@ use super::edits::{Edits, Snapshot};
 use super::eye::Eye;
 use super::file_dialog::{Answer, FileDialog, Purpose};
 use super::finder::{Finder, LISTEN};
+use super::gallery::Gallery;
+use super::handle::Pull;
 use super::intro::Intro;
 use super::language::{self, Language, fill, tr, translated};
 use super::learn::{self, Learn, Shown, Start};
@@ -38,7 +40,7 @@ use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::mesh::MaterialPoint;
 use crate::render::{Camera, Frame, Margins, View};
-use crate::scene::{self, Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
+use crate::scene::{self, Analysis, IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::study::{Extent, Jump, LoadPath, Reference, Study};
@@ -119,6 +121,7 @@ pub struct Lab {
     /// Of a body in motion: all that it has swept, m.
     swept: Option<[Vector2<f64>; 2]>,
     recorder: Option<Recorder>,
+    gallery: Gallery,
     quality: Quality,
     /// Iterations a displayed frame.
     iterations: u32,
@@ -180,6 +183,7 @@ impl Lab {
             playback: Playback::default(),
             swept: None,
             recorder: None,
+            gallery: Gallery::default(),
             quality: Quality::default(),
             iterations: 1,
             timings: Timings::default(),
@@ -318,11 +322,11 @@ impl Lab {
         self.view_rect
     }
 
-    /// Where the tips of the forces' arrows are in the window, points, with the number of each among the scene's loads.
+    /// Where the tips of the loads' arrows are in the window, points, with the number of each among the scene's loads.
     #[must_use]
     pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
         let projection = Projection { camera: self.camera(), rect: self.view_rect };
-        self.forces().arrows(&projection).iter().map(|arrow| (arrow.load, arrow.tip())).collect()
+        self.forces().handles(&projection).iter().map(|handle| (handle.load(), handle.tip())).collect()
     }
 
     /// The camera of the last [`Self::ui`].
@@ -537,6 +541,7 @@ impl Lab {
             jump: self.jump.get(),
             quality: &self.quality,
             scene: &self.scene,
+            original: &self.document.original,
             scene_name: self.document.source.name.to_str().unwrap_or_default(),
             simulation: &self.simulation,
             linear: self.linear.as_ref(),
@@ -567,10 +572,12 @@ impl Lab {
         self.budget.listen(ui.ctx());
         self.go_on_with_intro(ui.ctx());
         self.view.narrow = ui.available_width() < NARROW;
+        // Enter ends a text within its frame: the other keys of that frame were typed into it.
+        let was_typing = ui.ctx().text_edit_focused();
         if self.view.bars {
             self.bars(ui, &mut actions);
         }
-        if self.dialog.is_none() {
+        if self.dialog.is_none() && !was_typing {
             actions.extend(keys::actions(ui.ctx()));
         }
         (self.view.mode.entry().show)(self, ui, &mut actions);
@@ -604,7 +611,9 @@ impl Lab {
             .exact_size(toolbar::height(ui.ctx().content_rect().width()))
             .resizable(false)
             .frame(bar(ui));
-        top.show(ui, |ui| toolbar::show(ui, &self.input(), &self.view, actions));
+        let mut gallery = std::mem::take(&mut self.gallery);
+        top.show(ui, |ui| toolbar::show(ui, &self.input(), &mut gallery, &self.view, actions));
+        self.gallery = gallery;
         // Compared panes have each their own.
         if self.view.mode != Mode::Compare {
             let bottom = Panel::bottom("headline").exact_size(HEADLINE_HEIGHT).resizable(false).frame(bar(ui));
@@ -767,6 +776,7 @@ impl Lab {
                 };
                 lab.adapter.clone_from(&self.adapter);
                 lab.settings = std::mem::take(&mut self.settings);
+                lab.gallery = std::mem::take(&mut self.gallery);
                 lab.eases = self.eases;
                 let (bars, panel, narrow) = (self.view.bars, self.view.panel, self.view.narrow);
                 lab.view = ViewOptions { mode: Mode::Learn, bars, panel, narrow, raw: true, ..ViewOptions::default() };
@@ -780,9 +790,9 @@ impl Lab {
             (false, Some(learn)) => {
                 let (mode, drawer) = (self.view.mode, self.view.drawer);
                 let (before, card) = learn.leave();
-                let settings = std::mem::take(&mut self.settings);
+                let (settings, gallery) = (std::mem::take(&mut self.settings), std::mem::take(&mut self.gallery));
                 *self = *before;
-                (self.card, self.settings) = (card, settings);
+                (self.card, self.settings, self.gallery) = (card, settings, gallery);
                 self.view.mode = if (mode.entry().serves)(&self.scene) { mode } else { Mode::Explore };
                 // Plots that were asked for from a card are shown.
                 self.view.drawer = drawer.map(|_| Drawer::of(&self.scene)).or(self.view.drawer);
@@ -840,14 +850,15 @@ impl Lab {
         let projection = Projection { camera: self.camera(), rect: self.view_rect };
         // Elements that are drawn elsewhere cannot be pulled.
         let apart = self.learn.as_ref().is_some_and(|learn| learn.is_apart());
-        let arrows = if apart { Vec::new() } else { self.forces().arrows(&projection) };
+        let handles = if apart { Vec::new() } else { self.forces().handles(&projection) };
         let size = [rect.width(), rect.height()].map(f64::from);
+        let system = self.simulation.system().clone();
         let reach = Reach {
             camera: projection.camera,
+            mesh: (!apart).then_some(system.mesh()),
             positions: &self.shape.nodes,
             outline: &self.drawing.boundary,
-            arrows: &arrows,
-            apart,
+            handles: &handles,
             scales: self.eye.scales(size),
         };
         self.view_rect = rect;
@@ -888,7 +899,7 @@ impl Lab {
             errors: if self.intro.is_some() { Errors::default() } else { errors },
             time: shown.state().time(),
             direction: self.panel.force_direction(),
-            hot: self.pointer.hot_arrow(),
+            hot: self.pointer.hot_handle(),
             hand: self.simulation.hand(),
             playback: &self.playback,
             reactions: &reactions,
@@ -985,19 +996,28 @@ impl Lab {
         reference.map_or(&[], |reference| &reference.outline)
     }
 
-    /// Sets the force whose arrow has been dragged, or puts it back.
+    /// Sets the load whose arrow has been dragged, or puts it back.
     fn take_wish(&mut self, ctx: &egui::Context, wish: &Wish, requests: &mut Vec<Request>) {
-        if let Some((load, magnitude, degrees)) = wish.force {
-            self.panel.keep_force_direction(degrees);
+        if let Some((load, pull)) = wish.load {
             let mut scene = Box::new(self.scene.clone());
-            // There is such a force: its arrow was taken.
-            if scene.set_force(load, vector(magnitude, degrees)).is_ok() && *scene != self.scene {
-                self.act(ctx, Action::Edit("Force", scene), requests);
+            let (label, set) = match pull {
+                Pull::Force(magnitude, degrees) => {
+                    self.panel.keep_force_direction(degrees);
+                    ("Force", scene.set_force(load, vector(magnitude, degrees)))
+                }
+                Pull::Moment(moment) => ("Moment", scene.set_moment(load, moment)),
+            };
+            // There is such a load: its arrow was taken.
+            if set.is_ok() && *scene != self.scene {
+                self.act(ctx, Action::Edit(label, scene), requests);
                 ctx.request_repaint();
             }
         }
-        if let Some(restored) = wish.restore.and_then(|load| self.with_original_load(load)) {
-            self.act(ctx, Action::Edit("Force", Box::new(restored)), requests);
+        if let Some(load) = wish.restore
+            && let Some(restored) = self.with_original_load(load)
+        {
+            let label = if restored.loads.get(load).is_some_and(Load::is_moment) { "Moment" } else { "Force" };
+            self.act(ctx, Action::Edit(label, Box::new(restored)), requests);
             ctx.request_repaint();
         }
     }
@@ -1033,12 +1053,8 @@ impl Lab {
 
     /// The value of the field that colours the body, at a material point.
     fn field_at(&self, point: MaterialPoint) -> (Field, Option<f64>) {
-        let (field, mesh, shape) = (self.view.field, self.simulation.system().mesh(), &self.shape);
-        let value = match &shape.nodal {
-            Some(nodal) if self.view.is_smooth() => field.smooth_at(mesh, nodal, point),
-            _ => Field::raw_at(mesh, &shape.known, point),
-        };
-        (field, value)
+        let mesh = self.simulation.system().mesh();
+        (self.view.field, self.shape.value_at(&self.view, mesh, point))
     }
 
     /// Shows the values under the pointer, and those at the point that is kept.

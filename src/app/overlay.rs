@@ -4,16 +4,18 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, 
 use nalgebra::Vector2;
 
 use super::action::ViewOptions;
-use super::arrow::{self, Arrow, Forces};
+use super::arrow::{self, Forces};
 use super::drawing::Drawing;
 use super::language::{percent, tr};
+use super::handle::HotHandle;
+use super::legend::Mark;
 use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
 use super::verdict::Errors;
 use crate::assembly::{Hand, System};
 use crate::render::Camera;
 use crate::render::colormap::ColorMap;
-use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
+use crate::scene::{Analysis, Load, MethodKind, Scene};
 use crate::simulation::SupportReaction;
 use crate::words::{engineering, prefix, round_down, three_digits, ticks};
 
@@ -39,7 +41,7 @@ pub(super) struct Overlay<'a> {
     /// Direction of an arrow without force, degrees.
     pub direction: f64,
     /// The arrow whose tip the pointer is on, or has taken and dragged so far.
-    pub hot: Option<HotArrow>,
+    pub hot: Option<HotHandle>,
     /// The hand that pulls, and its force, N.
     pub hand: Option<(&'a Hand, Vector2<f64>)>,
     /// The past of a motion, and the same motion under other integrators.
@@ -50,14 +52,6 @@ pub(super) struct Overlay<'a> {
     pub color_range: [f64; 2],
     /// What is wrong with the state, in words.
     pub warning: Option<&'a str>,
-}
-
-/// An arrow whose tip the pointer is on.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct HotArrow {
-    pub arrow: Arrow,
-    /// Where it has been dragged since it was taken, points.
-    pub dragged: Option<Vec2>,
 }
 
 /// Metres to window positions.
@@ -163,7 +157,7 @@ pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
         draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
     }
     if !overlay.apart {
-        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, own_color(overlay, &palette)));
+        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
     }
     for line in overlay.exact {
         // On a ground of its own: over the body its colour alone would be lost.
@@ -187,14 +181,6 @@ pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
         supports(painter, &projection, overlay, &palette);
         loads(painter, &projection, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
-    }
-}
-
-/// The colour of the body's own solution.
-fn own_color(overlay: &Overlay<'_>, palette: &Palette) -> Color32 {
-    match overlay.scene.analysis {
-        Analysis::Static => palette.method(overlay.scene.solver.method),
-        Analysis::Dynamic => palette.integrator(overlay.scene.dynamics.integrator),
     }
 }
 
@@ -227,7 +213,7 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     let playback = overlay.playback;
     let companions = playback.companions().iter().filter(|c| !c.has_stopped());
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
-    for (history, color) in std::iter::once((&playback.history, own_color(overlay, palette))).chain(others) {
+    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
         let points: Vec<Vector2<f64>> = history.last(DURATION).map(|s| s.position).collect();
         let stride = points.len().div_ceil(MOST_PIECES).max(1);
         let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
@@ -325,60 +311,31 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-/// An arc of three quarters of a turn with a head, and the moment beside it.
-fn turning_arrow(painter: &Painter, center: Pos2, moment: f64, color: Color32, visuals: &Visuals) {
-    const RADIUS: f32 = 26.0;
-    const PIECES: u16 = 24;
-    const HEAD: f32 = 11.0;
-    // Window angles grow clockwise, moments counter-clockwise.
-    let sense = if moment > 0.0 { -1.0 } else { 1.0 };
-    let at = |fraction: f32| {
-        let angle = sense * fraction * 1.5 * std::f32::consts::PI - 0.25 * std::f32::consts::PI;
-        center + RADIUS * vec2(angle.cos(), angle.sin())
-    };
-    let arc = (0..=PIECES).map(|i| at(f32::from(i) / f32::from(PIECES))).collect();
-    painter.add(egui::Shape::line(arc, Stroke::new(3.0, color)));
-    let end = at(1.0);
-    let outward = (end - center).normalized();
-    let along = vec2(-outward.y, outward.x) * sense;
-    let head = vec![end + along * HEAD, end + outward * (HEAD * 0.5), end - outward * (HEAD * 0.5)];
-    painter.add(egui::Shape::convex_polygon(head, color, Stroke::NONE));
-    let label = engineering(moment, "N m");
-    boxed_text(painter, center + vec2(0.0, RADIUS + 12.0), Align2::CENTER_TOP, &label, visuals, color, 200.0);
-}
-
 fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     /// Length of the arrow of a weight, which tells its direction only, points.
     const WEIGHT: f32 = 58.0;
     let Overlay { scene, system, positions, time, .. } = *overlay;
     let forces = Forces { scene, system, positions, time, direction: overlay.direction };
+    let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
     for arrow in forces.arrows(projection) {
-        let hot = overlay.hot.as_ref().filter(|hot| hot.arrow.load == arrow.load);
-        arrow.paint(painter, palette.load, visuals, hot.is_some_and(|hot| hot.dragged.is_none()));
-        if let Some((taken, by)) = hot.and_then(|hot| Some((hot.arrow, hot.dragged?))) {
-            taken.paint_handle(painter, by, palette.load);
-        }
+        arrow.paint(painter, palette.load, visuals, is_hot(arrow.load));
+    }
+    for turn in forces.turns(projection) {
+        turn.paint(painter, palette.load, visuals, is_hot(turn.load));
+    }
+    if let Some((taken, drag)) = overlay.hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
+        taken.paint(painter, drag, palette.load);
     }
     for load in scene.loads.iter().filter(|load| arrow::is_seen(load, time)) {
-        match load {
-            Load::Force { .. } => {}
-            Load::Moment { edge, moment, .. } => {
-                let place = Place::from(edge.as_str());
-                if let (Some(point), true) = (arrow::load_point(system.mesh(), positions, &place), *moment != 0.0) {
-                    turning_arrow(painter, projection.point(point), *moment, palette.load, visuals);
-                }
-            }
-            Load::Gravity { acceleration: [x, y], .. } => {
-                let direction = vec2(*x as f32, -*y as f32).normalized();
-                if direction == Vec2::ZERO || !direction.is_finite() {
-                    continue;
-                }
-                let from = projection.rect.right_top() + vec2(-64.0, 30.0);
-                let tip = arrow::paint_arrow(painter, from, direction * WEIGHT, palette.load);
-                let label = engineering(x.hypot(*y), "m/s²");
-                boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
-            }
+        let Load::Gravity { acceleration: [x, y], .. } = load else { continue };
+        let direction = vec2(*x as f32, -*y as f32).normalized();
+        if direction == Vec2::ZERO || !direction.is_finite() {
+            continue;
         }
+        let from = projection.rect.right_top() + vec2(-64.0, 30.0);
+        let tip = arrow::paint_arrow(painter, from, direction * WEIGHT, palette.load);
+        let label = engineering(x.hypot(*y), "m/s²");
+        boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
     }
 }
 
@@ -475,17 +432,8 @@ pub(super) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
     painter.add(mesh);
 }
 
-/// How a solution is drawn.
-#[derive(Clone, Copy, PartialEq)]
-enum Mark {
-    Line,
-    Dashes,
-    Outline,
-}
-
 /// Which line is what, and how far off each is.
 fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    const MARK: f32 = 18.0;
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
     let with_error = |word: &str, error: Option<f64>| match error {
@@ -496,7 +444,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         Analysis::Static => with_error(tr(overlay.scene.solver.method.id()), overlay.errors.own),
         Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
     };
-    let mut lines = vec![(own_color(overlay, palette), Mark::Line, own)];
+    let mut lines = vec![(palette.solution(overlay.scene), Mark::Line, own)];
     for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
         lines.push((palette.integrator(companion.integrator), Mark::Line, tr(companion.integrator.id()).to_owned()));
     }
@@ -518,7 +466,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         .into_iter()
         .map(|(color, mark, words)| {
             let galley = painter.layout_no_wrap(words, font.clone(), palette.text);
-            let width = MARK + 6.0 + galley.size().x;
+            let width = Mark::WIDTH + 6.0 + galley.size().x;
             if at.x > 0.0 && at.x + width > most {
                 at = vec2(0.0, at.y + ROW);
             }
@@ -533,20 +481,8 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
     painter.rect_filled(frame.expand2(vec2(8.0, 4.0)), 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     for (color, mark, galley, place) in placed {
         let left = corner + place + vec2(0.0, 0.5 * ROW);
-        let stroke = Stroke::new(2.5, color);
-        match mark {
-            Mark::Line => _ = painter.line_segment([left, left + vec2(MARK, 0.0)], stroke),
-            Mark::Dashes => {
-                for x in [0.0, 7.0, 14.0] {
-                    painter.line_segment([left + vec2(x, 0.0), left + vec2((x + 4.5).min(MARK), 0.0)], stroke);
-                }
-            }
-            Mark::Outline => {
-                let swatch = Rect::from_min_max(left - vec2(0.0, 4.0), left + vec2(MARK, 4.0));
-                painter.rect_stroke(swatch, 0.0, Stroke::new(1.0, color), egui::StrokeKind::Inside);
-            }
-        }
-        painter.galley(left + vec2(MARK + 6.0, -0.5 * galley.size().y), galley, palette.text);
+        mark.paint(painter, left, color);
+        painter.galley(left + vec2(Mark::WIDTH + 6.0, -0.5 * galley.size().y), galley, palette.text);
     }
 }
 

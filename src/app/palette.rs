@@ -4,7 +4,7 @@ use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
 
 use crate::render::colormap::ColorMap;
-use crate::scene::{IntegratorKind, MethodKind};
+use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene};
 use crate::simulation::Field;
 
 /// Size of text that is read, points.
@@ -125,6 +125,14 @@ impl Palette {
         Color32::from_rgb(r, g, b)
     }
 
+    /// The colour of what solves a scene: its method, or its integrator.
+    pub(super) fn solution(&self, scene: &Scene) -> Color32 {
+        match scene.analysis {
+            Analysis::Static => self.method(scene.solver.method),
+            Analysis::Dynamic => self.integrator(scene.dynamics.integrator),
+        }
+    }
+
     /// Colours of the kinds of energy: kinetic, elastic, potential, dissipated, lost, put in.
     pub(super) fn energies(&self) -> [Color32; 6] {
         if self.dark {
@@ -208,6 +216,8 @@ pub(super) fn install(ctx: &egui::Context) {
             style.spacing.button_padding = egui::vec2(8.0, 3.0);
             style.spacing.interact_size.y = 24.0;
             style.spacing.slider_rail_height = 5.0;
+            // A long list takes the height that it asks for.
+            style.spacing.default_area_size.y = 4000.0;
         });
     }
 }

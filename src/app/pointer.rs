@@ -1,4 +1,4 @@
-//! The pointer over the view. A press takes one thing: the tip of an arrow sets its force, the body is pulled, empty
+//! The pointer over the view. A press takes one thing: the tip of an arrow sets its load, the body is pulled, empty
 //! space moves the view. The wheel zooms to the pointer.
 
 use std::ops::RangeInclusive;
@@ -6,10 +6,9 @@ use std::ops::RangeInclusive;
 use egui::{CursorIcon, Pos2, Response, Ui, Vec2};
 use nalgebra::Vector2;
 
-use super::arrow::{self, Arrow};
-use super::overlay::HotArrow;
+use super::handle::{self, Grip, Handle, HotHandle, Pull};
 use super::playback::Playback;
-use crate::mesh::{MaterialPoint, Segment};
+use crate::mesh::{MaterialPoint, Mesh, Segment};
 use crate::render::Camera;
 use crate::simulation::Simulation;
 
@@ -31,8 +30,8 @@ enum Held {
     /// There is no press, or it was elsewhere.
     #[default]
     Nothing,
-    /// The tip of an arrow, as it was when it was pressed, and where it was pressed.
-    Tip(Arrow, Pos2),
+    /// The tip of an arrow.
+    Tip(Grip),
     /// The body, at a point.
     Body(MaterialPoint),
     /// Empty space.
@@ -44,7 +43,7 @@ enum Held {
 pub(super) struct Pointer {
     held: Held,
     /// The arrow under a pointer that is not pressed.
-    over_tip: Option<Arrow>,
+    over_tip: Option<Handle>,
     /// The material point under a pointer that is not pressed.
     over_body: Option<MaterialPoint>,
     /// Where the pointer is.
@@ -55,8 +54,8 @@ pub(super) struct Pointer {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Wish {
     pub look: Look,
-    /// A force by its number among the loads: N, and degrees.
-    pub force: Option<(usize, f64, f64)>,
+    /// A load by its number, and what it is to be.
+    pub load: Option<(usize, Pull)>,
     /// A load by its number, that is to be as in the scene's file again.
     pub restore: Option<usize>,
     /// A click on the body, or `None` in it for one beside the body.
@@ -65,18 +64,17 @@ pub(super) struct Wish {
 
 /// So near to a thin body, points, counts as on it.
 const NEAR: f64 = 8.0;
-/// A tip that has moved less than this since it was pressed, points, has not been dragged.
-const STILL: f32 = 2.0;
 
 /// What a hand needs to find what it reaches for.
 pub(super) struct Reach<'a> {
     pub camera: Camera,
+    /// The body; `None` where its elements are drawn elsewhere: there is nothing to reach then.
+    pub mesh: Option<&'a Mesh>,
     /// Where the nodes are, m.
     pub positions: &'a [Vector2<f64>],
     pub outline: &'a [Segment],
-    pub arrows: &'a [Arrow],
-    /// Whether the elements are drawn elsewhere: there is nothing to reach then.
-    pub apart: bool,
+    /// The tips of arrows.
+    pub handles: &'a [Handle],
     /// Magnifications that the wheel may reach.
     pub scales: RangeInclusive<f64>,
 }
@@ -88,22 +86,18 @@ impl Reach<'_> {
         self.camera.to_world([f64::from(at.x), f64::from(at.y)])
     }
 
-    fn point(&self, simulation: &Simulation, place: Vector2<f64>) -> Option<MaterialPoint> {
-        if self.apart {
-            return None;
-        }
-        simulation.system().mesh().pick(self.positions, self.outline, place, NEAR / self.camera.scale)
+    fn point(&self, place: Vector2<f64>) -> Option<MaterialPoint> {
+        self.mesh?.pick(self.positions, self.outline, place, NEAR / self.camera.scale)
     }
 }
 
 impl Pointer {
     /// The arrow whose tip it is on, or has taken.
-    pub(super) fn hot_arrow(&self) -> Option<HotArrow> {
-        if let Held::Tip(arrow, pressed) = self.held {
-            let by = self.at.map_or(Vec2::ZERO, |at| at - pressed);
-            return Some(HotArrow { arrow, dragged: (by.length() >= STILL).then_some(by) });
+    pub(super) fn hot_handle(&self) -> Option<HotHandle> {
+        if let Held::Tip(grip) = self.held {
+            return Some(HotHandle { handle: grip.handle, dragged: grip.drag() });
         }
-        self.over_tip.map(|arrow| HotArrow { arrow, dragged: None })
+        self.over_tip.map(|handle| HotHandle { handle, dragged: None })
     }
 
     /// The material point it is over, and where it is, while nothing is pressed.
@@ -152,7 +146,7 @@ impl Pointer {
         }
         if response.double_clicked() {
             match self.held {
-                Held::Tip(arrow, _) => wish.restore = Some(arrow.load),
+                Held::Tip(grip) => wish.restore = Some(grip.handle.load()),
                 Held::Body(_) | Held::Space => wish.look = Look::Fit,
                 Held::Nothing => {}
             }
@@ -170,7 +164,7 @@ impl Pointer {
             }
             self.held = Held::Nothing;
         }
-        self.hover(ui, response, reach, body.map(|(simulation, _)| &*simulation), down);
+        self.hover(ui, response, reach, body.is_some(), down);
         if wish.look == Look::Same {
             wish.look = self.look(ui, response, reach, fingers);
         }
@@ -184,11 +178,11 @@ impl Pointer {
         body: &mut Option<(&mut Simulation, &mut Playback)>,
         at: Pos2,
     ) -> Held {
-        if let Some(arrow) = arrow::at(reach.arrows, at) {
-            return Held::Tip(*arrow, at);
+        if let Some(handle) = handle::at(reach.handles, at) {
+            return Held::Tip(Grip::new(*handle, at));
         }
         let Some((simulation, playback)) = body else { return Held::Space };
-        match reach.point(simulation, reach.place(response, at)) {
+        match reach.point(reach.place(response, at)) {
             Some(point) if simulation.grab(point) => {
                 playback.grab(point);
                 Held::Body(point)
@@ -199,17 +193,17 @@ impl Pointer {
 
     /// Moves what is held to where the pointer is.
     fn drag(
-        &self,
+        &mut self,
         response: &Response,
         reach: &Reach<'_>,
         body: &mut Option<(&mut Simulation, &mut Playback)>,
         (at, snap): (Pos2, bool),
         wish: &mut Wish,
     ) {
-        match self.held {
-            Held::Tip(arrow, pressed) if (at - pressed).length() >= STILL => {
-                let (magnitude, degrees) = arrow.dragged(at - pressed, snap);
-                wish.force = Some((arrow.load, magnitude, degrees));
+        match &mut self.held {
+            Held::Tip(grip) => {
+                grip.follow(at);
+                wish.load = grip.pull(snap).map(|pull| (grip.handle.load(), pull));
             }
             Held::Body(_) => {
                 let Some((simulation, playback)) = body else { return };
@@ -220,24 +214,28 @@ impl Pointer {
                     playback.pull_to(place);
                 }
             }
-            Held::Tip(..) | Held::Space | Held::Nothing => {}
+            Held::Space | Held::Nothing => {}
         }
     }
 
     /// Finds what is under the pointer, and says so with the cursor.
-    fn hover(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, simulation: Option<&Simulation>, down: bool) {
+    fn hover(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, pulls: bool, down: bool) {
         (self.over_tip, self.over_body) = (None, None);
         let cursor = match self.held {
             Held::Tip(..) => Some(CursorIcon::Move),
             Held::Body(_) => Some(CursorIcon::Grabbing),
             Held::Space => Some(CursorIcon::AllScroll),
             Held::Nothing => response.hover_pos().filter(|_| !down).map(|at| {
-                self.over_tip = arrow::at(reach.arrows, at).copied();
+                self.over_tip = handle::at(reach.handles, at).copied();
                 if self.over_tip.is_some() {
                     return CursorIcon::Move;
                 }
-                self.over_body = simulation.and_then(|body| reach.point(body, reach.place(response, at)));
-                if self.over_body.is_some() { CursorIcon::Grab } else { CursorIcon::Default }
+                self.over_body = reach.point(reach.place(response, at));
+                match self.over_body {
+                    Some(_) if pulls => CursorIcon::Grab,
+                    Some(_) => CursorIcon::Crosshair,
+                    None => CursorIcon::Default,
+                }
             }),
         };
         if let Some(cursor) = cursor {

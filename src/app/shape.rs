@@ -7,6 +7,7 @@ use super::action::ViewOptions;
 use super::drawing::Drawing;
 use super::palette::{self, Palette};
 use super::panel;
+use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::Frame;
 use crate::render::colormap::ColorMap;
 use crate::simulation::{Field, Simulation};
@@ -73,6 +74,19 @@ impl Shape {
         self.absent_color = opaque(palette.absent);
         self.line_color = palette.wire;
         self.map = palette.map(field);
+    }
+
+    /// The value of the field at a material point.
+    pub(super) fn value_at(&self, view: &ViewOptions, mesh: &Mesh, point: MaterialPoint) -> Option<f64> {
+        match &self.nodal {
+            Some(nodal) if view.is_smooth() => view.field.smooth_at(mesh, nodal, point),
+            _ => Field::raw_at(mesh, &self.known, point),
+        }
+    }
+
+    /// Where the drawn points are, m, the values at the corners of what is drawn, and their range.
+    pub(super) fn into_parts(self) -> (Vec<Vector2<f64>>, Vec<[Option<f64>; 3]>, [f64; 2]) {
+        (self.points, self.values, self.range)
     }
 
     /// What the body's pass draws.

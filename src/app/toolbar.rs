@@ -1,25 +1,17 @@
 //! The bar along the top: scene, run, modes, theme, help.
 
-use std::sync::LazyLock;
-
 use egui::text::LayoutJob;
 use egui::{
-    Align, Align2, Button, ComboBox, FontId, Layout, Painter, Pos2, Rect, Response, RichText, Role, Sense, Shape,
-    Stroke, StrokeKind, TextFormat, Ui, WidgetInfo, pos2, vec2,
+    Align, Align2, Button, FontId, Layout, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind,
+    TextFormat, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::action::{Action, Toggle, ViewOptions};
 use super::language::{Language, tr};
+use super::gallery::Gallery;
 use super::mode::MODES;
 use super::palette::{BODY, Palette, SMALL};
 use super::panel::PanelInput;
-use crate::scene::{Scene, registry};
-
-/// What each built-in scene is, by its name.
-static ABOUTS: LazyLock<Vec<(&'static str, String)>> = LazyLock::new(|| {
-    let about = |toml: &str| Scene::from_toml(toml).map(|scene| scene.about).unwrap_or_default();
-    registry::BUILT_IN.iter().map(|built_in| (built_in.id, about(built_in.toml))).collect()
-});
 
 /// Below this width, points, buttons show no words.
 const WORDS: f32 = 900.0;
@@ -33,12 +25,18 @@ pub(super) fn height(width: f32) -> f32 {
 }
 
 /// Shows the bar.
-pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, actions: &mut Vec<Action>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    input: &PanelInput<'_>,
+    gallery: &mut Gallery,
+    view: &ViewOptions,
+    actions: &mut Vec<Action>,
+) {
     let wide = ui.available_width() >= WORDS;
     let one_row = height(ui.ctx().content_rect().width()) < 40.0;
     let mut tools = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        scene_picker(ui, input, wide, actions);
+        gallery.show(ui, input, wide, actions);
         divide(ui);
         run(ui, input, wide, actions);
         divide(ui);
@@ -221,49 +219,16 @@ fn history(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {
     }
 }
 
-fn scene_picker(ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action>) {
-    let palette = Palette::new(ui.visuals());
-    let label = ui.label(RichText::new(tr("Scene")).color(palette.secondary));
-    ComboBox::from_id_salt("scene")
-        .selected_text(tr(&input.scene.name))
-        .width(if wide { 190.0 } else { 120.0 })
-        .height(520.0)
-        .truncate()
-        .show_ui(ui, |ui| {
-            let width = (ui.ctx().content_rect().width() - 60.0).clamp(160.0, 600.0);
-            ui.set_width(width);
-            for (id, about) in ABOUTS.iter() {
-                let selected = *id == input.scene_name;
-                if choice(ui, &palette, selected, id, about, true).clicked() {
-                    actions.push(Action::Open(id));
-                }
-            }
-        })
-        .response
-        .labelled_by(label.id)
-        .on_hover_text(tr(&input.scene.about));
-}
-
-/// Where the sentences of a list begin, points.
-const NAMES_WIDTH: f32 = 76.0;
-
-/// An entry of a picker: its name, and what it is; in one line, or under the name.
-pub(super) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, about: &str, line: bool) -> Response {
+/// An entry of a picker: its name, and what it is under it.
+pub(super) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, about: &str) -> Response {
     let (id, about) = (tr(id), tr(about));
     let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
     let mut job = LayoutJob::default();
     job.append(id, 0.0, format(BODY, palette.text));
-    let mut lead = 0.0;
-    if line {
-        let name = ui.painter().layout_no_wrap(id.to_owned(), FontId::proportional(BODY), palette.text);
-        lead = (NAMES_WIDTH - name.size().x).max(8.0);
-    } else {
-        job.append("\n", 0.0, format(BODY, palette.text));
-    }
+    job.append("\n", 0.0, format(BODY, palette.text));
     let secondary = if selected { palette.text } else { palette.secondary };
-    job.append(about, lead, format(SMALL, secondary));
-    let button = Button::selectable(selected, job);
-    let response = ui.add(if line { button.truncate() } else { button.wrap() });
+    job.append(about, 0.0, format(SMALL, secondary));
+    let response = ui.add(Button::selectable(selected, job).wrap());
     response.widget_info(|| WidgetInfo::selected(Role::Button, response.enabled(), selected, id));
     response
 }

@@ -58,6 +58,7 @@ struct Body {
     nodal_areas: Vec<f64>,
     /// Made when it is first asked for.
     recovery: OnceLock<Recovery>,
+    strip: OnceLock<[f64; 2]>,
     size: f64,
 }
 
@@ -78,6 +79,7 @@ impl Body {
             edges: Edge::of(&mesh),
             nodal_areas,
             recovery: OnceLock::new(),
+            strip: OnceLock::new(),
             size: (high - low).norm(),
             mesh,
         }
@@ -225,6 +227,22 @@ impl System {
     #[must_use]
     pub fn recovery(&self) -> &Recovery {
         self.body.recovery.get_or_init(|| Recovery::new(&self.body.mesh))
+    }
+
+    /// Length and height, m, of the straight strip that has the body's area and perimeter at rest: those of a beam, and
+    /// what they would be of a body that is bent or curved.
+    #[must_use]
+    pub fn strip(&self) -> [f64; 2] {
+        *self.body.strip.get_or_init(|| {
+            let mesh = self.mesh();
+            let along =
+                |nodes: &[u32]| nodes.windows(2).map(|w| (mesh.node(w[1]) - mesh.node(w[0])).norm()).sum::<f64>();
+            let quarter = 0.25 * mesh.outline().iter().map(|side| along(side.nodes())).sum::<f64>();
+            let area: f64 = self.nodal_areas().iter().sum();
+            // Of a body rounder than a square: those of a square.
+            let apart = (quarter * quarter - area).max(0.0).sqrt();
+            [quarter + apart, quarter - apart]
+        })
     }
 
     /// Size of the body at rest: the diagonal of the box around it, m.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use egui::emath::GuiRounding;
 use egui::{
-    Align, Align2, ComboBox, Context, FontId, Layout, Panel, Rect, RichText, Role, Sense, Stroke, Ui, UiBuilder,
+    Align, Align2, Color32, ComboBox, Context, FontId, Layout, Panel, Rect, RichText, Role, Sense, Ui, UiBuilder,
     WidgetInfo, pos2, vec2,
 };
 use nalgebra::Vector2;
@@ -16,9 +16,10 @@ use self::trace::Trace;
 use super::action::{Action, ViewOptions};
 use super::eye::Eye;
 use super::finder::LISTEN;
-use super::headline::truth_words;
+use super::headline::{semibold, truth_words};
 use super::language::{count, fill, percent, sentence, tr, translated};
-use super::overlay::{self, Overlay};
+use super::legend::Mark;
+use super::overlay::{self, Overlay, Projection};
 use super::palette::{BODY, HEADLINE, Palette, SMALL};
 use super::playback::Playback;
 use super::pointer::{Look, Reach, Wish};
@@ -307,10 +308,11 @@ impl Compare {
                 self.header(ui, number, input, &mut change);
             });
             let own = self.body(ui, number, place, input);
-            if own.force.is_some() || own.restore.is_some() {
+            if own.load.is_some() || own.restore.is_some() {
                 wish = own;
             }
         }
+        self.show_values(ui, input.view);
         self.key(ui, key, input.view);
         match change {
             Some((number, Some(setting))) => {
@@ -328,6 +330,15 @@ impl Compare {
         }
         ui.advance_cursor_after_rect(whole);
         wish
+    }
+
+    /// Shows the values under the pointer, in every pane at the same point of the body.
+    fn show_values(&self, ui: &Ui, view: &ViewOptions) {
+        let under = self.panes.iter().enumerate().find_map(|(number, pane)| Some((number, pane.under_pointer()?)));
+        let Some((number, (rest, at))) = under else { return };
+        for (i, pane) in self.panes.iter().enumerate() {
+            pane.show_value(ui, view, rest, self.camera(), (i == number).then_some(at));
+        }
     }
 
     /// One range of colours for all: that of the equilibria.
@@ -382,7 +393,8 @@ impl Compare {
         /// Of the height so much may go to arrows; in panes lower than this, points, the bodies need it.
         const SHARE: f64 = 0.25;
         const LOW: f64 = 160.0;
-        let arrows = self.panes.first().map(|pane| pane.arrows(Rect::ZERO, self.camera(), input.direction));
+        let forces = self.panes.first().and_then(|pane| pane.forces(input.direction));
+        let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: Rect::ZERO }));
         let longest = |along: fn(egui::Vec2) -> f32| {
             let ways = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.way)));
             ways.fold(0.0, f64::max).min(if height < LOW { 0.0 } else { SHARE * height })
@@ -471,10 +483,7 @@ impl Compare {
             let color = error_color(&palette, error);
             let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
             let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
-            // The font has one weight: drawn twice, a hair apart, it is semibold.
-            for shift in [0.0, 0.45] {
-                painter.galley(at.min + vec2(shift, 0.0), galley.clone(), color);
-            }
+            semibold(painter, at.min, &galley, color);
             left = at.right() + 12.0;
         }
         let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
@@ -498,13 +507,16 @@ impl Compare {
         let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
         let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Wish::default() };
         let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
-        let arrows = pane.arrows(place, camera, input.direction);
+        // What is no answer has no values.
+        let system = pane.system().filter(|_| pane.is_sound() && !pane.is_outdated()).cloned();
+        let forces = pane.forces(input.direction);
+        let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&Projection { camera, rect: place }));
         let reach = Reach {
-            apart: false,
+            mesh: system.as_ref().map(|system| system.mesh()),
             camera,
             positions: &pane.shape.nodes,
             outline: &pane.drawing.boundary,
-            arrows: &arrows,
+            handles: &handles,
             scales: eye.scales([place.width(), place.height()].map(f64::from)),
         };
         let wish = pane.pointer.follow(ui, &response, &reach, None);
@@ -533,7 +545,7 @@ impl Compare {
                 errors: Errors::default(),
                 time: 0.0,
                 direction: input.direction,
-                hot: pane.pointer.hot_arrow(),
+                hot: pane.pointer.hot_handle(),
                 hand: None,
                 reactions: &[],
                 playback: &self.still,
@@ -568,24 +580,17 @@ impl Compare {
         let font = FontId::proportional(SMALL);
         let middle = rect.center().y;
         let mut x = rect.left() + 12.0;
-        let mut entry = |words: &str, mark: &dyn Fn(f32)| {
-            mark(x);
-            let place =
-                painter.text(pos2(x + 24.0, middle), Align2::LEFT_CENTER, tr(words), font.clone(), palette.secondary);
+        let mut entry = |words: &str, mark: Mark, color: Color32| {
+            mark.paint(&painter, pos2(x, middle), color);
+            let at = pos2(x + Mark::WIDTH + 6.0, middle);
+            let place = painter.text(at, Align2::LEFT_CENTER, tr(words), font.clone(), palette.secondary);
             x = place.right() + 16.0;
         };
         if view.exact {
-            entry("exact", &|x| {
-                for shift in [0.0, 7.0, 14.0] {
-                    painter.hline(x + shift..=x + shift + 4.5, middle, Stroke::new(2.0, palette.exact));
-                }
-            });
+            entry("exact", Mark::Dashes, palette.exact);
         }
         if view.rest_outline {
-            entry("rest", &|x| {
-                let swatch = Rect::from_center_size(pos2(x + 9.0, middle), vec2(18.0, 8.0));
-                painter.rect_stroke(swatch, 0.0, Stroke::new(1.0, palette.rest), egui::StrokeKind::Inside);
-            });
+            entry("rest", Mark::Outline, palette.rest);
         }
         let Some(range) = self.panes.first().map(|pane| pane.shape.range) else { return };
         let bar = if rect.width() < 560.0 { 70.0 } else { 130.0 };
@@ -643,12 +648,12 @@ fn pick<T: Copy + PartialEq>(
     let mut menu = |ui: &mut Ui| {
         ui.set_width(280.0);
         for (kind, id, about) in entries.clone() {
-            if choice(ui, palette, *value == Some(kind), id, about, false).clicked() {
+            if choice(ui, palette, *value == Some(kind), id, about).clicked() {
                 *value = Some(kind);
             }
         }
         let about = fill!("%{setting} at present; follows the panel", setting = tr(panels));
-        if choice(ui, palette, value.is_none(), of_panel, &about, false).clicked() {
+        if choice(ui, palette, value.is_none(), of_panel, &about).clicked() {
             *value = None;
         }
     };
@@ -681,7 +686,7 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
     combo(ui, pane, "mesh", &text, width, &mut |ui| {
         ui.set_width(200.0);
         let about = fill!("%{setting} at present; follows the panel", setting = words(own));
-        if choice(ui, palette, cells.is_none(), "the panel's", &about, false).clicked() {
+        if choice(ui, palette, cells.is_none(), "the panel's", &about).clicked() {
             *cells = None;
         }
         let coarser = own.map(|n| n.div_ceil(2));
@@ -695,7 +700,7 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
                 _ if offered[0] < own[0] => "coarser",
                 _ => "finer",
             };
-            if choice(ui, palette, *cells == Some(offered), &words(offered), about, false).clicked() {
+            if choice(ui, palette, *cells == Some(offered), &words(offered), about).clicked() {
                 *cells = Some(offered);
             }
         }

@@ -6,14 +6,16 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
-use egui::Rect;
+use egui::{Pos2, Rect, Stroke, Ui};
+use nalgebra::Vector2;
 
 use super::setting::PaneSetting;
 use crate::app::action::ViewOptions;
-use crate::app::arrow::{Arrow, Forces};
+use crate::app::arrow::Forces;
 use crate::app::drawing::Drawing;
 use crate::app::overlay::Projection;
 use crate::app::pointer::Pointer;
+use crate::app::probe;
 use crate::app::shape::Shape;
 use crate::assembly::System;
 use crate::render::Camera;
@@ -238,11 +240,33 @@ impl Pane {
         self.end.as_ref().map_or_else(|| self.answer().is_some_and(|(_, good)| good), |_| !self.has_failed())
     }
 
-    /// The arrows of its forces, as last drawn.
-    pub(super) fn arrows(&self, place: Rect, camera: Camera, direction: f64) -> Vec<Arrow> {
-        let (Some(scene), Some(system)) = (&self.wanted, &self.system) else { return Vec::new() };
-        let forces = Forces { scene, system, positions: &self.shape.nodes, time: 0.0, direction };
-        forces.arrows(&Projection { camera, rect: place })
+    /// Its loads, as last drawn.
+    pub(super) fn forces(&self, direction: f64) -> Option<Forces<'_>> {
+        let (scene, system) = (self.wanted.as_ref()?, self.system.as_ref()?);
+        Some(Forces { scene, system, positions: &self.shape.nodes, time: 0.0, direction })
+    }
+
+    /// Where at rest, m, the point of the body under the pointer is, and where the pointer is.
+    pub(super) fn under_pointer(&self) -> Option<(Vector2<f64>, Pos2)> {
+        let (point, at) = self.pointer.over_body()?;
+        let mesh = self.system.as_ref()?.mesh();
+        Some((probe::place(mesh, mesh.nodes(), point)?, at))
+    }
+
+    /// Shows the value at the point that is here at rest, m: beside the pointer, or beside the point.
+    pub(super) fn show_value(&self, ui: &Ui, view: &ViewOptions, rest: Vector2<f64>, camera: Camera, at: Option<Pos2>) {
+        let (Some(system), Some(place)) = (&self.system, self.place) else { return };
+        let mesh = system.mesh();
+        let Some(point) = mesh.locate(rest).filter(|_| self.is_sound() && !self.is_outdated()) else { return };
+        let Some(now) = probe::place(mesh, &self.shape.nodes, point) else { return };
+        let painter = ui.painter_at(place);
+        let at = at.unwrap_or_else(|| {
+            let there = Projection { camera, rect: place }.point(now);
+            painter.circle_stroke(there, 4.5, Stroke::new(2.0, ui.visuals().strong_text_color()));
+            there
+        });
+        let value = self.shape.value_at(view, mesh, point);
+        probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
     /// Whether it waits for the pointer to let go.

@@ -44,7 +44,8 @@ pub(super) fn mesh_summary(input: &PanelInput<'_>) -> String {
     joined([cells, count(input.simulation.system().dofs() as u64, "unknown")])
 }
 
-pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actions: &mut Vec<Action>) {
+pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let scene = input.scene;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         for Preset { name, young, poisson, density, .. } in PRESETS {
@@ -56,8 +57,8 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
             }
         }
     });
-    let mut row = |field: NumberField, value: f64, set: fn(&mut Scene, f64)| {
-        number_row(ui, scene, state, actions, (field, value), set);
+    let mut row = |field: NumberField, get: fn(&Scene) -> f64, set: fn(&mut Scene, f64)| {
+        number_row(ui, input, state, actions, (field, get), set);
     };
     let m = &scene.material;
     row(
@@ -69,7 +70,7 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
             logarithmic: Some(1e3),
             whole: false,
         },
-        m.young,
+        |s| s.material.young,
         |s, v| s.material.young = v,
     );
     row(
@@ -81,7 +82,7 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
             logarithmic: None,
             whole: false,
         },
-        m.poisson,
+        |s| s.material.poisson,
         |s, v| s.material.poisson = v,
     );
     row(
@@ -93,7 +94,7 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
             logarithmic: Some(1.0),
             whole: false,
         },
-        m.density,
+        |s| s.material.density,
         |s, v| s.material.density = v,
     );
     row(
@@ -105,7 +106,7 @@ pub(super) fn material(ui: &mut Ui, scene: &Scene, state: &mut PanelState, actio
             logarithmic: Some(1e-3),
             whole: false,
         },
-        m.thickness,
+        |s| s.material.thickness,
         |s, v| s.material.thickness = v,
     );
     ui.horizontal(|ui| {
@@ -139,7 +140,8 @@ pub(super) fn mesh(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             whole: true,
         };
         let Some(beam) = &scene.beam else { continue };
-        if let Some(new) = field.show(ui, &mut state.messages, f64::from(beam.cells[axis])) {
+        let original = input.original.beam.as_ref().map(|beam| f64::from(beam.cells[axis]));
+        if let Some(new) = field.show_beside(ui, &mut state.messages, f64::from(beam.cells[axis]), original) {
             let mut scene = Box::new(scene.clone());
             if let Some(beam) = &mut scene.beam {
                 beam.cells[axis] = new as u32;

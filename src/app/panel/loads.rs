@@ -6,9 +6,17 @@ use super::{Action, PanelInput, PanelState, edges};
 use crate::app::arrow::{DOWN, SMALLEST, largest_force, polar_form, vector};
 use crate::app::field::NumberField;
 use crate::app::language::{joined, tr};
+use crate::app::turn::{self, largest_moment};
 use crate::assembly::System;
 use crate::scene::{Load, Scene, limits};
 use crate::words::engineering;
+
+fn force_of(scene: &Scene) -> Option<[f64; 2]> {
+    scene.loads.iter().find_map(|l| match l {
+        Load::Force { force, .. } => Some(*force),
+        _ => None,
+    })
+}
 
 fn gravity_of(scene: &Scene) -> Option<[f64; 2]> {
     scene.loads.iter().find_map(|l| match l {
@@ -35,13 +43,10 @@ pub(super) fn summary(scene: &Scene) -> String {
 /// Force and its direction.
 pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
-    let force = scene.loads.iter().find_map(|l| match l {
-        Load::Force { force, .. } => Some(*force),
-        _ => None,
-    });
-    let (magnitude, direction) = polar_form(force.unwrap_or_default());
+    let (magnitude, direction) = polar_form(force_of(scene).unwrap_or_default());
+    let (original, original_direction) = polar_form(force_of(input.original).unwrap_or_default());
     let direction = direction.unwrap_or(state.force_direction());
-    let largest = largest_force(&scene.material, input.simulation.system().mesh());
+    let largest = largest_force(&scene.material, input.simulation.system());
     let field = NumberField {
         label: "Force",
         tooltip: "Magnitude of the force, N. Type a number for values the slider has not, such as 12 kN.",
@@ -50,7 +55,7 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
         logarithmic: Some(SMALLEST * largest),
         whole: false,
     };
-    if let Some(new) = field.show(ui, &mut state.messages, magnitude) {
+    if let Some(new) = field.show_beside(ui, &mut state.messages, magnitude, Some(original)) {
         state.keep_force_direction(direction);
         actions.push(Action::Edit("Force", with_force(scene, input.simulation.system(), vector(new, direction))));
     }
@@ -62,7 +67,8 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
         logarithmic: None,
         whole: false,
     };
-    if let Some(new) = field.show(ui, &mut state.messages, shown_degrees(direction)) {
+    let original = original_direction.map(shown_degrees);
+    if let Some(new) = field.show_beside(ui, &mut state.messages, shown_degrees(direction), original) {
         state.keep_force_direction(new);
         actions.push(Action::Edit("Direction", with_force(scene, input.simulation.system(), vector(magnitude, new))));
     }
@@ -86,26 +92,23 @@ pub(super) fn gravity_and_moment(
         logarithmic: Some(0.01),
         whole: false,
     };
-    if let Some(new) = field.show(ui, &mut state.messages, magnitude) {
+    let original = polar_form(gravity_of(input.original).unwrap_or_default()).0;
+    if let Some(new) = field.show_beside(ui, &mut state.messages, magnitude, Some(original)) {
         state.gravity_direction = Some(direction);
         actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
     }
     let current = moment_of(scene);
-    // What rolls the rest shape up once, rounded up: 2πEI/L.
-    let (low, high) = input.simulation.system().mesh().bounds();
-    let (length, height) = ((high - low).max(), (high - low).min());
-    let material = &input.scene.material;
-    let circle = std::f64::consts::TAU * material.young * material.thickness * height.powi(3) / (12.0 * length);
-    let largest = 10f64.powf(circle.clamp(1e-6, 1e14).log10().ceil());
+    let largest = largest_moment(&scene.material, input.simulation.system());
     let field = NumberField {
         label: "Moment",
         tooltip: "Moment on an edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
         limit: limits::MOMENT,
         slider: -largest..=largest,
-        logarithmic: Some(1e-4 * largest),
+        logarithmic: Some(turn::SMALLEST * largest),
         whole: false,
     };
-    if let Some(new) = field.show(ui, &mut state.messages, current.unwrap_or(0.0)) {
+    let original = moment_of(input.original).unwrap_or(0.0);
+    if let Some(new) = field.show_beside(ui, &mut state.messages, current.unwrap_or(0.0), Some(original)) {
         let mut scene = Box::new(input.scene.clone());
         let first = scene.loads.iter_mut().find_map(|l| match l {
             Load::Moment { moment, .. } => Some(moment),

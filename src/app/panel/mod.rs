@@ -34,6 +34,8 @@ pub(super) use view::range_of;
 #[derive(Clone, Copy)]
 pub(super) struct PanelInput<'a> {
     pub scene: &'a Scene,
+    /// The scene as it was opened or saved last.
+    pub original: &'a Scene,
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
     /// The same scene under linear theory.
@@ -122,7 +124,7 @@ pub(super) fn show(
             fold(ui, "Moved support", &summary, true, |ui| supports::show(ui, input, support, state, actions));
         }
         let summary = body::material_summary(input.scene);
-        fold(ui, "Material", &summary, false, |ui| body::material(ui, input.scene, state, actions));
+        fold(ui, "Material", &summary, false, |ui| body::material(ui, input, state, actions));
         let summary = body::mesh_summary(input);
         fold(ui, "Mesh", &summary, false, |ui| body::mesh(ui, input, state, actions));
         let summary = view::summary(view, input.scene);
@@ -176,14 +178,15 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
 /// A row that edits a number of the scene.
 fn number_row(
     ui: &mut Ui,
-    scene: &Scene,
+    input: &PanelInput<'_>,
     state: &mut PanelState,
     actions: &mut Vec<Action>,
-    (field, value): (NumberField, f64),
+    (field, get): (NumberField, fn(&Scene) -> f64),
     set: fn(&mut Scene, f64),
 ) {
-    if let Some(new) = field.show(ui, &mut state.messages, value) {
-        let mut scene = Box::new(scene.clone());
+    let original = Some(get(input.original));
+    if let Some(new) = field.show_beside(ui, &mut state.messages, get(input.scene), original) {
+        let mut scene = Box::new(input.scene.clone());
         set(&mut scene, new);
         actions.push(Action::Edit(field.label, scene));
     }
@@ -209,8 +212,9 @@ fn picker<'a>(
             .height(420.0)
             .show_ui(ui, |ui| {
                 for (id, about) in entries {
-                    if choice(ui, &palette, id == chosen.0, id, about, false).clicked() && id != chosen.0 {
+                    if choice(ui, &palette, id == chosen.0, id, about).clicked() && id != chosen.0 {
                         picked = Some(id);
+                        ui.close();
                     }
                 }
             })

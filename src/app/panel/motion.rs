@@ -58,8 +58,8 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             }
         }
     });
-    let mut row = |field: NumberField, value: f64, set: fn(&mut Scene, f64)| {
-        number_row(ui, input.scene, state, actions, (field, value), set);
+    let mut row = |field: NumberField, get: fn(&Scene) -> f64, set: fn(&mut Scene, f64)| {
+        number_row(ui, input, state, actions, (field, get), set);
     };
     row(
         NumberField {
@@ -70,7 +70,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             logarithmic: Some(1e-4),
             whole: false,
         },
-        settings.time_step,
+        |s| s.dynamics.time_step,
         |s, v| s.dynamics.time_step = v,
     );
     row(
@@ -82,7 +82,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             logarithmic: None,
             whole: true,
         },
-        f64::from(settings.iterations),
+        |s| f64::from(s.dynamics.iterations),
         |s, v| s.dynamics.iterations = v as u32,
     );
     row(
@@ -94,7 +94,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             logarithmic: Some(1e-3),
             whole: false,
         },
-        settings.damping.mass,
+        |s| s.dynamics.damping.mass,
         |s, v| s.dynamics.damping.mass = v,
     );
     row(
@@ -106,7 +106,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             logarithmic: Some(1e-5),
             whole: false,
         },
-        settings.damping.stiffness,
+        |s| s.dynamics.damping.stiffness,
         |s, v| s.dynamics.damping.stiffness = v,
     );
     if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {

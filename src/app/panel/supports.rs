@@ -43,6 +43,7 @@ pub(super) fn show(
 ) {
     let scene = input.scene;
     let Some(support) = scene.supports.get(number) else { return };
+    let original = input.original.supports.get(number);
     if scene.supports.len() > 1 {
         ui.horizontal(|ui| {
             let label = ui.label(tr("Support"));
@@ -81,7 +82,8 @@ pub(super) fn show(
             logarithmic: None,
             whole: false,
         };
-        if let Some(new) = field.show(ui, &mut state.messages, support.displacement[component]) {
+        let original = original.map(|support| support.displacement[component]);
+        if let Some(new) = field.show_beside(ui, &mut state.messages, support.displacement[component], original) {
             let edit = |support: &mut Support| support.displacement[component] = new;
             actions.push(Action::Edit(label, edited(scene, number, edit)));
         }
@@ -95,7 +97,8 @@ pub(super) fn show(
             logarithmic: None,
             whole: false,
         };
-        if let Some(new) = field.show(ui, &mut state.messages, support.turn) {
+        let original = original.map(|support| support.turn);
+        if let Some(new) = field.show_beside(ui, &mut state.messages, support.turn, original) {
             actions.push(Action::Edit("Turn", edited(scene, number, |support| support.turn = new)));
         }
     }

@@ -1,0 +1,56 @@
+//! The thread that makes the thumbnails of the built-in scenes, one after the other.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+
+use super::thumbnail::Thumbnail;
+use crate::scene::{self, Source, registry};
+
+/// The work on all thumbnails, beside the window. Dropped, it is called off.
+#[derive(Debug)]
+pub(super) struct Workshop {
+    receiver: Receiver<(&'static str, Thumbnail)>,
+    cancel: Arc<AtomicBool>,
+}
+
+impl Workshop {
+    /// Begins.
+    ///
+    /// # Errors
+    /// There is no thread for it.
+    pub(super) fn start() -> std::io::Result<Self> {
+        let (sender, receiver) = channel();
+        let cancel = Arc::new(AtomicBool::new(false));
+        let cancelled = cancel.clone();
+        std::thread::Builder::new().name("thumbnails".to_owned()).spawn(move || work(&sender, &cancelled))?;
+        Ok(Self { receiver, cancel })
+    }
+
+    /// The next thumbnail that is ready, with its scene's name; the error says that none is yet, or that there are no more.
+    pub(super) fn hear(&self) -> Result<(&'static str, Thumbnail), TryRecvError> {
+        self.receiver.try_recv()
+    }
+}
+
+impl Drop for Workshop {
+    fn drop(&mut self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+}
+
+fn work(sender: &Sender<(&'static str, Thumbnail)>, cancelled: &AtomicBool) {
+    let is_called_off = || cancelled.load(Ordering::Relaxed);
+    for built_in in registry::BUILT_IN {
+        let scene = scene::open(&Source { name: built_in.id.into(), assignments: Vec::new() });
+        let thumbnail = scene.ok().and_then(|scene| Thumbnail::of(&scene, is_called_off));
+        if is_called_off() {
+            return;
+        }
+        if let Some(thumbnail) = thumbnail
+            && sender.send((built_in.id, thumbnail)).is_err()
+        {
+            return;
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! What a press can take of the loads: the tip of a force's arrow, or the end of a moment's.
+
+use egui::{Color32, Painter, Pos2, Vec2};
+
+use super::arrow::{Arrow, Forces, NEAR, is_seen, load_point};
+use super::overlay::Projection;
+use super::turn::{Turn, largest_moment};
+use crate::scene::{Load, Place};
+
+/// The end of a load's arrow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Handle {
+    Force(Arrow),
+    Moment(Turn),
+}
+
+/// What a dragged handle asks of its load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Pull {
+    /// Magnitude, N, and direction, degrees.
+    Force(f64, f64),
+    /// N m.
+    Moment(f64),
+}
+
+/// How a handle has been dragged since it was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Drag {
+    /// Points.
+    by: Vec2,
+    /// About the middle of a moment's arrow, rad, counter-clockwise.
+    turned: f64,
+}
+
+/// A handle that the pointer is on, or has taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct HotHandle {
+    pub handle: Handle,
+    /// Where it has been dragged since it was taken.
+    pub dragged: Option<Drag>,
+}
+
+impl Handle {
+    /// The load's number among the scene's.
+    pub(super) fn load(&self) -> usize {
+        match self {
+            Self::Force(arrow) => arrow.load,
+            Self::Moment(turn) => turn.load,
+        }
+    }
+
+    pub(super) fn tip(&self) -> Pos2 {
+        match self {
+            Self::Force(arrow) => arrow.tip(),
+            Self::Moment(turn) => turn.tip(),
+        }
+    }
+
+    /// What the load is to be after a drag.
+    fn pull(&self, drag: Drag, snap: bool) -> Pull {
+        match self {
+            Self::Force(arrow) => {
+                let (magnitude, degrees) = arrow.dragged(drag.by, snap);
+                Pull::Force(magnitude, degrees)
+            }
+            Self::Moment(turn) => Pull::Moment(turn.dragged(drag.turned, snap)),
+        }
+    }
+
+    /// Paints, where it was when it was taken, what the pointer has made of it.
+    pub(super) fn paint(&self, painter: &Painter, drag: Drag, color: Color32) {
+        match self {
+            Self::Force(arrow) => arrow.paint_handle(painter, drag.by, color),
+            Self::Moment(turn) => turn.paint_handle(painter, drag.turned, color),
+        }
+    }
+}
+
+/// The handle that a press here takes hold of.
+pub(super) fn at(handles: &[Handle], pointer: Pos2) -> Option<&Handle> {
+    let near = handles.iter().map(|handle| (handle.tip().distance(pointer), handle)).filter(|(d, _)| *d <= NEAR);
+    near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, handle)| handle)
+}
+
+/// A handle that was taken, and the pointer's way since.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grip {
+    pub handle: Handle,
+    pressed: Pos2,
+    last: Pos2,
+    turned: f64,
+}
+
+impl Grip {
+    /// Taken here.
+    pub(super) fn new(handle: Handle, pressed: Pos2) -> Self {
+        Self { handle, pressed, last: pressed, turned: 0.0 }
+    }
+
+    /// The pointer goes on to here.
+    pub(super) fn follow(&mut self, at: Pos2) {
+        if let Handle::Moment(turn) = self.handle {
+            self.turned += turn.angle_between(self.last, at);
+        }
+        self.last = at;
+    }
+
+    /// How it has been dragged; `None` where it has not moved.
+    pub(super) fn drag(&self) -> Option<Drag> {
+        /// What has moved less than this, points, has not been dragged.
+        const STILL: f32 = 2.0;
+        let by = self.last - self.pressed;
+        (by.length() >= STILL).then_some(Drag { by, turned: self.turned })
+    }
+
+    /// What the load is to be, where the handle has been dragged.
+    pub(super) fn pull(&self, snap: bool) -> Option<Pull> {
+        Some(self.handle.pull(self.drag()?, snap))
+    }
+}
+
+impl Forces<'_> {
+    /// The circular arrows of all moments that act at the present time.
+    pub(super) fn turns(&self, projection: &Projection) -> Vec<Turn> {
+        let mesh = self.system.mesh();
+        let largest = largest_moment(&self.scene.material, self.system);
+        let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
+        let turns = shown.filter_map(|(load, of)| {
+            let Load::Moment { edge, moment, .. } = of else { return None };
+            let center = projection.point(load_point(mesh, self.positions, &Place::from(edge.as_str()))?);
+            center.is_finite().then(|| Turn::new(load, center, *moment, largest))
+        });
+        turns.collect()
+    }
+
+    /// What can be taken of them.
+    pub(super) fn handles(&self, projection: &Projection) -> Vec<Handle> {
+        let arrows = self.arrows(projection).into_iter().map(Handle::Force);
+        arrows.chain(self.turns(projection).into_iter().map(Handle::Moment)).collect()
+    }
+}
