@@ -6,7 +6,7 @@ use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, 
 use super::action::Action;
 use super::background::{Background, BackgroundError, News};
 use super::field::{Messages, NumberField};
-use super::finder::LISTEN;
+use super::job::LISTEN;
 use super::palette::Palette;
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
@@ -180,7 +180,7 @@ fn settings(
             }
             let words = match (&budget.error, budget.study) {
                 (Some(error), _) => RichText::new(error).small().color(ui.visuals().error_fg_color),
-                (None, None) => RichText::new("Nothing measured yet: it takes some seconds.").small(),
+                (None, None) => RichText::new("Nothing measured yet: it takes about a minute.").small(),
                 (None, Some(_)) if !budget.current => {
                     let color = ui.visuals().warn_fg_color;
                     RichText::new("The body or its load has changed since.").small().color(color)

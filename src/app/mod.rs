@@ -15,6 +15,7 @@ mod compare;
 mod document;
 mod drawing;
 mod edits;
+mod errand;
 mod eye;
 mod field;
 mod file_dialog;
@@ -23,6 +24,7 @@ mod headline;
 mod help;
 mod history;
 mod intro;
+mod job;
 mod keys;
 pub mod lab;
 mod learn;
@@ -42,6 +44,7 @@ mod recorder;
 mod settings;
 mod shape;
 mod shot;
+mod size;
 mod stage;
 mod toolbar;
 mod verdict;
@@ -52,7 +55,7 @@ pub use lab::{Lab, PANEL_WIDTH};
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use settings::Settings;
 pub use shot::{Canvas, MAX_SHOT_SIDE, ShotOptions, picture, shot};
-pub use window::{Display, NoDisplay, run};
+pub use window::{Display, NoDisplay, opens_beside, run};
 
 /// No number is free for a file's name.
 #[derive(Debug, Error)]
