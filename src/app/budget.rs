@@ -6,7 +6,7 @@ use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, 
 use super::action::Action;
 use super::background::{Background, BackgroundError, News};
 use super::field::{Messages, NumberField};
-use super::finder::LISTEN;
+use super::job::LISTEN;
 use super::language::{count, fill, joined, percent, tr, translated};
 use super::palette::Palette;
 use crate::element::ELEMENTS;
@@ -181,7 +181,7 @@ fn settings(
             }
             let words = match (&budget.error, budget.study) {
                 (Some(error), _) => RichText::new(translated(error)).small().color(ui.visuals().error_fg_color),
-                (None, None) => RichText::new(tr("Nothing measured yet: it takes some seconds.")).small(),
+                (None, None) => RichText::new(tr("Nothing measured yet: it takes about a minute.")).small(),
                 (None, Some(_)) if !budget.current => {
                     let color = ui.visuals().warn_fg_color;
                     RichText::new(tr("The body or its load has changed since.")).small().color(color)

@@ -15,6 +15,7 @@ mod compare;
 mod document;
 mod drawing;
 mod edits;
+mod errand;
 mod eye;
 mod field;
 mod file_dialog;
@@ -25,6 +26,7 @@ mod headline;
 mod help;
 mod history;
 mod intro;
+mod job;
 mod keys;
 pub mod lab;
 mod language;
@@ -46,6 +48,7 @@ mod recorder;
 mod settings;
 mod shape;
 mod shot;
+mod size;
 mod stage;
 mod toolbar;
 mod turn;
@@ -58,7 +61,7 @@ pub use language::Language;
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use settings::Settings;
 pub use shot::{Canvas, MAX_SHOT_SIDE, ShotOptions, picture, shot};
-pub use window::{Display, NoDisplay, run};
+pub use window::{Display, NoDisplay, opens_beside, run};
 
 /// No number is free for a file's name.
 #[derive(Debug, Error)]

@@ -7,8 +7,8 @@ use egui::{
 };
 
 use super::action::{Action, Toggle, ViewOptions};
-use super::language::{Language, tr};
 use super::gallery::Gallery;
+use super::language::{Language, tr};
 use super::mode::MODES;
 use super::palette::{BODY, Palette, SMALL};
 use super::panel::PanelInput;

@@ -33,10 +33,14 @@ pub(super) fn run_default() -> Result<ExitCode, CliError> {
 }
 
 pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliError> {
-    let (scene, simulation) = simulate(&source)?;
+    let scene = scene::open(&source)?;
+    let simulation = || Ok::<_, CliError>(simulate(&source)?.1);
+    // A window does not wait for a large mesh; what is wrong with a small one is said without a window.
+    let small = if app::opens_beside(&scene) { None } else { Some(simulation()?) };
     match app::Display::open() {
-        Ok(display) => app::run(display, source, scene, simulation)?,
+        Ok(display) => app::run(display, source, scene, small)?,
         Err(reason) => {
+            let simulation = small.map_or_else(simulation, Ok)?;
             let picture = output.display();
             text::print(&format!("No window: {reason}.\nSolving the scene instead; the picture goes to {picture}.\n"))?;
             let args = RequiredSceneArgs {

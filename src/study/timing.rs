@@ -52,6 +52,13 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
         .collect()
 }
 
+/// About how long [`times_from_rest`] takes, where a run takes so long.
+#[must_use]
+pub fn expected_time(run: Duration) -> Duration {
+    let [all, fewest] = [REPETITIONS, FEWEST].map(|repetitions| run * (WARM_UP + repetitions) as u32);
+    all.min(fewest.max(LONG))
+}
+
 /// Repetitions of a run that is not warmed up: one goes before it.
 const RUNS: usize = 5;
 

@@ -15,14 +15,14 @@ use self::setting::PANES;
 use self::trace::Trace;
 use super::action::{Action, ViewOptions};
 use super::eye::Eye;
-use super::finder::LISTEN;
 use super::headline::{semibold, truth_words};
+use super::job::LISTEN;
 use super::language::{count, fill, percent, sentence, tr, translated};
 use super::legend::Mark;
 use super::overlay::{self, Overlay, Projection};
 use super::palette::{BODY, HEADLINE, Palette, SMALL};
 use super::playback::Playback;
-use super::pointer::{Look, Reach, Wish};
+use super::pointer::{Body, Look, Reach, Wish};
 use super::stage::viewport;
 use super::toolbar::{Icon, choice, icon_button};
 use super::verdict::{Errors, error_color};
@@ -61,7 +61,8 @@ const LOW_FOR_TWO_ROWS: f32 = 680.0;
 /// What the comparison is of, and how it is looked at.
 pub(super) struct CompareInput<'a> {
     pub scene: &'a Scene,
-    /// The scene's equations.
+    /// The scene that these equations are of.
+    pub shown: &'a Scene,
     pub system: &'a Arc<System>,
     pub truth: Option<&'a Reference>,
     pub view: &'a ViewOptions,
@@ -185,7 +186,7 @@ impl Compare {
         let (moves, holds) = ctx.input(|i| (i.pointer.delta() != egui::Vec2::ZERO, i.pointer.any_down()));
         self.trace.follow(input.scene);
         let equations =
-            if self.is_changed(input.scene) { self.equations(input.scene, input.system) } else { Vec::new() };
+            if self.is_changed(input.scene) { self.equations(input.shown, input.system) } else { Vec::new() };
         let mut is_new = false;
         let share = WORK / u32::try_from(self.panes.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes {
@@ -519,7 +520,7 @@ impl Compare {
             handles: &handles,
             scales: eye.scales([place.width(), place.height()].map(f64::from)),
         };
-        let wish = pane.pointer.follow(ui, &response, &reach, None);
+        let wish = pane.pointer.follow(ui, &response, &reach, Body::None);
         match wish.look {
             Look::Same => {}
             Look::At(camera) => {

@@ -54,6 +54,8 @@ const SENTENCES: &[&str] = &[
     // Settings, and what stands in the places above.
     "%{mesh}, %{method}, %{count}",
     "%{element} as meshed",
+    "%{n} triangles",
+    "%{n} quadrilaterals",
     "%{n} iterations",
     "%{n} iteration",
     "%{quantity} (%{unit})",
