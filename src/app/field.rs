@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use egui::{Align, DragValue, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
 use thiserror::Error;
 
-use super::language::{tr, translated};
+use super::language::{fill, tr, translated};
 use crate::scene::OutOfRange;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
@@ -146,10 +146,14 @@ impl NumberField {
 
     /// What it does, and how to have the original back.
     fn tip(&self, original: Option<f64>) -> String {
-        let back = original.map(|original| editable(original, self.limit.unit));
-        back.map_or_else(
-            || self.tooltip.to_owned(),
-            |back| format!("{}\nDouble click, or Delete on the slider: {back}, as in the scene.", self.tooltip),
+        let tip = tr(self.tooltip);
+        original.map_or_else(
+            || tip.to_owned(),
+            |original| {
+                let value = editable(original, self.limit.unit);
+                let back = fill!("Double click, or Delete on the slider: %{value}, as in the scene.", value = value);
+                format!("{tip}\n{back}")
+            },
         )
     }
 
@@ -201,7 +205,7 @@ fn is_reset_by(ui: &Ui, slider: &Response) -> bool {
 /// A tooltip that stays away from what is dragged: it would cover the row below.
 fn quiet_tip(response: Response, tip: &str) {
     if !response.dragged() && !response.has_focus() {
-        response.on_hover_text(tr(tip));
+        response.on_hover_text(tip);
     }
 }
 

@@ -22,7 +22,7 @@ use super::gallery::Gallery;
 use super::handle::{Handle, Pull};
 use super::intro::Intro;
 use super::job::LISTEN;
-use super::language::{self, Language, fill, tr, translated};
+use super::language::{self, Language, fill, spaced, tr, translated};
 use super::learn::{self, Learn, Shown, Start};
 use super::mode::Mode;
 use super::overlay::{self, Overlay, Projection};
@@ -995,7 +995,7 @@ impl Lab {
             if self.view.why {
                 chip(palette.panel).show(ui, |ui| {
                     for line in verdict::explanation(&input) {
-                        ui.add(egui::Label::new(line).wrap());
+                        ui.add(egui::Label::new(spaced(line.into(), palette::BODY)).wrap());
                     }
                 });
             }

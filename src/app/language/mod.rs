@@ -2,6 +2,10 @@
 //! what is shown is looked up there at the place where it is shown: what is kept and compared stays English.
 
 use std::cell::Cell;
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use egui::RichText;
 
 use crate::words;
 
@@ -44,33 +48,16 @@ impl Language {
 
     /// A text in this language; where the catalogue does not have it, as it is.
     fn of(self, english: &str) -> &str {
-        let locale = match self {
-            Self::English => return english,
-            Self::Chinese => "zh-CN",
-        };
-        catalogue::find(locale, english).unwrap_or(english)
+        match self {
+            Self::English => english,
+            Self::Chinese => CHINESE.get(english).map_or(english, String::as_str),
+        }
     }
 }
 
-/// The texts of `assets/locales`, compiled in.
-mod catalogue {
-    use std::collections::BTreeMap;
-    use std::sync::LazyLock;
-
-    static TEXTS: LazyLock<BTreeMap<String, String>> =
-        LazyLock::new(|| toml::from_str(include_str!("../../../assets/locales/zh-CN.toml")).unwrap_or_default());
-
-    pub(super) fn find(_: &str, english: &str) -> Option<&'static str> {
-        TEXTS.get(english).map(String::as_str)
-    }
-
-    pub(super) fn replace(text: &str, names: &[&str], values: &[String]) -> String {
-        names
-            .iter()
-            .zip(values)
-            .fold(text.to_owned(), |text, (name, value)| text.replace(&format!("%{{{name}}}"), value))
-    }
-}
+/// The Chinese texts by the English ones. Tests see to it that the file is well formed.
+static CHINESE: LazyLock<BTreeMap<String, String>> =
+    LazyLock::new(|| toml::from_str(include_str!("../../../assets/locales/zh-CN.toml")).unwrap_or_default());
 
 thread_local! {
     /// Of the lab that this thread shows: each test has a thread of its own.
@@ -97,7 +84,15 @@ pub(super) use fill;
 
 /// A sentence with its values; [`fill`] names them.
 pub(super) fn filled(english: &str, names: &[&str], values: &[String]) -> String {
-    catalogue::replace(tr(english), names, values)
+    let mut parts = tr(english).split("%{");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (name, after) = part.split_once('}').unwrap_or(("", part));
+        let value = names.iter().position(|own| *own == name).and_then(|i| values.get(i));
+        text.push_str(value.map_or("", String::as_str));
+        text.push_str(after);
+    }
+    text
 }
 
 /// A number of things: [`words::count`].
@@ -112,6 +107,15 @@ pub(super) fn count(n: impl Into<u64>, what: &str) -> String {
 /// An error or a share: [`words::percent`].
 pub(super) fn percent(value: f64) -> String {
     tr(&words::percent(value)).to_owned()
+}
+
+/// A text of this size, points, with room between its lines: Han letters fill theirs.
+pub(super) fn spaced(text: RichText, size: f32) -> RichText {
+    const LINE: f32 = 1.5;
+    match CURRENT.get() {
+        Language::English => text,
+        Language::Chinese => text.line_height(Some((LINE * size).round())),
+    }
 }
 
 /// Several things in a row.

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use super::triangle::{Triangle, assembled, frames};
 use super::{Learn, Shown, formula, not_triangles};
 use crate::app::action::Action;
-use crate::app::language::{fill, tr};
+use crate::app::language::{fill, spaced, tr};
 use crate::app::palette::{Palette, SMALL};
 use crate::render::colormap;
 use crate::simulation::Field;
@@ -55,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         clamped = all - free,
         free = free,
     );
-    ui.add(egui::Label::new(RichText::new(note).size(SMALL).color(palette.secondary)).wrap());
+    ui.add(egui::Label::new(spaced(RichText::new(note), SMALL).size(SMALL).color(palette.secondary)).wrap());
 }
 
 /// The matrix of the body before clamping, and what clamping takes from it.

@@ -9,9 +9,9 @@ use super::drawing::Drawing;
 use super::field::Messages;
 use super::finder::Finder;
 use super::lab::Lab;
-use super::language::{fill, tr};
+use super::language::{fill, spaced, tr};
 use super::mode::Mode;
-use super::palette::{HEADLINE, Palette};
+use super::palette::{BODY, HEADLINE, Palette};
 use super::panel::PanelInput;
 use crate::render::Camera;
 use crate::scene::{self, Analysis, MethodKind, Scene, SolverSettings, Source, registry};
@@ -36,6 +36,8 @@ use locking::ElementError;
 /// Height of the row of cards, points; at most a part of the window's.
 const HEIGHT: f32 = 258.0;
 const SHARE: f32 = 0.42;
+/// A row of less height, points, has no room for most cards.
+const LOW: f32 = 240.0;
 
 /// Below this width, points, what is beside the words is under them.
 const TWO_COLUMNS: f32 = 560.0;
@@ -279,12 +281,20 @@ impl Learn {
             let card = self.card();
             let bars = egui::scroll_area::ScrollBarVisibility::VisibleWhenNeeded;
             ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
-            let scroll = |part: &str, card: usize| {
-                ScrollArea::vertical().id_salt((part, card)).auto_shrink([false, false]).scroll_bar_visibility(bars)
-            };
             let number = self.card;
+            let scroll = |ui: &mut Ui, part: &str, show: &mut dyn FnMut(&mut Ui)| {
+                // A bar that came would wrap the words anew, and might go again for that: in a low row its room is free.
+                let room = ui.available_width() - ui.spacing().scroll.allocated_width();
+                let area = ScrollArea::vertical().id_salt((part, number)).auto_shrink([false, false]);
+                area.scroll_bar_visibility(bars).show(ui, |ui| {
+                    if height < LOW {
+                        ui.set_max_width(room);
+                    }
+                    show(ui);
+                });
+            };
             if ui.available_width() < TWO_COLUMNS {
-                scroll("card", number).show(ui, |ui| {
+                scroll(ui, "card", &mut |ui| {
                     text(ui, card);
                     ui.add_space(8.0);
                     (card.show)(ui, shown, self, actions);
@@ -298,10 +308,8 @@ impl Learn {
                 ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
                 show(&mut ui);
             };
-            column(left, &mut |ui| _ = scroll("words", number).show(ui, |ui| text(ui, card)));
-            column(right, &mut |ui| {
-                scroll("drawing", number).show(ui, |ui| (card.show)(ui, shown, self, actions));
-            });
+            column(left, &mut |ui| scroll(ui, "words", &mut |ui| text(ui, card)));
+            column(right, &mut |ui| scroll(ui, "drawing", &mut |ui| (card.show)(ui, shown, self, actions)));
         });
     }
 
@@ -403,7 +411,8 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
 /// Sentences, formula, and what to do.
 fn text(ui: &mut Ui, card: &Card) {
     let palette = Palette::new(ui.visuals());
-    ui.add(egui::Label::new(RichText::new(tr(card.words)).color(palette.text)).wrap());
+    let words = spaced(RichText::new(tr(card.words)), BODY).color(palette.text);
+    ui.add(egui::Label::new(words).wrap());
     ui.add_space(4.0);
     let chip = egui::Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(egui::Margin::symmetric(12, 5));
     chip.show(ui, |ui| {
@@ -420,7 +429,7 @@ fn text(ui: &mut Ui, card: &Card) {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 16.0), Sense::hover());
         let triangle = [vec2(-3.0, -5.0), vec2(5.0, 0.0), vec2(-3.0, 5.0)].map(|v| rect.center() + v);
         ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
-        ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(super::palette::BODY)));
+        ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
     });
 }
 

@@ -8,7 +8,7 @@ use egui::{Align2, ComboBox, FontId, RichText, Role, ScrollArea, Sense, Stroke, 
 use super::action::{Action, ViewOptions};
 use super::arrow::DOWN;
 use super::field::{Messages, NumberField, show_message};
-use super::language::{Language, tr};
+use super::language::{Language, spaced, tr};
 use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
 use super::quality::Quality;
@@ -104,7 +104,7 @@ pub(super) fn show(
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
     scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
         let palette = Palette::new(ui.visuals());
-        let about = RichText::new(tr(&input.scene.about)).small().color(palette.secondary);
+        let about = spaced(RichText::new(tr(&input.scene.about)), SMALL).small().color(palette.secondary);
         ui.add(egui::Label::new(about).wrap());
         ui.add_space(4.0);
         method(ui, input, state, actions);
