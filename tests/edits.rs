@@ -6,6 +6,7 @@ mod common;
 use std::sync::Arc;
 
 use common::{scene, scene_with, solved};
+use warpbeam::method::METHODS;
 use warpbeam::{Load, Mesh, MethodKind, Scene, Simulation, Status};
 
 fn largest(simulation: &Simulation) -> f64 {
@@ -152,4 +153,31 @@ fn a_refused_edit_changes_nothing() {
     assert!(simulation.change_scene(&before.clone().with_cells(0, 1)).is_err());
     assert!(simulation.change_scene(&before.clone().probe("p", [99.0, 0.0])).is_err());
     assert_eq!((simulation.scene(), simulation.state(), simulation.status()), (&before, &state, &Status::Converged));
+}
+
+/// A copy shows what the search is at an instant, whatever becomes of that, and can go on by itself to the same end.
+#[test]
+fn a_snapshot_stays_and_can_go_on() {
+    for method in METHODS.iter().map(|method| method.kind) {
+        let mut start = scene("article");
+        start.solver.method = method;
+        let mut search = Simulation::new(&start).unwrap();
+        search.step();
+        let mut copy = search.snapshot().unwrap();
+        let seen = search.solution();
+        assert_eq!(copy.solution(), seen, "{}", method.id());
+        assert_eq!((copy.scene(), copy.state()), (search.scene(), search.state()));
+        assert!(Arc::ptr_eq(copy.system(), search.system()));
+        search.solve();
+        assert_eq!(copy.solution(), seen, "{}: it follows", method.id());
+        copy.solve();
+        assert_eq!(copy.status(), search.status());
+        let off =
+            copy.displacement().iter().zip(search.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(off <= 1e-6 * largest(&search), "{}: {off}", method.id());
+        assert_eq!(copy.certify().stable, search.certify().stable, "{}", method.id());
+        copy.set_force(0, [0.0, -1.0]).unwrap();
+        assert_eq!(*copy.solve(), Status::Converged);
+    }
+    assert!(Simulation::new(&scene("swing")).unwrap().snapshot().is_none(), "of a motion");
 }

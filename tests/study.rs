@@ -50,6 +50,33 @@ fn single_rows_of_bending_elements_are_studied() {
     }
 }
 
+/// The bar of a study goes forward all the time and to its end; what converges fastest is measured first, and the list is
+/// in its order all the same.
+#[test]
+fn a_study_says_how_far_it_is_and_has_the_likely_answers_first() {
+    let (mut last, mut elements) = (0.0, Vec::new());
+    let mut observe = |progress: warpbeam::study::Progress<'_>| {
+        assert!((last..=1.0 + 1e-9).contains(&progress.fraction), "from {last} to {}", progress.fraction);
+        last = progress.fraction;
+        if let Some(study) = progress.so_far {
+            let mut known: Vec<ElementKind> = study.measurements.iter().map(|m| m.setting.element).collect();
+            known.dedup();
+            elements.push(known);
+        }
+        ControlFlow::Continue(())
+    };
+    let study = Study::new(&scene("cantilever"), Extent::Quick, &mut observe).unwrap();
+    assert!((last - 1.0).abs() < 1e-9, "it ends at {last}");
+    assert_eq!(elements[0], [ElementKind::T6]);
+    let all: Vec<ElementKind> = scene("cantilever").elements().collect();
+    assert_eq!(elements.last(), Some(&all));
+    let unknowns = |element| {
+        let own = study.measurements.iter().filter(|m| m.setting.element == element);
+        own.map(|m| (m.setting.cells.unwrap()[0], m.setting.cells.unwrap()[1])).collect::<Vec<_>>()
+    };
+    assert!(all.into_iter().all(|element| unknowns(element).is_sorted()), "coarse to fine");
+}
+
 /// The swing's study: its errors go with the step as the integrators' orders say, its energy as they promise, and its
 /// front is one.
 #[test]

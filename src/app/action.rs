@@ -58,6 +58,8 @@ pub(super) enum Action {
     Color(Field),
     /// Light or dark.
     ToggleTheme,
+    /// The other language.
+    ToggleLanguage,
     /// Save a picture.
     Screenshot,
     /// Record the scene, or end the recording.
@@ -70,6 +72,8 @@ pub(super) enum Action {
     Card(usize),
     /// Use a measured setting.
     Apply(Setting),
+    /// Stop what is meshed and solved beside the window, and go back to how it was before.
+    Cancel,
 }
 
 /// What can be shown or hidden.

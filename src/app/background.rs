@@ -1,12 +1,8 @@
 //! The study that runs beside the window.
 
-use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
-
 use thiserror::Error;
 
+use super::job::{Heard, Job, Line};
 use crate::scene::Scene;
 use crate::study::{Extent, Progress, Study, StudyError};
 
@@ -22,11 +18,13 @@ pub(super) enum BackgroundError {
 }
 
 /// What the study says while it runs.
-enum Message {
+#[derive(Debug)]
+enum Said {
     Now(f32, String),
     SoFar(Study),
-    Done(Result<Study, StudyError>),
 }
+
+type Done = Result<Study, StudyError>;
 
 /// How far a study is, as last heard.
 #[derive(Debug)]
@@ -40,8 +38,7 @@ pub(super) enum News {
 /// A study in a thread of its own. Dropped, it is called off.
 #[derive(Debug)]
 pub(super) struct Background {
-    receiver: Receiver<Message>,
-    cancel: Arc<AtomicBool>,
+    job: Job<Said, Done>,
     /// Fraction that is done, and what is measured now.
     fraction: f32,
     now: String,
@@ -53,13 +50,8 @@ impl Background {
     /// # Errors
     /// [`BackgroundError::NoThread`].
     pub(super) fn start(scene: Scene, extent: Extent) -> Result<Self, BackgroundError> {
-        let (sender, receiver) = channel();
-        let cancel = Arc::new(AtomicBool::new(false));
-        let cancelled = cancel.clone();
-        std::thread::Builder::new()
-            .name("study".to_owned())
-            .spawn(move || work(&scene, extent, &sender, &cancelled))?;
-        Ok(Self { receiver, cancel, fraction: 0.0, now: String::new() })
+        let job = Job::start("study", move |line| work(&scene, extent, line))?;
+        Ok(Self { job, fraction: 0.0, now: String::new() })
     }
 
     /// Fraction that is done, and what is measured now.
@@ -70,41 +62,28 @@ impl Background {
     /// Takes what has been heard since; measurements go to `study`.
     pub(super) fn listen(&mut self, study: &mut Option<Study>) -> News {
         loop {
-            match self.receiver.try_recv() {
-                Ok(Message::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
-                Ok(Message::SoFar(so_far)) => *study = Some(so_far),
-                Ok(Message::Done(Ok(done))) => {
+            match self.job.hear() {
+                Heard::News(Said::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
+                Heard::News(Said::SoFar(so_far)) => *study = Some(so_far),
+                Heard::Done(Ok(done)) => {
                     *study = Some(done);
                     return News::Ended(Ok(()));
                 }
-                Ok(Message::Done(Err(StudyError::Cancelled))) => return News::Ended(Ok(())),
-                Ok(Message::Done(Err(error))) => return News::Ended(Err(error.into())),
-                Err(TryRecvError::Empty) => return News::Running,
-                Err(TryRecvError::Disconnected) => return News::Ended(Err(BackgroundError::Died)),
+                Heard::Done(Err(StudyError::Cancelled)) => return News::Ended(Ok(())),
+                Heard::Done(Err(error)) => return News::Ended(Err(error.into())),
+                Heard::Nothing => return News::Running,
+                Heard::Died => return News::Ended(Err(BackgroundError::Died)),
             }
         }
     }
 }
 
-impl Drop for Background {
-    fn drop(&mut self) {
-        self.cancel.store(true, Ordering::Relaxed);
-    }
-}
-
-fn work(scene: &Scene, extent: Extent, sender: &Sender<Message>, cancelled: &AtomicBool) {
-    // Nobody listening is as good as being called off.
+fn work(scene: &Scene, extent: Extent, line: &Line<Said, Done>) -> Done {
     let mut observe = |progress: Progress<'_>| {
-        let heard = match progress.so_far {
-            Some(study) => sender.send(Message::SoFar(study.clone())),
-            None => sender.send(Message::Now(progress.fraction as f32, progress.now.to_owned())),
-        };
-        if heard.is_err() || cancelled.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        line.say(match progress.so_far {
+            Some(study) => Said::SoFar(study.clone()),
+            None => Said::Now(progress.fraction as f32, progress.now.to_owned()),
+        })
     };
-    let done = Study::new(scene, extent, &mut observe);
-    let _ = sender.send(Message::Done(done));
+    Study::new(scene, extent, &mut observe)
 }

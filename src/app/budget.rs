@@ -6,14 +6,15 @@ use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, 
 use super::action::Action;
 use super::background::{Background, BackgroundError, News};
 use super::field::{Messages, NumberField};
-use super::finder::LISTEN;
+use super::job::LISTEN;
+use super::language::{count, fill, joined, percent, tr, translated};
 use super::palette::Palette;
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, Scene, SolverSettings, limits};
 use crate::study::plot::drawn_error;
 use crate::study::{Demand, Extent, Measurement, Setting, Study};
-use crate::words::{engineering, number, percent, three_digits};
+use crate::words::{engineering, number, three_digits};
 
 /// The study of the lab's scene, and the limits within which its settings are looked for.
 #[derive(Debug, Default)]
@@ -168,24 +169,27 @@ fn settings(
 ) {
     ui.horizontal(|ui| {
         if let Some((fraction, now)) = budget.progress {
-            if ui.button("Cancel").on_hover_text("Stop measuring; what has been measured stays").clicked() {
+            if ui.button(tr("Cancel")).on_hover_text(tr("Stop measuring; what has been measured stays")).clicked() {
                 actions.push(Action::Measure(false));
             }
             ui.add(ProgressBar::new(fraction).desired_width(120.0).show_percentage());
-            ui.add(egui::Label::new(RichText::new(now).small()).truncate());
+            ui.add(egui::Label::new(RichText::new(translated(now)).small()).truncate());
         } else {
             let tip = "Measure error and time of every element, mesh, method and number of iterations, on this machine";
-            if ui.button("Measure").on_hover_text(tip).clicked() {
+            if ui.button(tr("Measure")).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
             let words = match (&budget.error, budget.study) {
-                (Some(error), _) => RichText::new(error).small().color(ui.visuals().error_fg_color),
-                (None, None) => RichText::new("Nothing measured yet: it takes some seconds.").small(),
+                (Some(error), _) => RichText::new(translated(error)).small().color(ui.visuals().error_fg_color),
+                (None, None) => RichText::new(tr("Nothing measured yet: it takes about a minute.")).small(),
                 (None, Some(_)) if !budget.current => {
                     let color = ui.visuals().warn_fg_color;
-                    RichText::new("The body or its load has changed since.").small().color(color)
+                    RichText::new(tr("The body or its load has changed since.")).small().color(color)
                 }
-                (None, Some(study)) => RichText::new(format!("Error against {}.", study.reference)).small(),
+                (None, Some(study)) => {
+                    let truth = translated(&study.reference.to_string());
+                    RichText::new(fill!("Error against %{truth}.", truth = truth)).small()
+                }
             };
             ui.add(egui::Label::new(words).truncate());
         }
@@ -217,15 +221,15 @@ fn settings(
     let meeting = &budget.meeting;
     ui.horizontal(|ui| {
         let best = meeting.first();
-        let apply = ui.add_enabled(best.is_some(), Button::new("Apply the fastest"));
+        let apply = ui.add_enabled(best.is_some(), Button::new(tr("Apply the fastest")));
         let apply = apply
-            .on_hover_text("Use the fastest setting that meets both")
-            .on_disabled_hover_text("No setting that has been measured meets both limits");
+            .on_hover_text(tr("Use the fastest setting that meets both"))
+            .on_disabled_hover_text(tr("No setting that has been measured meets both limits"));
         if let (true, Some(best)) = (apply.clicked(), best) {
             actions.push(Action::Apply(best.setting));
         }
         let measured = budget.study.map_or(0, |s| s.measurements.len());
-        ui.label(format!("{} of {measured} settings meet both", meeting.len()));
+        ui.label(fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured));
     });
     list(ui, budget, actions);
 }
@@ -237,23 +241,28 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error.bound()), m.setting);
+            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error.bound()), setting_words(&m.setting));
             let label = ui.add(
                 Button::selectable(m.setting == applied, RichText::new(words).font(FontId::monospace(12.0))).truncate(),
             );
             let e = &m.error;
-            let parts = format!(
-                "Click to apply. {} unknowns. Error: mesh {}, stopped early {}, linear theory {}.",
-                m.dofs,
-                percent(e.discretization),
-                percent(e.iteration),
-                percent(e.model)
+            let parts = fill!(
+                "Click to apply. %{unknowns}. Error: mesh %{mesh}, stopped early %{iteration}, linear theory %{theory}.",
+                unknowns = count(m.dofs as u64, "unknown"),
+                mesh = percent(e.discretization),
+                iteration = percent(e.iteration),
+                theory = percent(e.model)
             );
             if label.on_hover_text(parts).clicked() {
                 actions.push(Action::Apply(m.setting));
             }
         }
     });
+}
+
+/// A measured setting in words.
+pub(super) fn setting_words(setting: &Setting) -> String {
+    translated(&setting.to_string())
 }
 
 /// The time of a solve, three digits.
@@ -283,10 +292,10 @@ fn legend(ui: &mut Ui) {
         ui.add_space(56.0);
         ui.spacing_mut().item_spacing.x = 10.0;
         for method in METHODS {
-            ui.label(RichText::new(method.id).small().strong().color(palette.method(method.kind)));
+            ui.label(RichText::new(tr(method.id)).small().strong().color(palette.method(method.kind)));
         }
-        let shapes: Vec<String> = ELEMENTS.iter().map(|e| format!("{} {}", marker(e.kind).1, e.id)).collect();
-        ui.label(RichText::new(format!("{}; nothing beats the line", shapes.join(", "))).small());
+        let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
+        ui.label(RichText::new(fill!("%{shapes}; nothing beats the line", shapes = shapes)).small());
     });
 }
 
@@ -311,15 +320,15 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         measured.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
     };
     Plot::new("budget")
-        .x_axis_label("time of a solve, ms")
-        .y_axis_label("error, %")
+        .x_axis_label(tr("time of a solve, ms"))
+        .y_axis_label(tr("error, %"))
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
         .x_axis_formatter(|mark, _| decade_words(mark))
         .y_axis_formatter(|mark, _| decade_words(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", m.setting, milliseconds(m), percent(m.error.bound()))),
+                .map(|m| format!("{}\n{}, {}", setting_words(&m.setting), milliseconds(m), percent(m.error.bound()))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)
@@ -338,22 +347,22 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
                     let color = palette.method(method);
                     let own = measured.iter().filter(|m| (m.setting.element, m.setting.method) == (element, method));
                     let points: Vec<[f64; 2]> = own.map(place).collect();
-                    let name = format!("{} {}", element.id(), method.id());
+                    let name = format!("{} {}", element.id(), tr(method.id()));
                     plot.points(Points::new(name, points).color(color).shape(shape).radius(3.5));
                 }
             }
             let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(place).collect();
-            plot.line(Line::new("Pareto front", PlotPoints::from(front)).color(text).width(1.5));
+            plot.line(Line::new(tr("Pareto front"), PlotPoints::from(front)).color(text).width(1.5));
             let limit = palette.secondary;
             let style = LineStyle::dashed_dense();
             if let Some(time) = budget.demand.max_time_ms {
-                plot.vline(VLine::new("at most", time.log10()).color(limit).style(style));
+                plot.vline(VLine::new(tr("at most"), time.log10()).color(limit).style(style));
             }
             if let Some(error) = budget.demand.max_error_percent {
-                plot.hline(HLine::new("at most", error.log10()).color(limit).style(style));
+                plot.hline(HLine::new(tr("at most"), error.log10()).color(limit).style(style));
             }
             if let Some(best) = budget.meeting.first() {
-                let ring = Points::new("fastest", vec![place(best)]).color(text).filled(false).radius(8.0);
+                let ring = Points::new(tr("fastest"), vec![place(best)]).color(text).filled(false).radius(8.0);
                 plot.points(ring);
             }
         });

@@ -80,6 +80,14 @@ impl Edits {
         Some(after)
     }
 
+    /// Forgets what has been done since it was as `before`, for good.
+    pub(super) fn take_back(&mut self, before: &Snapshot) {
+        self.edited = None;
+        if let Some(step) = self.past.iter().rposition(|step| step == before) {
+            self.past.truncate(step);
+        }
+    }
+
     pub(super) fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
@@ -113,6 +121,17 @@ mod tests {
         assert!(!edits.can_undo() && edits.can_redo());
         edits.record(snapshot(0.0), None);
         assert!(edits.can_undo() && !edits.can_redo());
+    }
+
+    #[test]
+    fn what_is_taken_back_cannot_be_done_again() {
+        let mut edits = Edits::default();
+        (0..4).for_each(|force| edits.record(snapshot(f64::from(force)), None));
+        edits.take_back(&snapshot(7.0));
+        assert_eq!(edits.past.len(), 4, "it was never like that");
+        edits.take_back(&snapshot(2.0));
+        assert!(!edits.can_redo());
+        assert_eq!(edits.undo(snapshot(2.0)), Some(snapshot(1.0)));
     }
 
     #[test]

@@ -7,12 +7,13 @@ use std::ops::RangeInclusive;
 use egui::{Align, DragValue, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
 use thiserror::Error;
 
+use super::language::{fill, tr, translated};
 use crate::scene::OutOfRange;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
 use crate::words::{editable, number, three_digits};
 
-/// Messages next to fields, by the field's label.
+/// Messages next to fields, by the field's label, in English.
 pub(super) type Messages = BTreeMap<&'static str, String>;
 
 /// A number to show and edit.
@@ -63,7 +64,7 @@ impl NumberField {
         let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
         let label = ui
             .horizontal(|ui| {
-                let label = ui.label(self.label).on_hover_text(self.tooltip);
+                let label = ui.label(tr(self.label)).on_hover_text(tr(self.tooltip));
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     let mut typed = value;
                     let drag = DragValue::new(&mut typed)
@@ -145,10 +146,14 @@ impl NumberField {
 
     /// What it does, and how to have the original back.
     fn tip(&self, original: Option<f64>) -> String {
-        let back = original.map(|original| editable(original, self.limit.unit));
-        back.map_or_else(
-            || self.tooltip.to_owned(),
-            |back| format!("{}\nDouble click, or Delete on the slider: {back}, as in the scene.", self.tooltip),
+        let tip = tr(self.tooltip);
+        original.map_or_else(
+            || tip.to_owned(),
+            |original| {
+                let value = editable(original, self.limit.unit);
+                let back = fill!("Double click, or Delete on the slider: %{value}, as in the scene.", value = value);
+                format!("{tip}\n{back}")
+            },
         )
     }
 
@@ -185,7 +190,7 @@ impl NumberField {
 pub(super) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
     if let Some(message) = messages.get(label) {
         let color = ui.visuals().error_fg_color;
-        ui.add(egui::Label::new(egui::RichText::new(message).color(color).small()).wrap());
+        ui.add(egui::Label::new(egui::RichText::new(translated(message)).color(color).small()).wrap());
     }
 }
 

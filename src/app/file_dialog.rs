@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use egui::{Context, Key, Modal, RichText, ScrollArea, TextEdit};
 
+use super::language::{fill, tr, translated};
+
 /// What the file is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
@@ -81,14 +83,14 @@ impl FileDialog {
 
     /// Says that a file cannot be used; the dialog stays.
     pub(super) fn refuse(&mut self, message: String) {
-        self.message = Some(message);
+        self.message = Some(translated(&message));
     }
 
     /// Takes the typed path: a folder is entered, a file is the answer.
     fn accept(&mut self) -> Option<Answer> {
         let typed = self.text.trim();
         if typed.is_empty() {
-            self.message = Some("expected the name of a scene file".to_owned());
+            self.message = Some(tr("expected the name of a scene file").to_owned());
             return None;
         }
         let mut path = self.folder.join(typed);
@@ -102,7 +104,7 @@ impl FileDialog {
                 path.set_extension("toml");
             }
             if path.exists() && self.replaced.as_ref() != Some(&path) {
-                self.message = Some(format!("{} exists: Replace writes over it", path.display()));
+                self.message = Some(fill!("%{file} exists: Replace writes over it", file = path.display()));
                 self.replaced = Some(path);
                 return None;
             }
@@ -121,10 +123,10 @@ impl FileDialog {
         let mut entered: Option<PathBuf> = None;
         let modal = Modal::new(egui::Id::unique("file dialog")).show(ctx, |ui| {
             ui.set_width(ui.available_width().min(460.0));
-            ui.heading(title);
+            ui.heading(tr(title));
             ui.add_space(6.0);
             ui.add(egui::Label::new(RichText::new(self.folder.display().to_string()).weak()).truncate());
-            let label = ui.label("File");
+            let label = ui.label(tr("File"));
             let edit = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY).hint_text("scene.toml");
             let edit = ui.add(edit).labelled_by(label.id);
             if std::mem::take(&mut self.is_new) {
@@ -158,7 +160,7 @@ impl FileDialog {
                 }
                 if self.purpose == Purpose::Open && !recent.is_empty() {
                     ui.separator();
-                    ui.label(RichText::new("Used last").weak());
+                    ui.label(RichText::new(tr("Used last")).weak());
                     for path in recent {
                         if ui.selectable_label(false, path.display().to_string()).clicked() {
                             chosen = Some(path.clone());
@@ -173,10 +175,10 @@ impl FileDialog {
             }
             ui.add_space(8.0);
             ui.horizontal(|ui| {
-                if ui.button(verb).clicked() || entered_key {
+                if ui.button(tr(verb)).clicked() || entered_key {
                     answer = self.accept();
                 }
-                if ui.button("Cancel").clicked() {
+                if ui.button(tr("Cancel")).clicked() {
                     answer = Some(Answer::Cancel);
                 }
             });

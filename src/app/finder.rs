@@ -1,14 +1,9 @@
 //! What takes a while to find out of a scene, found beside the window.
 
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::Duration;
-
 use egui::Context;
 
+use super::job::{Heard, Job, LISTEN};
 use crate::scene::Scene;
-
-/// How often work in the background is listened to.
-pub(super) const LISTEN: Duration = Duration::from_millis(50);
 
 /// Something that a scene may or may not have.
 #[derive(Debug)]
@@ -19,7 +14,7 @@ pub(super) struct Finder<T> {
     /// What was found of the scene before.
     before: Option<T>,
     /// What the thread will say, and whether it is of the present scene. One thread at a time: edits do not pile up.
-    running: Option<(Receiver<Option<T>>, bool)>,
+    running: Option<(Job<(), Option<T>>, bool)>,
 }
 
 impl<T: Send + 'static> Finder<T> {
@@ -41,23 +36,24 @@ impl<T: Send + 'static> Finder<T> {
         if self.found.is_some() {
             return;
         }
-        if let Some((receiver, current)) = &self.running {
-            let heard = receiver.try_recv();
-            if matches!(heard, Err(TryRecvError::Empty)) {
-                ctx.request_repaint_after(LISTEN);
-                return;
-            }
+        if let Some((job, current)) = &self.running {
+            let found = match job.hear() {
+                Heard::Nothing | Heard::News(()) => {
+                    ctx.request_repaint_after(LISTEN);
+                    return;
+                }
+                Heard::Done(found) => found,
+                Heard::Died => None,
+            };
             if *current {
-                self.found = Some(heard.unwrap_or(None));
+                self.found = Some(found);
             }
             self.running = None;
         }
         if self.found.is_none() {
-            let (sender, receiver) = channel();
             let (find, scene) = (self.find, scene.clone());
-            let work = move || drop(sender.send(find(&scene)));
-            match std::thread::Builder::new().name("finder".to_owned()).spawn(work) {
-                Ok(_) => self.running = Some((receiver, true)),
+            match Job::start("finder", move |_| find(&scene)) {
+                Ok(job) => self.running = Some((job, true)),
                 Err(_) => self.found = Some(None),
             }
             ctx.request_repaint_after(LISTEN);

@@ -8,12 +8,14 @@ use egui::{
 };
 
 use super::action::{Action, Drawer, Toggle, ViewOptions};
+use super::language::{fill, percent, tr, translated};
 use super::palette::{HEADLINE, Palette, SMALL};
 use super::panel::PanelInput;
 use super::toolbar::{Icon, icon_button};
 use super::verdict::{Errors, error_color, rho, rho_number};
 use crate::simulation::Motion;
-use crate::words::{engineering, percent, two_digits};
+use crate::study::Reference;
+use crate::words::{engineering, two_digits};
 
 /// In place of a number that is not known.
 pub(super) const UNKNOWN: &str = "\u{2013}";
@@ -22,11 +24,11 @@ pub(super) const UNKNOWN: &str = "\u{2013}";
 const GAUGES: f32 = 820.0;
 
 /// A number, what it is called, and how much of it there is.
-struct Headline<'a> {
-    name: &'a str,
+struct Headline {
+    name: &'static str,
     value: String,
     /// More about it, after the number.
-    word: &'a str,
+    word: &'static str,
     tip: String,
     color: Color32,
     gauge: Gauge,
@@ -63,6 +65,7 @@ pub(super) fn show(
             let drawer = Drawer::of(input.scene);
             let open = view.plots().is_some();
             let (word, tip) = drawer.words();
+            let (word, tip) = (tr(word), tr(tip));
             let icon = if open { Icon::Close } else { Icon::Open };
             if icon_button(ui, icon, word, Some(word), open).on_hover_text(tip).clicked() {
                 actions.push(Action::Toggle(Toggle::Drawer(drawer)));
@@ -74,12 +77,12 @@ pub(super) fn show(
     });
 }
 
-fn of_solve<'a>(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [Headline<'a>; 3] {
+fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [Headline; 3] {
     let simulation = input.simulation;
     let times = simulation.timings();
     let seconds = (times.total() - times.certify).as_secs_f64();
     let rho = rho(simulation);
-    let truth = input.truth.map_or_else(|| "the truth, once that is known".to_owned(), ToString::to_string);
+    let truth = truth_words(input.truth);
     let level = |decades: f64| decades.floor().clamp(0.0, 4.0) as u32;
     let error = errors.own.map_or(0.0, |error| error.max(1e-9).log10() + 2.0);
     [
@@ -87,8 +90,9 @@ fn of_solve<'a>(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [
             name: "ERROR",
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
             word: errors.source.map_or("", super::verdict::ErrorSource::word),
-            tip: format!(
-                "Distance of the first probe from {truth}, over its displacement; and where most of it comes from"
+            tip: fill!(
+                "Distance of the first probe from %{truth}, over its displacement; and where most of it comes from",
+                truth = truth
             ),
             color: error_color(palette, errors.own),
             gauge: Gauge::Blocks(level(error)),
@@ -97,7 +101,7 @@ fn of_solve<'a>(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
             word: "",
-            tip: "Time of this solve, since the last change, without what is only looked at".to_owned(),
+            tip: tr("Time of this solve, since the last change, without what is only looked at").to_owned(),
             color: palette.text,
             gauge: Gauge::Blocks(level((1e6 * seconds).max(1.0).log10())),
         },
@@ -105,10 +109,11 @@ fn of_solve<'a>(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [
             name: "ρ",
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
             word: "",
-            tip:
+            tip: tr(
                 "The factor by which each iteration of the warped method shrinks its error here; above 1 it grows, and \
-                  the iteration walks away"
-                    .to_owned(),
+                 the iteration walks away",
+            )
+            .to_owned(),
             color: match rho {
                 Some(rho) if rho > 1.0 => palette.warning,
                 Some(_) => palette.text,
@@ -119,7 +124,7 @@ fn of_solve<'a>(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [
     ]
 }
 
-fn of_motion<'a>(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Headline<'a>; 3] {
+fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Headline; 3] {
     let cost = input.timings.total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
     let pace = &input.playback.pace;
@@ -129,7 +134,7 @@ fn of_motion<'a>(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> 
             name: "STEP",
             value: if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() },
             word: "",
-            tip: format!("What a time step costs; it simulates {}", engineering(step, "s")),
+            tip: fill!("What a time step costs; it simulates %{step}", step = engineering(step, "s")),
             color: if cost > step { palette.error } else { palette.text },
             gauge: Gauge::Bar(0.5 * cost / step, 0.5),
         },
@@ -137,7 +142,7 @@ fn of_motion<'a>(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> 
             name: "PACE",
             value: pace.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {factor:.2}")),
             word: if pace.lags() { "too slow" } else { "" },
-            tip: "Simulated seconds a second; a machine that cannot keep up slows the motion down".to_owned(),
+            tip: tr("Simulated seconds a second; a machine that cannot keep up slows the motion down").to_owned(),
             color: if pace.lags() { palette.error } else { palette.text },
             gauge: Gauge::None,
         },
@@ -145,19 +150,25 @@ fn of_motion<'a>(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> 
             name: "DRIFT",
             value: percent(100.0 * drift),
             word: "",
-            tip: "Energy that the integrator has added, over the largest kinetic energy".to_owned(),
+            tip: tr("Energy that the integrator has added, over the largest kinetic energy").to_owned(),
             color: if drift.abs() > 0.05 { palette.warning } else { palette.text },
             gauge: Gauge::None,
         },
     ]
 }
 
+/// What errors are measured against, in words.
+pub(super) fn truth_words(truth: Option<&Reference>) -> String {
+    truth.map_or_else(|| tr("the truth, once that is known").to_owned(), |truth| translated(&truth.to_string()))
+}
+
 /// A name, its number and its gauge.
-fn number(ui: &mut Ui, palette: &Palette, headline: Headline<'_>, wide: bool) -> Response {
+fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Response {
     const GAP: f32 = 6.0;
     const BLOCK: egui::Vec2 = vec2(5.0, 13.0);
     const BAR: egui::Vec2 = vec2(56.0, 6.0);
     let Headline { name, value, word, tip, color, gauge } = headline;
+    let [name, word] = [name, word].map(tr);
     let painter = ui.painter();
     let small = |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);
     let [title, after] = [name, word].map(small);
@@ -243,8 +254,11 @@ fn sparkline(ui: &mut Ui, palette: &Palette, input: &PanelInput<'_>) {
         .map(|(i, &r)| pos2(rect.left() + rect.width() * f32::from(i) / last, y(decades(r))))
         .collect();
     ui.painter().line(points, Stroke::new(1.5, palette.method(input.scene.solver.method)));
-    let words =
-        format!("Residual {:.1e} after {} iterations", input.simulation.residual(), input.simulation.iterations());
+    let words = fill!(
+        "Residual %{residual} after %{n} iterations",
+        residual = format!("{:.1e}", input.simulation.residual()),
+        n = input.simulation.iterations()
+    );
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
-    response.on_hover_text(format!("{words}; dashed: what is asked for"));
+    response.on_hover_text(fill!("%{residual}; dashed: what is asked for", residual = words));
 }

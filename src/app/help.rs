@@ -3,6 +3,7 @@
 use egui::{Align2, Context};
 
 use super::keys::SHORTCUTS;
+use super::language::tr;
 
 /// Keys that belong to what is shown or has the focus.
 const HERE: &[(&str, &str)] = &[
@@ -25,7 +26,8 @@ pub(super) fn show(ctx: &Context, open: &mut bool) {
     if !*open {
         return;
     }
-    egui::Window::new("Keys and mouse")
+    egui::Window::new(tr("Keys and mouse"))
+        .id(egui::Id::unique("help"))
         .open(open)
         .collapsible(false)
         .resizable(false)
@@ -37,12 +39,12 @@ pub(super) fn show(ctx: &Context, open: &mut bool) {
             egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
                 for shortcut in SHORTCUTS {
                     ui.strong(shortcut.words());
-                    ui.label(shortcut.does);
+                    ui.label(tr(shortcut.does));
                     ui.end_row();
                 }
                 for (gesture, does) in HERE.iter().chain(MOUSE) {
-                    ui.strong(*gesture);
-                    ui.label(*does);
+                    ui.strong(tr(gesture));
+                    ui.label(tr(does));
                     ui.end_row();
                 }
             });

@@ -67,7 +67,7 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     with(Modifiers::COMMAND, Key::Z, "Undo the last edit", || Action::Undo),
     with(COMMAND_SHIFT, Key::Z, "Redo it", || Action::Redo),
     with(Modifiers::COMMAND, Key::Y, "Redo it", || Action::Redo),
-    key(Key::Escape, "Close this list, or the values of a point", || Action::Escape),
+    key(Key::Escape, "Close this list, cancel what is being solved, close the values of a point", || Action::Escape),
     key(Key::F1, "This list", || Action::Toggle(Toggle::Help)),
 ];
 

@@ -14,12 +14,15 @@ use super::compare::{Compare, CompareInput, Pane, PaneSetting};
 use super::document::Document;
 use super::drawing::Drawing;
 use super::edits::{Edits, Snapshot};
+use super::errand::{Start as Beginning, note_residual, solve_linear};
 use super::eye::Eye;
 use super::file_dialog::{Answer, FileDialog, Purpose};
-use super::finder::{Finder, LISTEN};
+use super::finder::Finder;
 use super::gallery::Gallery;
-use super::handle::Pull;
+use super::handle::{Handle, Pull};
 use super::intro::Intro;
+use super::job::LISTEN;
+use super::language::{self, Language, fill, spaced, tr, translated};
 use super::learn::{self, Learn, Shown, Start};
 use super::mode::Mode;
 use super::overlay::{self, Overlay, Projection};
@@ -27,7 +30,7 @@ use super::palette::{self, Palette};
 use super::panel::{self, PanelInput, PanelState};
 use super::playback::Playback;
 use super::plot::Curve;
-use super::pointer::{Look, Pointer, Reach, Wish};
+use super::pointer::{Body, Look, Pointer, Reach, Wish};
 use super::quality::Quality;
 use super::recorder::Recorder;
 use super::settings::Settings;
@@ -39,11 +42,15 @@ use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::mesh::MaterialPoint;
 use crate::render::{Camera, Frame, Margins, View};
-use crate::scene::{self, Analysis, IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
+use crate::scene::{IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::study::{Extent, Jump, LoadPath, Reference, Study};
 use crate::timings::Timings;
+
+mod beside;
+
+use beside::Beside;
 
 /// Width of the panel, points.
 pub const PANEL_WIDTH: f32 = 284.0;
@@ -63,9 +70,6 @@ const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 48.0, bottom: 44.0 };
 const DRAWER_HEIGHT: f32 = 270.0;
 const DRAWER_SHARE: f32 = 0.45;
 
-/// Residuals that are kept for the way down.
-const MOST_RESIDUALS: usize = 400;
-
 /// How long a message stays.
 const TOAST: Duration = Duration::from_secs(4);
 
@@ -80,12 +84,15 @@ pub enum Request {
 #[derive(Debug)]
 pub struct Lab {
     document: Document,
+    /// What is wanted: what is shown, but for a large body that is on its way.
     scene: Scene,
     /// What can be undone.
     edits: Edits,
+    /// What is shown; a copy of it while it is being solved beside the window.
     simulation: Simulation,
     /// The same scene under linear theory; `None` where it could not be set up.
     linear: Option<Simulation>,
+    beside: Beside,
     running: bool,
     view: ViewOptions,
     panel: PanelState,
@@ -157,6 +164,7 @@ impl Lab {
             scene,
             edits: Edits::default(),
             simulation,
+            beside: Beside::default(),
             running: true,
             view: ViewOptions::default(),
             panel: PanelState::default(),
@@ -193,6 +201,19 @@ impl Lab {
         };
         lab.solve_linear();
         lab
+    }
+
+    /// A lab that shows the first of the built-in scenes until this one, which is large, has been meshed beside the
+    /// window; `None` where that cannot be shown.
+    pub(super) fn opening(source: Source, scene: Scene) -> Option<Self> {
+        let (own, meanwhile) = learn::article()?;
+        let mut simulation = Simulation::new(&meanwhile).ok()?;
+        simulation.solve();
+        let mut lab = Self::new(own, meanwhile, simulation);
+        if let Err(error) = lab.adopt(Document::new(source, scene.clone()), scene) {
+            lab.beside.unsaid = Some(error.to_string());
+        }
+        Some(lab)
     }
 
     /// Names what draws the lab.
@@ -309,6 +330,12 @@ impl Lab {
         &self.simulation
     }
 
+    /// The same scene under linear theory, where there is that.
+    #[must_use]
+    pub fn linear(&self) -> Option<&Simulation> {
+        self.linear.as_ref()
+    }
+
     /// Displacement of the linear solution, m, where there is one.
     #[must_use]
     pub fn linear_displacement(&self) -> Option<&[Vector2<f64>]> {
@@ -325,7 +352,7 @@ impl Lab {
     #[must_use]
     pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
         let projection = Projection { camera: self.camera(), rect: self.view_rect };
-        self.forces().handles(&projection).iter().map(|handle| (handle.load(), handle.tip())).collect()
+        self.handles(&projection).iter().map(|handle| (handle.load(), handle.tip())).collect()
     }
 
     /// The camera of the last [`Self::ui`].
@@ -338,13 +365,16 @@ impl Lab {
     #[must_use]
     pub fn title(&self) -> String {
         let edited = if self.scene == self.document.original { "" } else { "*" };
-        format!("{}{edited} \u{2013} warpbeam", self.scene.name)
+        language::speak(self.settings.language);
+        format!("{}{edited} \u{2013} warpbeam", tr(&self.scene.name))
     }
 
     /// Makes the iterations of one displayed frame if it runs, or the time steps that are due at `now`, s of any clock
     /// that goes with the wall's; says whether there are others to make.
     pub fn advance(&mut self, now: f64) -> bool {
+        self.tend();
         match (self.iterates(), self.moves()) {
+            _ if self.is_beside() => self.playback.pace.rest(),
             (true, true) => {
                 self.playback.advance(now, &mut self.simulation);
                 self.timings = *self.simulation.last_iteration();
@@ -380,6 +410,7 @@ impl Lab {
 
     /// Looks as it was left.
     pub fn set_settings(&mut self, ctx: &egui::Context, settings: Settings) {
+        palette::install(ctx);
         if let Some(theme) = settings.theme {
             ctx.set_theme(egui::Theme::from(theme));
         }
@@ -390,6 +421,17 @@ impl Lab {
         if let Some(path) = self.document.path() {
             self.settings.add_recent(path);
         }
+    }
+
+    /// Shows everything in this language from now on.
+    pub fn set_language(&mut self, language: Language) {
+        self.settings.language = language;
+    }
+
+    /// What it is shown in.
+    #[must_use]
+    pub fn language(&self) -> Language {
+        self.settings.language
     }
 
     /// The window that shows it has this size, points.
@@ -416,7 +458,7 @@ impl Lab {
 
     /// Whether the scene is one in time.
     fn moves(&self) -> bool {
-        self.scene.analysis == Analysis::Dynamic
+        self.simulation.motion().is_some()
     }
 
     /// So many iterations, or one time step.
@@ -431,10 +473,7 @@ impl Lab {
             if *self.simulation.status() == Status::Running {
                 self.simulation.step();
                 self.timings.add(self.simulation.last_iteration());
-                if self.simulation.iterations() <= 1 || self.residuals.len() >= MOST_RESIDUALS {
-                    self.residuals.clear();
-                }
-                self.residuals.push(self.simulation.residual());
+                note_residual(&self.simulation, &mut self.residuals);
             }
         }
     }
@@ -447,6 +486,7 @@ impl Lab {
 
     /// Iterates to the end, or steps to the end of the scene's duration, and finds out what is known of the result.
     pub fn solve(&mut self) {
+        self.finish_beside();
         while *self.simulation.status() == Status::Running {
             self.iterate(1);
         }
@@ -489,6 +529,9 @@ impl Lab {
     /// Whether something is still being found out of the scene beside the window.
     #[must_use]
     pub fn is_searching(&self) -> bool {
+        if self.is_working() {
+            return true;
+        }
         let open = match self.view.drawer {
             Some(Drawer::Curve) => self.curve.is_open(),
             Some(Drawer::Motion) => self.frequency.is_open(),
@@ -543,18 +586,23 @@ impl Lab {
             can_undo: self.edits.can_undo(),
             can_redo: self.edits.can_redo(),
             adapter: &self.adapter,
+            language: self.settings.language,
         }
     }
 
     /// Shows everything but the body, which is drawn under it, and does what was asked for.
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
         palette::install(ui.ctx());
+        language::speak(self.settings.language);
         let mut actions = Vec::new();
         self.edits.listen(ui.ctx());
         self.hear_of_files(ui.ctx(), &mut actions);
         self.find_out(ui.ctx());
         self.budget.listen(ui.ctx());
         self.go_on_with_intro(ui.ctx());
+        if let Some(words) = self.beside.unsaid.take() {
+            self.say(ui.ctx(), words);
+        }
         self.view.narrow = ui.available_width() < NARROW;
         // Enter ends a text within its frame: the other keys of that frame were typed into it.
         let was_typing = ui.ctx().text_edit_focused();
@@ -581,7 +629,9 @@ impl Lab {
         }
         help::show(ui.ctx(), &mut self.view.help);
         self.ask_for_file(ui.ctx());
-        if self.iterates() || self.intro.is_some() {
+        if self.is_working() {
+            ui.ctx().request_repaint_after(LISTEN);
+        } else if self.iterates() || self.intro.is_some() {
             ui.ctx().request_repaint();
         }
         requests
@@ -668,7 +718,7 @@ impl Lab {
             }
             return;
         }
-        if self.iterates() {
+        if self.iterates() || self.is_working() {
             return;
         }
         self.simulation.certify();
@@ -705,7 +755,7 @@ impl Lab {
     }
 
     /// The panes that are compared, in the place of the body.
-    pub(super) fn comparison(&mut self, ui: &mut Ui, _: &mut Vec<Action>, requests: &mut Vec<Request>) {
+    pub(super) fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let rect = ui.available_rect_before_wrap();
         self.view_rect = rect;
         // The truth does not depend on how the lab's own setting gets on.
@@ -716,6 +766,7 @@ impl Lab {
         let wish = compare.show(ui, &input);
         self.take_wish(ui.ctx(), &wish, requests);
         let painter = ui.painter_at(rect);
+        self.show_work(ui, rect, actions);
         self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
     }
@@ -725,6 +776,7 @@ impl Lab {
         let Self { compare, scene, simulation, truth, view, budget, .. } = self;
         let input = CompareInput {
             scene,
+            shown: simulation.scene(),
             system: simulation.system(),
             truth: truth.get(),
             view,
@@ -824,7 +876,7 @@ impl Lab {
     /// Takes a scene that should be as good as the present one; says so where it is not.
     fn edit(&mut self, ctx: &egui::Context, scene: Scene) {
         if let Err(error) = self.set_scene(scene) {
-            self.say(ctx, error.to_string());
+            self.say(ctx, translated(&error.to_string()));
         }
     }
 
@@ -832,9 +884,7 @@ impl Lab {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         // What is pressed is what was seen: the last picture.
         let projection = Projection { camera: self.camera(), rect: self.view_rect };
-        // Elements that are drawn elsewhere cannot be pulled.
-        let apart = self.learn.as_ref().is_some_and(|learn| learn.is_apart());
-        let handles = if apart { Vec::new() } else { self.forces().handles(&projection) };
+        let (apart, handles) = (self.is_apart(), self.handles(&projection));
         let size = [rect.width(), rect.height()].map(f64::from);
         let system = self.simulation.system().clone();
         let reach = Reach {
@@ -846,7 +896,11 @@ impl Lab {
             scales: self.eye.scales(size),
         };
         self.view_rect = rect;
-        let wish = self.pointer.follow(ui, &response, &reach, Some((&mut self.simulation, &mut self.playback)));
+        let body = match self.is_beside() {
+            true => Body::Seen,
+            false => Body::InHand(&mut self.simulation, &mut self.playback),
+        };
+        let wish = self.pointer.follow(ui, &response, &reach, body);
         self.take_wish(ui.ctx(), &wish, requests);
         self.update_shape(ui.visuals());
         if let Some(learn) = &self.learn {
@@ -916,6 +970,7 @@ impl Lab {
             }
             if free.width() >= 160.0 && free.height() >= 90.0 {
                 self.status(ui, free, &errors, actions);
+                self.show_work(ui, free, actions);
             }
         }
         self.paint_recording(ui, &painter, rect);
@@ -940,7 +995,7 @@ impl Lab {
             if self.view.why {
                 chip(palette.panel).show(ui, |ui| {
                     for line in verdict::explanation(&input) {
-                        ui.add(egui::Label::new(line).wrap());
+                        ui.add(egui::Label::new(spaced(line.into(), palette::BODY)).wrap());
                     }
                 });
             }
@@ -961,10 +1016,10 @@ impl Lab {
             chip(tint).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.colored_label(if bad { palette.error } else { palette.text }, words);
-                    if verdict::is_stale(&input) && ui.button("Step now").clicked() {
+                    if verdict::is_stale(&input) && ui.button(tr("Step now")).clicked() {
                         actions.push(Action::Step);
                     }
-                    let why = ui.selectable_label(self.view.why, egui::RichText::new("why?").color(palette.accent));
+                    let why = ui.selectable_label(self.view.why, egui::RichText::new(tr("why?")).color(palette.accent));
                     if why.clicked() {
                         actions.push(Action::Toggle(Toggle::Why));
                     }
@@ -1006,15 +1061,25 @@ impl Lab {
         }
     }
 
+    /// Whether the elements are drawn elsewhere: they cannot be pulled there, and have no loads.
+    fn is_apart(&self) -> bool {
+        self.learn.as_ref().is_some_and(|learn| learn.is_apart())
+    }
+
     /// What the arrows of the last picture are of.
     fn forces(&self) -> Forces<'_> {
         Forces {
-            scene: &self.scene,
+            scene: self.simulation.scene(),
             system: self.simulation.system(),
             positions: &self.shape.nodes,
             time: self.simulation.state().time(),
             direction: self.panel.force_direction(),
         }
+    }
+
+    /// The tips of the last picture's arrows; none where the elements are drawn elsewhere.
+    fn handles(&self, projection: &Projection) -> Vec<Handle> {
+        if self.is_apart() { Vec::new() } else { self.forces().handles(projection) }
     }
 
     /// The scene with one of its loads as in its file; `None` where that has none such there.
@@ -1124,7 +1189,7 @@ impl Lab {
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
         let least = self.least_margins();
-        if self.learn.as_ref().is_some_and(|learn| learn.is_apart()) {
+        if self.is_apart() {
             return least;
         }
         self.forces().arrows(&projection).iter().fold(least, |margins, arrow| {
@@ -1140,7 +1205,7 @@ impl Lab {
 
     /// The linear solution, if it is to be shown.
     fn ghost(&self) -> Option<&[Vector2<f64>]> {
-        let wanted = self.view.ghost && self.scene.solver.method != MethodKind::Linear;
+        let wanted = self.view.ghost && self.simulation.method() != MethodKind::Linear;
         let linear = match &self.intro {
             Some(intro) => intro.linear().map(Simulation::displacement),
             None => self.linear_displacement(),
@@ -1157,7 +1222,7 @@ impl Lab {
             Action::Save => match self.document.path().map(Path::to_owned) {
                 Some(path) => {
                     let saved = self.save(&path);
-                    self.say(ctx, saved.unwrap_or_else(|reason| format!("Not saved: {reason}")));
+                    self.say(ctx, saved.unwrap_or_else(|reason| fill!("Not saved: %{reason}", reason = reason)));
                 }
                 None => self.ask_where_to_save(),
             },
@@ -1171,6 +1236,8 @@ impl Lab {
                 self.go_to(ctx, step);
             }
             Action::Escape if self.view.help => self.view.help = false,
+            Action::Cancel => self.cancel_work(),
+            Action::Escape if self.is_working() => self.cancel_work(),
             Action::Escape => self.probe = None,
             Action::Edit(label, scene) => {
                 let before = self.snapshot();
@@ -1179,14 +1246,25 @@ impl Lab {
                 } else {
                     self.panel.messages.remove(label);
                     self.remember(before, Some(label));
+                    self.blame(label);
                 }
             }
             // What has come to its end has nothing to pause.
             Action::ToggleRun if self.running && self.input().ended => {}
-            Action::ToggleRun => self.running ^= true,
+            Action::ToggleRun => {
+                self.running ^= true;
+                if !self.running {
+                    self.call_off();
+                }
+            }
             Action::Step if self.view.mode == Mode::Compare => {
                 self.running = false;
                 self.compare.step();
+            }
+            Action::Step if self.is_beside() => {
+                self.running = false;
+                let start = if self.simulation.is_at_rest() { Beginning::AtRest } else { Beginning::There };
+                self.restart_beside(start, Some(1));
             }
             Action::Step => {
                 self.running = false;
@@ -1199,7 +1277,7 @@ impl Lab {
             Action::Mark => {
                 self.playback.mark(&self.simulation);
                 let words = if self.playback.is_marked() { "Reset goes to here" } else { "Reset goes to the start" };
-                self.say(ctx, words.to_owned());
+                self.say(ctx, tr(words).to_owned());
             }
             Action::Speed(speed) => self.playback.pace.set_speed(speed),
             Action::Compare(integrator) => self.compare_with(integrator),
@@ -1209,7 +1287,7 @@ impl Lab {
                 self.compare.fit();
             }
             Action::Toggle(Toggle::Mode(mode)) if !(mode.entry().serves)(&self.scene) => {
-                self.say(ctx, mode.entry().unless.to_owned());
+                self.say(ctx, tr(mode.entry().unless).to_owned());
             }
             Action::Toggle(what) => {
                 self.view.toggle(what);
@@ -1225,6 +1303,7 @@ impl Lab {
                 let dark = ctx.theme() == egui::Theme::Dark;
                 ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
             }
+            Action::ToggleLanguage => self.settings.language = self.settings.language.other(),
             Action::Screenshot => requests.push(Request::Screenshot),
             Action::Record => self.record(ctx),
             Action::Copy => self.copy(ctx),
@@ -1265,55 +1344,77 @@ impl Lab {
         };
         match gone {
             Ok(()) => self.iterations = iterations,
-            Err(error) => self.say(ctx, error.to_string()),
+            Err(error) => self.say(ctx, translated(&error.to_string())),
         }
     }
 
     fn reset(&mut self) {
-        self.playback.reset(&mut self.simulation);
         self.compare.reset();
+        if self.is_beside() {
+            return self.restart_beside(Beginning::AtRest, None);
+        }
+        self.playback.reset(&mut self.simulation);
         self.residuals.clear();
         self.swept = None;
     }
 
-    /// Changes the scene under the body; it goes on from where it is if it can.
+    /// Changes the scene under the body; it goes on from where it is if it can. A large one is taken on beside the
+    /// window, and shown once something of it is known; what is wrong with its mesh is said then.
     ///
     /// # Errors
     /// What is wrong with the scene. The lab is unchanged then.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
+        if self.goes_beside(&scene) {
+            scene.validate()?;
+            self.wish_for(scene);
+            self.tend();
+            return Ok(());
+        }
+        let before = self.simulation.scene().clone();
         self.simulation.change_scene(&scene)?;
-        let is_another = self.scene.beam != scene.beam || self.scene.mesh != scene.mesh;
+        self.recall();
+        if !has_mesh_of(&scene, &before) {
+            self.drawing = Drawing::new(self.simulation.system().mesh());
+        }
+        self.scene = scene;
+        self.take_over(&before);
+        self.solve_linear();
+        Ok(())
+    }
+
+    /// Makes everything beside the simulation belong to its scene, which was another one before.
+    fn take_over(&mut self, before: &Scene) {
+        self.intro = None;
+        let scene = self.simulation.scene();
+        if scene == before {
+            return;
+        }
+        let is_another = !has_mesh_of(scene, before);
         if is_another {
-            let mesh = self.simulation.system().mesh();
-            self.drawing = Drawing::new(mesh);
-            self.eye.set_body(mesh.bounds().into());
+            self.eye.set_body(self.simulation.system().mesh().bounds().into());
             self.probe = None;
         }
-        let is_another = is_another || self.scene.analysis != scene.analysis;
+        let is_another = is_another || scene.analysis != before.analysis;
         if is_another {
             self.swept = None;
         }
-        self.playback.follow(&scene, is_another);
+        self.playback.follow(scene, is_another);
         self.frequency.forget();
-        if question(&self.scene) != question(&scene) {
+        if question(before) != question(scene) {
             self.truth.forget();
         }
         self.curve.forget();
         self.jump.forget();
-        self.scene = scene;
-        self.intro = None;
-        if !(self.view.mode.entry().serves)(&self.scene) {
+        if !(self.view.mode.entry().serves)(scene) {
             self.view.mode = Mode::Explore;
         }
-        self.view.drawer = self.view.drawer.map(|_| Drawer::of(&self.scene));
-        self.solve_linear();
-        Ok(())
+        self.view.drawer = self.view.drawer.map(|_| Drawer::of(scene));
     }
 
     /// Opens a scene in the place of the present one; says so where that fails.
     fn open(&mut self, ctx: &egui::Context, source: Source) {
         if let Err(error) = self.try_open(source) {
-            self.say(ctx, error.to_string());
+            self.say(ctx, translated(&error.to_string()));
         }
     }
 
@@ -1331,11 +1432,24 @@ impl Lab {
 
     /// Takes a scene from somewhere else.
     fn adopt(&mut self, document: Document, scene: Scene) -> Result<(), SimulationError> {
+        let beside = self.goes_beside(&scene);
+        if beside {
+            scene.validate()?;
+            self.wish_for(scene);
+            self.adopt_beside(document);
+            return Ok(());
+        }
         self.set_scene(scene)?;
         self.document = document;
         self.is_outdated = false;
-        self.playback = Playback::default();
+        self.start_fresh();
         self.reset();
+        Ok(())
+    }
+
+    /// Forgets what belonged to a scene from somewhere else.
+    fn start_fresh(&mut self) {
+        self.playback = Playback::default();
         self.panel.clear();
         self.budget = Budget::default();
         self.curve = Finder::new(Curve::of);
@@ -1344,15 +1458,14 @@ impl Lab {
         self.eye = Eye::new(self.simulation.system().mesh().bounds().into());
         self.probe = None;
         self.view.fixed_range = None;
-        Ok(())
     }
 
     /// Saves the scene to a file; returns what there is to say of it, or why it failed.
     fn save(&mut self, path: &Path) -> Result<String, String> {
-        self.document = self.document.save(&self.scene, path).map_err(|reason| reason.to_string())?;
+        self.document = self.document.save(&self.scene, path).map_err(|reason| translated(&reason.to_string()))?;
         self.settings.add_recent(path);
         self.is_outdated = false;
-        Ok(format!("Saved {}", path.display()))
+        Ok(fill!("Saved %{file}", file = path.display()))
     }
 
     fn ask_where_to_save(&mut self) {
@@ -1406,11 +1519,11 @@ impl Lab {
         area.show(ctx, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(format!("{} has changed on disk.", self.document.source.name.display()));
-                    if ui.button("Reload").clicked() {
+                    ui.label(fill!("%{file} has changed on disk.", file = self.document.source.name.display()));
+                    if ui.button(tr("Reload")).clicked() {
                         actions.push(Action::Reload);
                     }
-                    if ui.button("Keep this one").clicked() {
+                    if ui.button(tr("Keep this one")).clicked() {
                         self.document.ignore_change();
                         self.is_outdated = false;
                     }
@@ -1420,33 +1533,17 @@ impl Lab {
     }
 
     fn solve_linear(&mut self) {
-        if self.scene.analysis == Analysis::Dynamic {
-            self.linear = None;
-            return;
-        }
-        let scene = Scene {
-            solver: scene::SolverSettings { method: MethodKind::Linear, ..self.scene.solver.clone() },
-            ..self.scene.clone()
-        };
-        // On the body's own equations: nothing of them is made twice.
-        let system = self.simulation.system();
-        let shared = self.linear.as_mut().filter(|linear| std::sync::Arc::ptr_eq(linear.system(), system));
-        let reused = shared.is_some_and(|linear| linear.change_scene(&scene).is_ok());
-        if !reused {
-            self.linear = Simulation::with_system(&scene, system.clone()).ok();
-        }
-        if let Some(linear) = &mut self.linear {
-            linear.solve();
-        }
+        let known = self.linear.take();
+        self.linear = solve_linear(self.simulation.scene(), self.simulation.system(), known);
     }
 
     fn copy(&mut self, ctx: &egui::Context) {
         match self.scene.to_toml() {
             Ok(toml) => {
                 ctx.copy_text(format!("# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}"));
-                self.say(ctx, "Scene copied as TOML".to_owned());
+                self.say(ctx, tr("Scene copied as TOML").to_owned());
             }
-            Err(error) => self.say(ctx, format!("The scene could not be written as TOML: {error}")),
+            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
         }
     }
 
@@ -1456,9 +1553,9 @@ impl Lab {
             return recorder.stop();
         }
         let theme = if ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
-        match Recorder::start(self.document.source.clone(), self.scene.clone(), theme) {
+        match Recorder::start(self.document.source.clone(), self.scene.clone(), theme, self.settings.language) {
             Ok(recorder) => self.recorder = Some(recorder),
-            Err(reason) => self.say(ctx, format!("No recording: {reason}")),
+            Err(reason) => self.say(ctx, fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
         }
     }
 
@@ -1469,7 +1566,8 @@ impl Lab {
             self.recorder = None;
             return self.say(ui.ctx(), words);
         }
-        let words = format!("{}: {:.0} % (V stops it)", recorder.words, 100.0 * recorder.fraction);
+        let percent = format!("{:.0}", 100.0 * recorder.fraction);
+        let words = fill!("%{doing}: %{percent} % (V stops it)", doing = recorder.words, percent = percent);
         let place = rect.center_bottom() - egui::vec2(0.0, 48.0);
         let color = ui.visuals().strong_text_color();
         overlay::boxed_text(painter, place, egui::Align2::CENTER_BOTTOM, &words, ui.visuals(), color, 400.0);
@@ -1501,6 +1599,11 @@ impl Lab {
         );
         ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));
     }
+}
+
+/// Whether both have the same mesh.
+fn has_mesh_of(scene: &Scene, other: &Scene) -> bool {
+    scene.beam == other.beam && scene.mesh == other.mesh
 }
 
 /// The lowest natural frequency of a scene's body about rest, Hz.

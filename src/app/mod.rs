@@ -16,6 +16,7 @@ mod compare;
 mod document;
 mod drawing;
 mod edits;
+mod errand;
 mod eye;
 mod field;
 mod file_dialog;
@@ -26,8 +27,10 @@ mod headline;
 mod help;
 mod history;
 mod intro;
+mod job;
 mod keys;
 pub mod lab;
+mod language;
 mod learn;
 mod legend;
 mod mode;
@@ -46,6 +49,7 @@ mod recorder;
 mod settings;
 mod shape;
 mod shot;
+mod size;
 mod stage;
 mod toolbar;
 mod turn;
@@ -54,10 +58,11 @@ mod window;
 
 pub use compare::{Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
 pub use lab::{Lab, PANEL_WIDTH};
+pub use language::Language;
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use settings::Settings;
 pub use shot::{Canvas, MAX_SHOT_SIDE, ShotOptions, picture, shot};
-pub use window::{Display, NoDisplay, run};
+pub use window::{Display, NoDisplay, opens_beside, run};
 
 /// No number is free for a file's name.
 #[derive(Debug, Error)]

@@ -5,6 +5,7 @@ use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, VL
 use realfft::RealFftPlanner;
 
 use super::history::{History, Sample};
+use super::language::{fill, tr};
 use super::palette::Palette;
 use super::playback::Playback;
 use super::plot::still;
@@ -53,13 +54,13 @@ pub(super) fn show(
 ) {
     ui.horizontal(|ui| {
         for (plot, word, tip) in PLOTS {
-            if ui.selectable_label(*chosen == plot, word).on_hover_text(tip).clicked() {
+            if ui.selectable_label(*chosen == plot, tr(word)).on_hover_text(tr(tip)).clicked() {
                 *chosen = plot;
             }
         }
     });
     if playback.history.samples().is_empty() {
-        ui.centered_and_justified(|ui| ui.weak("Nothing has moved yet: run it, or take one step."));
+        ui.centered_and_justified(|ui| ui.weak(tr("Nothing has moved yet: run it, or take one step.")));
         return;
     }
     let palette = Palette::new(ui.visuals());
@@ -67,19 +68,19 @@ pub(super) fn show(
     let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
     let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
     let axis = playback.history.axis();
-    let name = format!("{} {}", playback.history.probe(), ["x", "y"][axis]);
+    let name = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
     match chosen {
         MotionPlot::Energy => energy(ui, &playback.history, &motions),
         MotionPlot::Tip => {
             let lines =
                 motions.iter().map(|(kind, history)| (*kind, thinned(history, |s| [s.time, s.displacement[axis]])));
-            curves(ui, "tip", ("time", "s"), (&name, "m"), Some(&playback.history), lines, &palette);
+            curves(ui, "tip", (tr("time"), "s"), (&name, "m"), Some(&playback.history), lines, &palette);
         }
         MotionPlot::Phase => {
             let lines = motions
                 .iter()
                 .map(|(kind, history)| (*kind, thinned(history, |s| [s.displacement[axis], s.velocity[axis]])));
-            curves(ui, "phase", (&name, "m"), ("velocity", "m/s"), None, lines, &palette);
+            curves(ui, "phase", (&name, "m"), (tr("velocity"), "m/s"), None, lines, &palette);
         }
         MotionPlot::Spectrum => spectra(ui, &motions, axis, frequency, &palette),
     }
@@ -116,7 +117,7 @@ fn curves(
     let plot = if let Some(history) = in_time { over_time(plot, history) } else { plot };
     plot.show(ui, |plot| {
         for (kind, points) in lines {
-            let line = Line::new(kind.id(), PlotPoints::Owned(points));
+            let line = Line::new(tr(kind.id()), PlotPoints::Owned(points));
             plot.line(line.color(palette.integrator(kind)).width(1.5));
         }
     });
@@ -137,22 +138,22 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         ("lost by the integrator", lost, |s| s.ledger.integrator),
         ("put in", put_in, |s| s.ledger.pulses + s.ledger.hands + s.ledger.edits),
     ];
-    over_time(plot(&palette, "energy", ("time", "s"), ("energy", "J")), history).show(ui, |plot| {
+    over_time(plot(&palette, "energy", (tr("time"), "s"), (tr("energy"), "J")), history).show(ui, |plot| {
         // Beside others only the sums: these are what is compared.
         let shown = if motions.len() == 1 { &kinds[..] } else { &[] };
         for (name, color, value) in shown {
             // What is never there needs no line.
             if history.samples().iter().any(|s| value(s) != 0.0) {
                 let points = thinned(history, |s| [s.time, value(s)]);
-                plot.line(Line::new(*name, PlotPoints::Owned(points)).color(*color).width(1.5));
+                plot.line(Line::new(tr(name), PlotPoints::Owned(points)).color(*color).width(1.5));
             }
         }
         for (kind, history) in motions {
             let points = thinned(history, |s| [s.time, s.ledger.total()]);
             let (name, color) = if motions.len() == 1 {
-                ("sum".to_owned(), sum)
+                (tr("sum").to_owned(), sum)
             } else {
-                (format!("sum, {}", kind.id()), palette.integrator(*kind))
+                (fill!("sum, %{integrator}", integrator = tr(kind.id())), palette.integrator(*kind))
             };
             plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(2.5));
         }
@@ -200,20 +201,21 @@ fn spectra(
     const SEEN: f64 = 1e-3;
     let all: Vec<_> = motions.iter().map(|(kind, history)| (*kind, spectrum(history, axis))).collect();
     if all.iter().all(|(_, s)| s.is_empty()) {
-        ui.centered_and_justified(|ui| ui.weak(format!("A spectrum needs {SHORTEST_SPECTRUM} time steps.")));
+        ui.centered_and_justified(|ui| ui.weak(fill!("A spectrum needs %{n} time steps.", n = SHORTEST_SPECTRUM)));
         return;
     }
     let largest = all.iter().flat_map(|(_, s)| s).map(|p| p[1]).fold(0.0, f64::max);
     let seen = all.iter().flat_map(|(_, s)| s).filter(|p| p[1] > SEEN * largest).map(|p| p[0]).fold(0.0, f64::max);
     let end = seen.max(3.0 * frequency.unwrap_or(0.0));
-    plot(palette, "spectrum", ("frequency", "Hz"), ("amplitude", "m")).include_y(0.0).show(ui, |plot| {
+    plot(palette, "spectrum", (tr("frequency"), "Hz"), (tr("amplitude"), "m")).include_y(0.0).show(ui, |plot| {
         for (kind, spectrum) in all {
             let points: Vec<[f64; 2]> = spectrum.into_iter().take_while(|p| p[0] <= end).collect();
-            let line = Line::new(kind.id(), PlotPoints::from(points));
+            let line = Line::new(tr(kind.id()), PlotPoints::from(points));
             plot.line(line.color(palette.integrator(kind)).width(1.5));
         }
         if let Some(frequency) = frequency {
-            let name = format!("\u{3c9}\u{2081}/2\u{3c0} about rest: {}", engineering(frequency, "Hz"));
+            let name =
+                fill!("\u{3c9}\u{2081}/2\u{3c0} about rest: %{frequency}", frequency = engineering(frequency, "Hz"));
             let color = palette.secondary;
             plot.vline(VLine::new(name, frequency).color(color).style(LineStyle::dashed_dense()));
         }

@@ -7,6 +7,7 @@ use super::action::ViewOptions;
 use super::arrow::{self, Forces};
 use super::drawing::Drawing;
 use super::handle::HotHandle;
+use super::language::{percent, tr};
 use super::legend::Mark;
 use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
@@ -16,7 +17,7 @@ use crate::render::Camera;
 use crate::render::colormap::ColorMap;
 use crate::scene::{Analysis, Load, MethodKind, Scene};
 use crate::simulation::SupportReaction;
-use crate::words::{engineering, percent, prefix, round_down, three_digits, ticks};
+use crate::words::{engineering, prefix, round_down, three_digits, ticks};
 
 /// What is painted over the body.
 pub(super) struct Overlay<'a> {
@@ -402,8 +403,8 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
     let font = FontId::proportional(SMALL);
     let (power, symbol) = prefix(&[low, high], field.unit());
     let unit = if field.unit().is_empty() { String::new() } else { format!(", {symbol}{}", field.unit()) };
-    let range = if overlay.options.fixed_range.is_some() { ", fixed range" } else { "" };
-    let title = painter.layout_no_wrap(format!("{}{unit}{range}", field.name()), font.clone(), palette.text);
+    let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
+    let title = painter.layout_no_wrap(format!("{}{unit}{range}", tr(field.name())), font.clone(), palette.text);
     let corner = rect.right_bottom() - vec2(BAR.x + 32.0, LEGEND_HEIGHT - 6.0);
     let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(BAR.x + 34.0, 56.0));
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
@@ -440,22 +441,22 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         None => word.to_owned(),
     };
     let own = match overlay.scene.analysis {
-        Analysis::Static => with_error(overlay.scene.solver.method.id(), overlay.errors.own),
-        Analysis::Dynamic => overlay.scene.dynamics.integrator.id().to_owned(),
+        Analysis::Static => with_error(tr(overlay.scene.solver.method.id()), overlay.errors.own),
+        Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
     };
     let mut lines = vec![(palette.solution(overlay.scene), Mark::Line, own)];
     for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
-        lines.push((palette.integrator(companion.integrator), Mark::Line, companion.integrator.id().to_owned()));
+        lines.push((palette.integrator(companion.integrator), Mark::Line, tr(companion.integrator.id()).to_owned()));
     }
     if overlay.ghost.is_some() {
-        let words = with_error(MethodKind::Linear.id(), overlay.errors.linear);
+        let words = with_error(tr(MethodKind::Linear.id()), overlay.errors.linear);
         lines.push((palette.method(MethodKind::Linear), Mark::Line, words));
     }
     if !overlay.exact.is_empty() {
-        lines.push((palette.exact, Mark::Dashes, "exact".to_owned()));
+        lines.push((palette.exact, Mark::Dashes, tr("exact").to_owned()));
     }
     if overlay.options.rest_outline {
-        lines.push((palette.rest, Mark::Outline, "rest".to_owned()));
+        lines.push((palette.rest, Mark::Outline, tr("rest").to_owned()));
     }
     let font = FontId::proportional(BODY);
     // In rows: a narrow view has several.

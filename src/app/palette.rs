@@ -1,5 +1,6 @@
 //! The window's colours and sizes of type, all of them, for both themes. Tests compute the contrasts that WCAG 2.1 asks for.
 
+use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
 
 use crate::render::colormap::ColorMap;
@@ -197,6 +198,7 @@ pub(super) fn install(ctx: &egui::Context) {
         return;
     }
     ctx.data_mut(|data| data.insert_temp(installed, true));
+    add_font(ctx);
     for theme in [Theme::Dark, Theme::Light] {
         ctx.style_mut_of(theme, |style| {
             style.visuals = Palette::of(theme).visuals();
@@ -218,6 +220,14 @@ pub(super) fn install(ctx: &egui::Context) {
             style.spacing.default_area_size.y = 4000.0;
         });
     }
+}
+
+/// The letters of all languages of the window that egui's own fonts do not have.
+fn add_font(ctx: &egui::Context) {
+    let data = egui::FontData::from_static(include_bytes!("../../assets/fonts/NotoSansSC-subset.otf"));
+    let place = |family| InsertFontFamily { family, priority: FontPriority::Lowest };
+    let families = vec![place(FontFamily::Proportional), place(FontFamily::Monospace)];
+    ctx.add_font(FontInsert::new("Noto Sans SC", data, families));
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use egui_plot::{
     Corner, GridInput, GridMark, HoverPosition, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine,
 };
 
+use super::language::{fill, tr, translated};
 use super::overlay::boxed_text;
 use super::palette::Palette;
 use crate::scene::{MethodKind, Scene};
@@ -82,17 +83,25 @@ pub(super) fn show(ui: &mut Ui, curve: Option<&Curve>, looked_for: bool) {
         Some(Curve::Path(of)) => path(ui, &of.0, &of.1),
         None => {
             ui.centered_and_justified(|ui| {
-                ui.weak(if looked_for {
+                ui.weak(tr(if looked_for {
                     "No load curve: linear theory knows one straight line only."
                 } else {
                     "The load curve comes when the body has come to rest."
-                });
+                }));
             });
         }
     }
     if curve.is_some() && !looked_for {
         let words = "As it was before the last change; the new one comes when the body has come to rest.";
-        boxed_text(ui.painter(), at, Align2::CENTER_TOP, words, ui.visuals(), ui.visuals().weak_text_color(), 520.0);
+        boxed_text(
+            ui.painter(),
+            at,
+            Align2::CENTER_TOP,
+            tr(words),
+            ui.visuals(),
+            ui.visuals().weak_text_color(),
+            520.0,
+        );
     }
 }
 
@@ -102,7 +111,7 @@ fn path(ui: &mut Ui, path: &LoadPath, scene: &Scene) {
     let [stable, unstable] = [MethodKind::Newton, MethodKind::Warped].map(|method| palette.method(method));
     // Where the curve is not: a load's begins low, that of a support that moves falls again.
     let corner = if path.driven.is_some() { Corner::RightTop } else { Corner::LeftTop };
-    still(&palette, "load path", (&drawn.x_label, ""), (&drawn.y_label, ""))
+    still(&palette, "load path", (&translated(&drawn.x_label), ""), (&translated(&drawn.y_label), ""))
         .legend(Legend::default().position(corner).follow_insertion_order(true))
         .show(ui, |plot| {
             for (points, piece) in drawn.pieces(path) {
@@ -111,10 +120,10 @@ fn path(ui: &mut Ui, path: &LoadPath, scene: &Scene) {
                     Piece::Unstable => ("unstable under force control", unstable, LineStyle::dashed_loose()),
                     Piece::Jump => ("it jumps", unstable, LineStyle::dotted_dense()),
                 };
-                plot.line(Line::new(name, PlotPoints::from(points)).color(color).width(2.0).style(style));
+                plot.line(Line::new(tr(name), PlotPoints::from(points)).color(color).width(2.0).style(style));
             }
             let at: Vec<[f64; 2]> = drawn.points.last().map(|p| p.0).into_iter().collect();
-            plot.points(Points::new("the scene", at).color(palette.text).radius(4.0));
+            plot.points(Points::new(tr("the scene"), at).color(palette.text).radius(4.0));
         });
 }
 
@@ -124,7 +133,7 @@ fn beam(ui: &mut Ui, curve: &LoadCurve) {
     let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {
         curve.samples.iter().map(|s| [100.0 * s.factor, value(s)]).collect()
     };
-    still(&palette, "load curve", ("load, of the scene's", "%"), ("tip displacement", "m"))
+    still(&palette, "load curve", (tr("load, of the scene's"), "%"), (tr("tip displacement"), "m"))
         .legend(Legend::default().position(Corner::RightBottom).follow_insertion_order(true))
         .show(ui, |plot| {
             let exact = samples(|s| s.truth.norm());
@@ -134,11 +143,14 @@ fn beam(ui: &mut Ui, curve: &LoadCurve) {
                 .into_iter()
                 .take_while(|p| p[1] <= 1.35 * top.max(f64::MIN_POSITIVE))
                 .collect();
-            plot.line(Line::new("linear theory", PlotPoints::from(straight)).color(linear).width(1.5));
-            plot.line(Line::new("exact beam", PlotPoints::from(exact)).color(palette.exact).width(2.0));
+            plot.line(Line::new(tr("linear theory"), PlotPoints::from(straight)).color(linear).width(1.5));
+            plot.line(Line::new(tr("exact beam"), PlotPoints::from(exact)).color(palette.exact).width(2.0));
             for departure in &curve.departures {
-                let name =
-                    format!("linear off by {} %: {:.1}°", departure.percent, departure.at.rotation.to_degrees().abs());
+                let name = fill!(
+                    "linear off by %{percent} %: %{angle}",
+                    percent = departure.percent,
+                    angle = format!("{:.1}°", departure.at.rotation.to_degrees().abs())
+                );
                 plot.vline(
                     VLine::new(name, 100.0 * departure.at.factor)
                         .color(linear.gamma_multiply(0.7))
@@ -148,13 +160,13 @@ fn beam(ui: &mut Ui, curve: &LoadCurve) {
             for point in &curve.methods {
                 let off = point.tip.norm() > 1.35 * top;
                 let word = match point.status {
-                    Status::Converged if off => ", off the picture",
+                    Status::Converged if off => tr(", off the picture"),
                     Status::Converged => "",
-                    _ => ", not converged",
+                    _ => tr(", not converged"),
                 };
                 let at = if off { Vec::new() } else { vec![[100.0, point.tip.norm()]] };
                 let shape = if point.status == Status::Converged { MarkerShape::Circle } else { MarkerShape::Cross };
-                let points = Points::new(format!("{}{word}", point.method.id()), at);
+                let points = Points::new(format!("{}{word}", tr(point.method.id())), at);
                 plot.points(points.color(palette.method(point.method)).radius(5.0).shape(shape));
             }
         });

@@ -34,6 +34,8 @@ enum Held {
     Tip(Grip),
     /// The body, at a point.
     Body(MaterialPoint),
+    /// The view, at a point of a body that cannot be pulled.
+    Point(MaterialPoint),
     /// Empty space.
     Space,
 }
@@ -64,6 +66,16 @@ pub(super) struct Wish {
 
 /// So near to a thin body, points, counts as on it.
 const NEAR: f64 = 8.0;
+
+/// The body under the pointer.
+pub(super) enum Body<'a> {
+    /// None that could be reached.
+    None,
+    /// One that says its values and cannot be pulled.
+    Seen,
+    /// One that can be pulled.
+    InHand(&'a mut Simulation, &'a mut Playback),
+}
 
 /// What a hand needs to find what it reaches for.
 pub(super) struct Reach<'a> {
@@ -110,14 +122,8 @@ impl Pointer {
         matches!(self.held, Held::Tip(..) | Held::Body(_))
     }
 
-    /// Follows the pointer over the view that `response` belongs to. A body that is given can be pulled.
-    pub(super) fn follow(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        reach: &Reach<'_>,
-        mut body: Option<(&mut Simulation, &mut Playback)>,
-    ) -> Wish {
+    /// Follows the pointer over the view that `response` belongs to.
+    pub(super) fn follow(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, mut body: Body<'_>) -> Wish {
         let (pressed, origin, down, at, let_go_at, fingers, snap) = ui.input(|i| {
             let pointer = &i.pointer;
             let fingers = i.multi_touch().map(|touch| touch.translation_delta);
@@ -147,24 +153,24 @@ impl Pointer {
         if response.double_clicked() {
             match self.held {
                 Held::Tip(grip) => wish.restore = Some(grip.handle.load()),
-                Held::Body(_) | Held::Space => wish.look = Look::Fit,
+                Held::Body(_) | Held::Point(_) | Held::Space => wish.look = Look::Fit,
                 Held::Nothing => {}
             }
         } else if response.clicked() {
             match self.held {
-                Held::Body(point) => wish.clicked = Some(Some(point)),
+                Held::Body(point) | Held::Point(point) => wish.clicked = Some(Some(point)),
                 Held::Space => wish.clicked = Some(None),
                 Held::Tip(..) | Held::Nothing => {}
             }
         }
         if !down || fingers.is_some() {
-            if let (Held::Body(_), Some((simulation, playback))) = (self.held, &mut body) {
+            if let (Held::Body(_), Body::InHand(simulation, playback)) = (self.held, &mut body) {
                 simulation.release();
                 playback.release();
             }
             self.held = Held::Nothing;
         }
-        self.hover(ui, response, reach, body.is_some(), down);
+        self.hover(ui, response, reach, &body, down);
         if wish.look == Look::Same {
             wish.look = self.look(ui, response, reach, fingers);
         }
@@ -172,23 +178,18 @@ impl Pointer {
     }
 
     /// What a press here takes: a tip before the body that it may lie over.
-    fn take(
-        response: &Response,
-        reach: &Reach<'_>,
-        body: &mut Option<(&mut Simulation, &mut Playback)>,
-        at: Pos2,
-    ) -> Held {
+    fn take(response: &Response, reach: &Reach<'_>, body: &mut Body<'_>, at: Pos2) -> Held {
         if let Some(handle) = handle::at(reach.handles, at) {
             return Held::Tip(Grip::new(*handle, at));
         }
-        let Some((simulation, playback)) = body else { return Held::Space };
-        match reach.point(reach.place(response, at)) {
-            Some(point) if simulation.grab(point) => {
-                playback.grab(point);
-                Held::Body(point)
-            }
-            _ => Held::Space,
+        let reached = reach.point(reach.place(response, at)).filter(|_| !matches!(body, Body::None));
+        let Some(point) = reached else { return Held::Space };
+        let Body::InHand(simulation, playback) = body else { return Held::Point(point) };
+        if !simulation.grab(point) {
+            return Held::Space;
         }
+        playback.grab(point);
+        Held::Body(point)
     }
 
     /// Moves what is held to where the pointer is.
@@ -196,7 +197,7 @@ impl Pointer {
         &mut self,
         response: &Response,
         reach: &Reach<'_>,
-        body: &mut Option<(&mut Simulation, &mut Playback)>,
+        body: &mut Body<'_>,
         (at, snap): (Pos2, bool),
         wish: &mut Wish,
     ) {
@@ -206,7 +207,7 @@ impl Pointer {
                 wish.load = grip.pull(snap).map(|pull| (grip.handle.load(), pull));
             }
             Held::Body(_) => {
-                let Some((simulation, playback)) = body else { return };
+                let Body::InHand(simulation, playback) = body else { return };
                 let place = reach.place(response, at);
                 if simulation.hand().is_some_and(|(hand, _)| hand.target() != place) {
                     // A pointer has a finite place.
@@ -214,27 +215,27 @@ impl Pointer {
                     playback.pull_to(place);
                 }
             }
-            Held::Space | Held::Nothing => {}
+            Held::Point(_) | Held::Space | Held::Nothing => {}
         }
     }
 
     /// Finds what is under the pointer, and says so with the cursor.
-    fn hover(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, pulls: bool, down: bool) {
+    fn hover(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, body: &Body<'_>, down: bool) {
         (self.over_tip, self.over_body) = (None, None);
         let cursor = match self.held {
             Held::Tip(..) => Some(CursorIcon::Move),
             Held::Body(_) => Some(CursorIcon::Grabbing),
-            Held::Space => Some(CursorIcon::AllScroll),
+            Held::Point(_) | Held::Space => Some(CursorIcon::AllScroll),
             Held::Nothing => response.hover_pos().filter(|_| !down).map(|at| {
                 self.over_tip = handle::at(reach.handles, at).copied();
                 if self.over_tip.is_some() {
                     return CursorIcon::Move;
                 }
                 self.over_body = reach.point(reach.place(response, at));
-                match self.over_body {
-                    Some(_) if pulls => CursorIcon::Grab,
-                    Some(_) => CursorIcon::Crosshair,
-                    None => CursorIcon::Default,
+                match (self.over_body, body) {
+                    (Some(_), Body::InHand(..)) => CursorIcon::Grab,
+                    (Some(_), Body::None) => CursorIcon::Crosshair,
+                    _ => CursorIcon::Default,
                 }
             }),
         };

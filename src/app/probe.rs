@@ -3,6 +3,7 @@
 use egui::{Align2, Area, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};
 use nalgebra::{Matrix2, Vector2};
 
+use super::language::{fill, tr};
 use super::overlay::boxed_text;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::simulation::{Field, PointState};
@@ -31,8 +32,8 @@ fn value(field: Field, value: f64) -> String {
 /// Paints beside the pointer the value of the field under it and how far the body has moved there.
 pub(super) fn paint_hover(ui: &Ui, painter: &Painter, at: Pos2, field: (Field, Option<f64>), u: Vector2<f64>) {
     let (field, of_field) = field;
-    let of_field = of_field.map_or_else(|| "unknown".to_owned(), |v| value(field, v));
-    let text = format!("{}: {of_field}\nu = {}", field.name(), metres(u));
+    let of_field = of_field.map_or_else(|| tr("unknown").to_owned(), |v| value(field, v));
+    let text = format!("{}: {of_field}\nu = {}", tr(field.name()), metres(u));
     let visuals = ui.visuals();
     let place = at + vec2(16.0, 18.0);
     boxed_text(painter, place, Align2::LEFT_TOP, &text, visuals, visuals.strong_text_color(), 320.0);
@@ -70,18 +71,19 @@ pub(super) fn show_card(
     let card = area.show(ui.ctx(), |ui| {
         let frame = Frame::popup(ui.style()).show(ui, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
-            ui.strong(format!("Point {}", metres(point.rest)));
+            ui.strong(fill!("Point %{place}", place = metres(point.rest)));
             let (field, of_field) = field;
             Grid::new("probe values").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
                 let mut row = |name: &str, text: String, tip: &str| {
-                    ui.label(RichText::new(name).weak()).on_hover_text(tip);
-                    ui.label(text).on_hover_text(tip);
+                    ui.label(RichText::new(name).weak()).on_hover_text(tr(tip));
+                    ui.label(text).on_hover_text(tr(tip));
                     ui.end_row();
                 };
                 row("u", metres(point.displacement), "Displacement");
                 let angle = point.rotation.angle().to_degrees();
                 row("θ", engineering(three_digits(angle), "°"), "Angle of the rotation R");
-                let stress = point.cauchy.map_or_else(|| "none".to_owned(), |s| value(Field::VonMises, s.von_mises()));
+                let stress =
+                    point.cauchy.map_or_else(|| tr("none").to_owned(), |s| value(Field::VonMises, s.von_mises()));
                 row("σ", stress, "Von Mises stress of the Cauchy stress, recovered at the nodes");
                 row(
                     "ε",
@@ -97,12 +99,12 @@ pub(super) fn show_card(
                     ("S", &point.stretch, "Stretch of F = R S"),
                 ];
                 for (name, matrix, tip) in matrices {
-                    ui.label(RichText::new(name).weak()).on_hover_text(tip);
-                    ui.label(RichText::new(rows(matrix)).monospace().size(12.0)).on_hover_text(tip);
+                    ui.label(RichText::new(name).weak()).on_hover_text(tr(tip));
+                    ui.label(RichText::new(rows(matrix)).monospace().size(12.0)).on_hover_text(tr(tip));
                     ui.end_row();
                 }
             });
-            ui.label(RichText::new("Click or Escape closes it").weak().size(12.0));
+            ui.label(RichText::new(tr("Click or Escape closes it")).weak().size(12.0));
         });
         frame.response.interact(Sense::click())
     });

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::ThemeChoice;
 use super::action::Drawer;
 use super::document::write_whole;
+use super::language::Language;
 use crate::simulation::Field;
 
 /// So many files are remembered.
@@ -22,6 +23,8 @@ pub struct Settings {
     /// Light or dark; `None` is as the system has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub theme: Option<ThemeChoice>,
+    /// What the window speaks.
+    pub language: Language,
     /// Whether the panel is shown.
     pub panel: bool,
     /// What is shown under the body.
@@ -39,6 +42,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             theme: None,
+            language: Language::default(),
             panel: true,
             drawer: None,
             color: Field::default().name().to_owned(),
@@ -139,6 +143,7 @@ mod tests {
         assert_eq!(Settings::load(&file), Settings::default());
         let mut settings = Settings { theme: Some(ThemeChoice::Light), panel: false, ..Settings::default() };
         settings.drawer = Some(Drawer::Motion);
+        settings.language = Language::Chinese;
         settings.set_color(Field::RotationAngle);
         settings.set_size([900.0, 700.0]);
         (0..30).for_each(|i| settings.add_recent(Path::new(&format!("scene-{i}.toml"))));

@@ -1,5 +1,7 @@
 //! What is drawn of a body in a state: where its points are, and the colours of its field. Kept between frames.
 
+use std::sync::Arc;
+
 use egui::{Color32, Visuals};
 use nalgebra::Vector2;
 
@@ -7,9 +9,11 @@ use super::action::ViewOptions;
 use super::drawing::Drawing;
 use super::palette::{self, Palette};
 use super::panel;
+use crate::assembly::System;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::Frame;
 use crate::render::colormap::ColorMap;
+use crate::scene::Material;
 use crate::simulation::{Field, Simulation};
 use crate::stress::{NodalStress, RecoveryScratch};
 
@@ -31,6 +35,8 @@ pub(super) struct Shape {
     pub range: [f64; 2],
     /// What the range is of.
     field: Option<Field>,
+    /// What the values are of, beside the places of the nodes.
+    of: Option<Values>,
     line_color: [u8; 4],
     background: [u8; 3],
     surround: [u8; 3],
@@ -38,15 +44,52 @@ pub(super) struct Shape {
     map: ColorMap,
 }
 
+/// What decides the values of a body's field, but for where its nodes are.
+#[derive(Debug)]
+struct Values {
+    system: Arc<System>,
+    material: Material,
+    field: Field,
+    is_smooth: bool,
+    is_linear: bool,
+}
+
+impl Values {
+    fn of(simulation: &Simulation, view: &ViewOptions) -> Self {
+        Self {
+            system: simulation.system().clone(),
+            material: *simulation.problem().material(),
+            field: view.field,
+            is_smooth: view.is_smooth(),
+            is_linear: simulation.is_linear(),
+        }
+    }
+
+    fn are(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.system, &other.system)
+            && (self.material, self.field) == (other.material, other.field)
+            && (self.is_smooth, self.is_linear) == (other.is_smooth, other.is_linear)
+    }
+}
+
 impl Shape {
     /// Takes the state of a body on. A range that `grows` keeps what it has spanned of the field.
     pub(super) fn update(&mut self, simulation: &Simulation, drawing: &Drawing, view: &ViewOptions, grows: bool) {
-        self.nodes.clear();
-        let rest = simulation.system().mesh().nodes();
-        self.nodes.extend(rest.iter().zip(simulation.displacement()).map(|(x, u)| x + u));
+        let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+        let of = Values::of(simulation, view);
+        // The values of a large body are dear, and most pictures are of the state before.
+        let is_known =
+            self.of.as_ref().is_some_and(|known| known.are(&of)) && self.nodes.iter().copied().eq(places.clone());
+        self.of = Some(of);
+        if !is_known {
+            self.nodes.clear();
+            self.nodes.extend(places);
+        }
         let nodes = &self.nodes;
         drawing.points(&|n| nodes[n as usize], &mut self.points);
-        if view.is_smooth() {
+        if is_known {
+            // As they are.
+        } else if view.is_smooth() {
             simulation.smooth_field(view.field, (&mut self.nodal, &mut self.scratch), &mut self.known);
             drawing.nodal_values(&self.known, view.field.period(), &mut self.values);
         } else {

@@ -7,6 +7,7 @@ use egui_wgpu::ScreenDescriptor;
 
 use super::compare::PaneSetting;
 use super::lab::Lab;
+use super::language::Language;
 use super::stage::Stage;
 use super::{AppError, ThemeChoice};
 use crate::picture::Picture;
@@ -37,6 +38,8 @@ pub struct ShotOptions {
     pub compare: Vec<PaneSetting>,
     /// Light or dark.
     pub theme: ThemeChoice,
+    /// Of the words.
+    pub language: Language,
 }
 
 impl Default for ShotOptions {
@@ -50,6 +53,7 @@ impl Default for ShotOptions {
             compare: Vec::new(),
             learn: None,
             theme: ThemeChoice::default(),
+            language: Language::default(),
         }
     }
 }
@@ -69,6 +73,7 @@ pub fn shot(
     let mut lab = Lab::new(source, scene, simulation);
     lab.set_adapter(gpu.describe());
     lab.set_panel(options.panel);
+    lab.set_language(options.language);
     if options.curve {
         lab.show_curve();
     }

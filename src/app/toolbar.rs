@@ -8,6 +8,7 @@ use egui::{
 
 use super::action::{Action, Toggle, ViewOptions};
 use super::gallery::Gallery;
+use super::language::{Language, tr};
 use super::mode::MODES;
 use super::palette::{BODY, Palette, SMALL};
 use super::panel::PanelInput;
@@ -44,7 +45,7 @@ pub(super) fn show(
             divide(ui);
             modes(ui, input, view, actions);
         }
-        window_tools(ui, view, actions);
+        window_tools(ui, view, input.language, actions);
     };
     if one_row {
         ui.horizontal_centered(tools);
@@ -61,24 +62,26 @@ pub(super) fn show(
 fn modes(ui: &mut Ui, input: &PanelInput<'_>, view: &ViewOptions, actions: &mut Vec<Action>) {
     for entry in MODES {
         let chosen = view.mode == entry.mode;
-        let button = ui.add_enabled((entry.serves)(input.scene), Button::selectable(chosen, entry.name));
-        let button = button.on_hover_text(entry.about).on_disabled_hover_text(entry.unless);
+        let button = ui.add_enabled((entry.serves)(input.scene), Button::selectable(chosen, tr(entry.name)));
+        let button = button.on_hover_text(tr(entry.about)).on_disabled_hover_text(tr(entry.unless));
         if button.clicked() && !chosen {
             actions.push(Action::Toggle(Toggle::Mode(entry.mode)));
         }
     }
 }
 
-fn window_tools(ui: &mut Ui, view: &ViewOptions, actions: &mut Vec<Action>) {
+fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &mut Vec<Action>) {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let mut button = |icon: Icon, name: &str, chosen: bool, tip: &str, action: Action| {
-            let response = ui.add(|ui: &mut Ui| icon_button(ui, icon, name, None, chosen));
-            if response.on_hover_text(tip).clicked() {
+            let response = ui.add(|ui: &mut Ui| icon_button(ui, icon, tr(name), None, chosen));
+            if response.on_hover_text(tr(tip)).clicked() {
                 actions.push(action);
             }
         };
         button(Icon::Help, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
         button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
+        // Who does not read the present language finds the other one by its own name.
+        button(Icon::Language, "Language", false, language.other().name(), Action::ToggleLanguage);
         let tip = "Show or hide the controls (P)";
         button(Icon::Panel, "Panel", view.shows_panel(), tip, Action::Toggle(Toggle::Panel));
     });
@@ -98,6 +101,7 @@ pub(super) enum Icon {
     Undo,
     Redo,
     Theme,
+    Language,
     Help,
     Panel,
     Open,
@@ -107,11 +111,13 @@ pub(super) enum Icon {
 /// A button with an icon, before a word where there is room for one; its name is for who cannot see it.
 pub(super) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, word: Option<&str>, chosen: bool) -> Response {
     const SIDE: f32 = 28.0;
+    const WIDE: f32 = 52.0;
     const GAP: f32 = 5.0;
     const PADDING: f32 = 8.0;
     let font = FontId::proportional(BODY);
+    let side = if icon == Icon::Language { WIDE } else { SIDE };
     let galley = word.map(|word| ui.painter().layout_no_wrap(word.to_owned(), font, egui::Color32::PLACEHOLDER));
-    let width = galley.as_ref().map_or(SIDE, |galley| 2.0 * PADDING + 14.0 + GAP + galley.size().x);
+    let width = galley.as_ref().map_or(side, |galley| 2.0 * PADDING + 14.0 + GAP + galley.size().x);
     let (rect, response) = ui.allocate_exact_size(vec2(width, ui.spacing().interact_size.y), Sense::click());
     let style = ui.style().interact_selectable(&response, chosen);
     ui.painter().rect(rect, style.corner_radius, style.weak_bg_fill, style.bg_stroke, StrokeKind::Inside);
@@ -159,6 +165,9 @@ fn paint(painter: &Painter, icon: Icon, center: Pos2, color: egui::Color32) {
             painter.circle_stroke(center, 5.5, stroke);
             polygon(arc(-std::f32::consts::FRAC_PI_2, std::f32::consts::FRAC_PI_2));
         }
+        Icon::Language => {
+            painter.text(center, Align2::CENTER_CENTER, "中/EN", FontId::proportional(BODY), color);
+        }
         Icon::Help => {
             painter.text(center, Align2::CENTER_CENTER, "?", FontId::proportional(BODY), color);
         }
@@ -176,6 +185,7 @@ fn run(ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action
     let moves = simulation.motion().is_some();
     let ended = input.ended;
     let mut button = |icon: Icon, name: &str, tip: &str, enabled: bool, action: Action| {
+        let (name, tip) = (tr(name), tr(tip));
         let word = wide.then_some(name);
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, false));
         if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
@@ -201,7 +211,8 @@ fn history(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {
         (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.can_undo, Action::Undo),
         (Icon::Redo, "Redo", "Redo it (Ctrl+Shift+Z)", input.can_redo, Action::Redo),
     ] {
-        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, None, false));
+        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), None, false));
+        let tip = tr(tip);
         if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
             actions.push(action);
         }
@@ -210,6 +221,7 @@ fn history(ui: &mut Ui, input: &PanelInput<'_>, actions: &mut Vec<Action>) {
 
 /// An entry of a picker: its name, and what it is under it.
 pub(super) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, about: &str) -> Response {
+    let (id, about) = (tr(id), tr(about));
     let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
     let mut job = LayoutJob::default();
     job.append(id, 0.0, format(BODY, palette.text));

@@ -1,11 +1,12 @@
 //! What the lab makes of a result: its error and where that comes from, its status in words, and what would mend it.
 
+use super::language::{count, fill, percent, sentence, tr, translated};
 use super::palette::Palette;
 use super::panel::PanelInput;
 use crate::method::rho_words;
 use crate::scene::{ElementKind, MethodKind, Scene, limits};
 use crate::simulation::{Simulation, Status, probe_results};
-use crate::words::{count, engineering, number, percent, two_digits};
+use crate::words::{self, engineering, number, two_digits};
 
 /// Where most of an error comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +46,7 @@ pub(super) fn errors(input: &PanelInput<'_>) -> Errors {
         Some((truth.error_percent(&probe)?, probe.u))
     };
     let own = percent_of(simulation);
-    let source = own.filter(|(error, _)| percent(*error) != percent(0.0)).map(|(_, u)| {
+    let source = own.filter(|(error, _)| words::percent(*error) != words::percent(0.0)).map(|(_, u)| {
         if !simulation.status().is_success() {
             return ErrorSource::Iteration;
         }
@@ -81,16 +82,21 @@ pub(super) fn is_stale(input: &PanelInput<'_>) -> bool {
 /// The status as a sentence, and whether it is a bad one.
 pub(super) fn status_words(simulation: &Simulation, running: bool) -> (String, bool) {
     let moves = simulation.motion().is_some();
+    let said = |reason: &dyn std::fmt::Display| translated(&reason.to_string());
     match simulation.status() {
-        Status::Running | Status::Finished if !running => ("Paused".to_owned(), false),
+        Status::Running | Status::Finished if !running => (tr("Paused").to_owned(), false),
         // The duration is for runs without a window: here a motion goes on.
-        Status::Running | Status::Finished if moves && simulation.is_at_rest() => ("At rest".to_owned(), false),
-        Status::Running | Status::Finished if moves => ("Running".to_owned(), false),
-        Status::Running | Status::Finished => ("Iterating".to_owned(), false),
-        Status::Converged => ("Converged".to_owned(), false),
-        Status::NotConverged(reason) => (format!("Not converged: {reason}."), true),
-        Status::Diverged(reason) => (format!("Diverged: {reason}. Shown is the last finite state."), true),
-        Status::Stopped(reason) => (format!("Stopped: {reason}. Shown is the last finite state."), true),
+        Status::Running | Status::Finished if moves && simulation.is_at_rest() => (tr("At rest").to_owned(), false),
+        Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
+        Status::Running | Status::Finished => (tr("Iterating").to_owned(), false),
+        Status::Converged => (tr("Converged").to_owned(), false),
+        Status::NotConverged(reason) => (fill!("Not converged: %{reason}.", reason = said(reason)), true),
+        Status::Diverged(reason) => {
+            (fill!("Diverged: %{reason}. Shown is the last finite state.", reason = said(reason)), true)
+        }
+        Status::Stopped(reason) => {
+            (fill!("Stopped: %{reason}. Shown is the last finite state.", reason = said(reason)), true)
+        }
     }
 }
 
@@ -102,7 +108,7 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
         return (words, true);
     }
     if is_stale(input) {
-        return ("Paused: the picture is older than the load".to_owned(), false);
+        return (tr("Paused: the picture is older than the load").to_owned(), false);
     }
     let mut add = |part: String| {
         words.push_str(" · ");
@@ -113,11 +119,11 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
         return (words, false);
     }
     if let Some(stable) = stability(simulation) {
-        add(if stable { "stable" } else { "unstable" }.to_owned());
+        add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
     add(count(simulation.iterations(), "iteration"));
     if let Some(jump) = input.jump.filter(|_| simulation.status().is_success()) {
-        add(jump.to_string());
+        add(translated(&jump.to_string()));
     }
     (words, stability(simulation) == Some(false))
 }
@@ -133,54 +139,52 @@ pub(super) fn rho(simulation: &Simulation) -> Option<f64> {
     simulation.certificate().and_then(|c| c.fixed_point_rho)
 }
 
-/// With a capital and a full stop.
-pub(super) fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
-}
-
 /// Why the status is what it is, sentence by sentence.
 pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
     if let Some(motion) = simulation.motion() {
         let counts = motion.counts();
-        lines.push(format!("{} so far, with {}.", count(counts.steps, "step"), count(counts.solves, "solve")));
-        lines.push(
-            "A step that does not converge is halved; what its integrator adds to the energy is the drift.".into(),
-        );
+        let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "solve"));
+        lines.push(fill!("%{steps} so far, with %{solves}.", steps = steps, solves = solves));
+        let halved = "A step that does not converge is halved; what its integrator adds to the energy is the drift.";
+        lines.push(tr(halved).into());
         return lines;
     }
     let residual = number(two_digits(simulation.residual()));
     let asked = number(input.scene.solver.tolerance);
     lines.push(match simulation.status() {
         Status::Converged => {
-            format!("The forces balance: what is left is {residual} of them, and {asked} is asked for.")
+            fill!(
+                "The forces balance: what is left is %{residual} of them, and %{asked} is asked for.",
+                residual = residual,
+                asked = asked
+            )
         }
-        _ => format!("The forces are out of balance by {residual} of them; {asked} is asked for."),
+        _ => fill!(
+            "The forces are out of balance by %{residual} of them; %{asked} is asked for.",
+            residual = residual,
+            asked = asked
+        ),
     });
-    match stability(simulation) {
-        Some(true) => {
-            lines.push("Stable: pushed a little, the body comes back (the exact tangent is positive definite).".into())
-        }
-        Some(false) => {
-            lines.push(
-                "Unstable: pushed a little, the body leaves (the exact tangent is not positive definite).".into(),
-            );
-        }
-        None => {}
-    }
+    let stable = stability(simulation).map(|stable| match stable {
+        true => "Stable: pushed a little, the body comes back (the exact tangent is positive definite).",
+        false => "Unstable: pushed a little, the body leaves (the exact tangent is not positive definite).",
+    });
+    lines.extend(stable.map(|words| tr(words).to_owned()));
     if let Some(rho) = rho(simulation) {
-        lines.push(sentence(&rho_words(rho)));
+        lines.push(sentence(&translated(&rho_words(rho))));
         let converged = *simulation.status() == Status::Converged;
         if rho > 1.0 && converged {
             lines.push(match input.scene.solver.method {
-                MethodKind::Warped => {
+                MethodKind::Warped => tr(
                     "It did converge, because this load never pushes the body in the direction that would grow: a bar \
-                     pulled along its axis stays straight. A small push aside would not be undone by the iteration."
-                        .to_owned()
+                     pulled along its axis stays straight. A small push aside would not be undone by the iteration.",
+                )
+                .to_owned(),
+                other => {
+                    fill!("That does not touch this result: it comes from %{method}.", method = tr(other.id()))
                 }
-                other => format!("That does not touch this result: it comes from {}.", other.id()),
             });
         }
     }
@@ -210,33 +214,33 @@ pub(super) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> 
     let with_newton = |words: String| {
         let mut scene = Box::new(scene.clone());
         scene.solver.method = MethodKind::Newton;
-        Remedy { words, offer: "Use newton".to_owned(), edits: "Method", scene }
+        Remedy { words, offer: tr("Use newton").to_owned(), edits: "Method", scene }
     };
     if !simulation.status().is_success() {
         let words = rho(simulation).filter(|&rho| rho > 1.0).map_or_else(
-            || format!("The {} iteration does not get there.", scene.solver.method.id()),
-            |rho| format!("Cannot converge: ρ = {} > 1.", rho_number(rho)),
+            || fill!("The %{method} iteration does not get there.", method = tr(scene.solver.method.id())),
+            |rho| fill!("Cannot converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
         );
         return (scene.solver.method != MethodKind::Newton).then(|| with_newton(words));
     }
     let off = errors.own.filter(|&error| error > LARGE)?;
     let off = percent(off);
     if errors.source == Some(ErrorSource::Theory) {
-        return Some(with_newton(format!("{off} off: linear theory does not turn with the body.")));
+        return Some(with_newton(fill!("%{error} off: linear theory does not turn with the body.", error = off)));
     }
     if scene.element() == ElementKind::T3 {
         let better = [ElementKind::T6, ElementKind::Q4].into_iter().find(|e| scene.elements().any(|own| own == *e))?;
         let mut scene = Box::new(scene.clone());
         scene.set_element(better);
-        let words = format!("{off} off: three-node triangles lock in bending.");
-        return Some(Remedy { words, offer: format!("Try {}", better.id()), edits: "Element", scene });
+        let words = fill!("%{error} off: three-node triangles lock in bending.", error = off);
+        return Some(Remedy { words, offer: fill!("Try %{element}", element = better.id()), edits: "Element", scene });
     }
     let mut scene = Box::new(scene.clone());
     let beam = scene.beam.as_mut()?;
     beam.cells = beam.cells.map(|n| n.saturating_mul(2));
     let fits = f64::from(beam.cells[0]) * f64::from(beam.cells[1]) <= limits::TOTAL_CELLS.max;
-    let words = format!("{off} off: the mesh is coarse.");
-    fits.then_some(Remedy { words, offer: "Halve its cells".to_owned(), edits: "Cells along", scene })
+    let words = fill!("%{error} off: the mesh is coarse.", error = off);
+    fits.then_some(Remedy { words, offer: tr("Halve its cells").to_owned(), edits: "Cells along", scene })
 }
 
 /// ρ as it is shown: two digits, three above one tenth.

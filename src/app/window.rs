@@ -15,8 +15,10 @@ use winit::window::{Window, WindowId};
 
 use super::clipboard::Clipboard;
 use super::lab::{Lab, Request};
+use super::language::fill;
 use super::settings::Settings;
 use super::shot::picture;
+use super::size::{MOST_UNKNOWNS, unknowns};
 use super::stage::Stage;
 use super::{AppError, NoName, free_name};
 use crate::render::{Gpu, RenderError};
@@ -63,16 +65,29 @@ impl Display {
     }
 }
 
-/// Opens the window and returns when it is closed.
+/// Whether a scene is so large that the window does not wait for its mesh.
+#[must_use]
+pub fn opens_beside(scene: &Scene) -> bool {
+    unknowns(scene) > MOST_UNKNOWNS
+}
+
+/// Opens the window and returns when it is closed. Without a simulation the scene is meshed beside the window, which shows
+/// another one meanwhile: see [`opens_beside`].
 ///
 /// # Errors
 /// [`AppError`]: no adapter, or no window.
-pub fn run(display: Display, source: Source, scene: Scene, simulation: Simulation) -> Result<(), AppError> {
+pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Simulation>) -> Result<(), AppError> {
     let first_picture = source.name.to_str() == Some(registry::DEFAULT);
     let file = Settings::file();
     let settings = file.as_deref().map(Settings::load).unwrap_or_default();
     let ctx = egui::Context::default();
-    let mut lab = Lab::new(source, scene, simulation);
+    let lab = match simulation {
+        Some(simulation) => Some(Lab::new(source, scene, simulation)),
+        None => Lab::opening(source, scene),
+    };
+    let Some(mut lab) = lab else {
+        return Err(AppError::Window("the scene to begin with is missing".to_owned()));
+    };
     lab.set_settings(&ctx, settings.clone());
     lab.set_easing(true);
     if first_picture {
@@ -280,8 +295,8 @@ impl App {
             Ok(path)
         });
         let message = match saved {
-            Ok(path) => format!("Saved {}", path.display()),
-            Err(reason) => format!("No screenshot: {reason}"),
+            Ok(path) => fill!("Saved %{file}", file = path.display()),
+            Err(reason) => fill!("No screenshot: %{reason}", reason = reason),
         };
         self.lab.say(&self.ctx, message);
         open.window.request_redraw();

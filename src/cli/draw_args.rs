@@ -48,6 +48,9 @@ pub(super) struct ShotArgs {
     /// Light or dark.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
+    /// English or Chinese.
+    #[arg(long, value_enum, default_value_t = app::Language::English)]
+    pub language: app::Language,
 }
 
 /// Panes that are compared: one value of an option.
@@ -92,6 +95,9 @@ pub(super) struct RecordArgs {
     /// Light or dark.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
+    /// English or Chinese.
+    #[arg(long, value_enum, default_value_t = app::Language::English)]
+    pub language: app::Language,
 }
 
 /// A name that is no integrator's.

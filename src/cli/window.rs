@@ -10,10 +10,10 @@ use crate::app;
 use crate::scene::{self, registry};
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
-    let ShotArgs { scene, output, size, no_panel, curve, study, learn, motion, compare, theme } = args;
+    let ShotArgs { scene, output, size, no_panel, curve, study, learn, motion, compare, theme, language } = args;
     let compare = compare.map(|panes| panes.0).unwrap_or_default();
     let learn = learn.map(usize::from);
-    let options = app::ShotOptions { size, panel: !no_panel, curve, study, learn, motion, compare, theme };
+    let options = app::ShotOptions { size, panel: !no_panel, curve, study, learn, motion, compare, theme, language };
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
     if !options.compare.is_empty() && scene.analysis == scene::Analysis::Dynamic {
@@ -33,10 +33,14 @@ pub(super) fn run_default() -> Result<ExitCode, CliError> {
 }
 
 pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliError> {
-    let (scene, simulation) = simulate(&source)?;
+    let scene = scene::open(&source)?;
+    let simulation = || Ok::<_, CliError>(simulate(&source)?.1);
+    // A window does not wait for a large mesh; what is wrong with a small one is said without a window.
+    let small = if app::opens_beside(&scene) { None } else { Some(simulation()?) };
     match app::Display::open() {
-        Ok(display) => app::run(display, source, scene, simulation)?,
+        Ok(display) => app::run(display, source, scene, small)?,
         Err(reason) => {
+            let simulation = small.map_or_else(simulation, Ok)?;
             let picture = output.display();
             text::print(&format!("No window: {reason}.\nSolving the scene instead; the picture goes to {picture}.\n"))?;
             let args = RequiredSceneArgs {

@@ -27,6 +27,10 @@ pub struct Linear {
 }
 
 impl Method for Linear {
+    fn copy(&self) -> Box<dyn Method> {
+        Box::new(Self { factorized: false, ..self.clone() })
+    }
+
     fn restart(&mut self, why: Restart) {
         let keeps_factor = matches!(why, Restart::AtRest | Restart::NewLoads);
         *self = Self { factorized: self.factorized && keeps_factor, ..Self::default() };

@@ -108,6 +108,9 @@ pub enum Restart {
 
 /// What makes a method. It may remember: a new one starts at rest.
 pub trait Method: std::fmt::Debug + Send + Sync {
+    /// A copy as it stands, without what it keeps for the iterations to come: it finds that again.
+    fn copy(&self) -> Box<dyn Method>;
+
     /// Forgets the iteration that was, and what the restart makes useless.
     fn restart(&mut self, why: Restart);
 

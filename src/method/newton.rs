@@ -156,6 +156,10 @@ impl Newton {
 }
 
 impl Method for Newton {
+    fn copy(&self) -> Box<dyn Method> {
+        Box::new(self.clone())
+    }
+
     fn restart(&mut self, _: Restart) {
         // The room for it is kept: a frame allocates nothing.
         *self = Self { base: self.base.take(), ..Self::default() };

@@ -34,6 +34,10 @@ impl Default for Warped {
 }
 
 impl Method for Warped {
+    fn copy(&self) -> Box<dyn Method> {
+        Box::new(self.clone())
+    }
+
     fn restart(&mut self, _: Restart) {
         *self = Self::default();
     }

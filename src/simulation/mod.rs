@@ -126,7 +126,7 @@ pub struct Simulation {
 }
 
 /// A scene, its equations, and where the body is.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Body {
     scene: Scene,
     problem: Problem,
@@ -288,6 +288,14 @@ impl Simulation {
         }
         self.judge();
         Ok(())
+    }
+
+    /// A copy of a search as it stands, for who looks on while the search goes on elsewhere. It has no memory for
+    /// iterations: that is made where it goes on itself. `None` of a motion.
+    #[must_use]
+    pub fn snapshot(&self) -> Option<Self> {
+        let process = Process::Search(Box::new(self.search()?.copy()));
+        Some(Self { body: self.body.clone(), process, status: self.status.clone() })
     }
 
     /// Sets the components of a force, N; `load` counts the scene's loads from 0.

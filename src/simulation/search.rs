@@ -21,7 +21,8 @@ pub(super) struct Search {
     /// Displacement and turns before the present iteration.
     previous: (Vec<Vector2<f64>>, Vec<f64>),
     forces: Forces,
-    workspace: Workspace,
+    /// Made when it is needed first.
+    workspace: Option<Workspace>,
     residual: f64,
     iterations: u32,
     status: Status,
@@ -41,7 +42,7 @@ impl Search {
             method: (body.scene.solver.method.entry().start)(),
             previous: (body.state.displacement.clone(), body.state.turns.clone()),
             forces: Forces::new(body.state.displacement.len()),
-            workspace: Workspace::new(body.problem.system())?,
+            workspace: Some(Workspace::new(body.problem.system())?),
             residual: 0.0,
             iterations: 0,
             status: Status::Running,
@@ -53,11 +54,40 @@ impl Search {
         Ok(search)
     }
 
+    /// What is known of it: a copy without the memory for iterations, which it makes where it goes on.
+    pub fn copy(&self) -> Self {
+        Self {
+            method: self.method.copy(),
+            previous: (Vec::new(), Vec::new()),
+            forces: self.forces.clone(),
+            workspace: None,
+            residual: self.residual,
+            iterations: self.iterations,
+            status: self.status.clone(),
+            certificate: self.certificate,
+            timings: self.timings,
+            last_iteration: self.last_iteration,
+        }
+    }
+
+    /// Memory to work in, to be given back; where there is none the search ends.
+    fn take_workspace(&mut self, problem: &Problem) -> Option<Workspace> {
+        let workspace = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
+        workspace.map_err(|error| self.status = Reason::Iteration(error.into()).into()).ok()
+    }
+
+    /// The workspace's matrix is no tangent of the present state any more.
+    fn forget_tangent(&mut self) {
+        if let Some(workspace) = &mut self.workspace {
+            workspace.tangent = None;
+        }
+    }
+
     /// Goes on after an edit; `before` is the scene that was. The state is kept unless it is of no use.
     pub fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SolverError> {
         let why = match change {
             Change::Mesh | Change::Unknowns => {
-                self.workspace = Workspace::new(body.problem.system())?;
+                self.workspace = Some(Workspace::new(body.problem.system())?);
                 Restart::NewUnknowns
             }
             Change::Stiffness => Restart::NewStiffness,
@@ -66,7 +96,7 @@ impl Search {
         let moments = |scene: &Scene| scene.loads.iter().any(|load| load.is_moment());
         if moments(before) || moments(&body.scene) {
             // The exact tangent has the moments in it.
-            self.workspace.tangent = None;
+            self.forget_tangent();
         }
         let same_method = body.scene.solver.method == before.solver.method;
         let same_unknowns = change <= Change::Stiffness;
@@ -102,6 +132,7 @@ impl Search {
         self.certificate = None;
         self.timings = Timings::default();
         self.last_iteration = Timings::default();
+        let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         let mut unmeasured = Timings::default();
         if why == Restart::NewLoads {
             // Forces within the body are what they were.
@@ -112,17 +143,18 @@ impl Search {
                 self.method.restart(why);
             }
             let wanted = (self.method.tangent(), self.method.load_factor());
-            self.measure_forces(body, why == Restart::AtRest, wanted, &mut unmeasured);
+            self.measure_forces(body, &mut workspace, why == Restart::AtRest, wanted, &mut unmeasured);
         }
-        let verdict = self.with_method(body, &mut unmeasured, |method, it| method.judge(it));
-        self.follow(body, verdict, &mut unmeasured);
+        let verdict = self.with_method(body, &mut workspace, &mut unmeasured, |method, it| method.judge(it));
+        self.follow(body, &mut workspace, verdict, &mut unmeasured);
+        self.workspace = Some(workspace);
     }
 
     /// A hand has taken hold, moved or let go.
     pub fn pulled(&mut self, body: &mut Body, moved_only: bool) {
         let why = if moved_only { Restart::NewLoads } else { Restart::NewStiffness };
         // The tangent has the hand in it.
-        self.workspace.tangent = None;
+        self.forget_tangent();
         self.method.restart(why);
         self.restart(body, why);
     }
@@ -132,26 +164,28 @@ impl Search {
         if self.status != Status::Running {
             return;
         }
+        let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         let mut timings = Timings::default();
         let State { displacement, turns, .. } = &body.state;
-        self.previous.0.copy_from_slice(displacement);
-        self.previous.1.copy_from_slice(turns);
-        let iterated = self.with_method(body, &mut timings, |method, it| method.iterate(it));
+        self.previous.0.clone_from(displacement);
+        self.previous.1.clone_from(turns);
+        let iterated = self.with_method(body, &mut workspace, &mut timings, |method, it| method.iterate(it));
         self.iterations += 1;
         let measured = iterated.and_then(|()| {
-            self.measure(body, &mut timings);
+            self.measure(body, &mut workspace, &mut timings);
             if self.residual.is_finite() { Ok(()) } else { Err(IterationError::NotFinite) }
         });
         if measured.is_err() {
             body.state.displacement.copy_from_slice(&self.previous.0);
             body.state.turns.copy_from_slice(&self.previous.1);
-            self.measure(body, &mut timings);
+            self.measure(body, &mut workspace, &mut timings);
         }
-        let verdict = self.with_method(body, &mut timings, |method, it| match measured {
+        let verdict = self.with_method(body, &mut workspace, &mut timings, |method, it| match measured {
             Ok(()) => method.judge(it),
             Err(error) => method.recover(it, error),
         });
-        self.follow(body, verdict, &mut timings);
+        self.follow(body, &mut workspace, verdict, &mut timings);
+        self.workspace = Some(workspace);
         self.timings.add(&timings);
         self.last_iteration = timings;
     }
@@ -160,6 +194,7 @@ impl Search {
     fn with_method<T>(
         &mut self,
         body: &mut Body,
+        workspace: &mut Workspace,
         timings: &mut Timings,
         work: impl FnOnce(&mut dyn Method, &mut Iteration<'_>) -> T,
     ) -> T {
@@ -169,17 +204,17 @@ impl Search {
             residual: self.residual,
             tolerances: tolerances(&body.scene.solver),
             state: &mut body.state,
-            workspace: &mut self.workspace,
+            workspace,
             timings,
         };
         work(self.method.as_mut(), &mut iteration)
     }
 
     /// Does what the method's verdict asks for.
-    fn follow(&mut self, body: &mut Body, verdict: Verdict, timings: &mut Timings) {
+    fn follow(&mut self, body: &mut Body, workspace: &mut Workspace, verdict: Verdict, timings: &mut Timings) {
         match verdict {
             Verdict::Continue => {}
-            Verdict::Changed => self.measure(body, timings),
+            Verdict::Changed => self.measure(body, workspace, timings),
             Verdict::Converged => self.status = Status::Converged,
             Verdict::Stop(reason) => self.status = reason.into(),
         }
@@ -188,26 +223,34 @@ impl Search {
             self.status = Reason::IterationLimit(most).into();
             self.method.stop(&mut body.state);
             // What is missing to the whole load.
-            self.measure_forces(body, true, (None, 1.0), timings);
+            self.measure_forces(body, workspace, true, (None, 1.0), timings);
         }
     }
 
     /// Rotations, forces and residual of the current state under the load that is on the body at present, and the
     /// tangent that the next iteration needs.
-    fn measure(&mut self, body: &mut Body, timings: &mut Timings) {
-        self.measure_forces(body, true, (self.method.tangent(), self.method.load_factor()), timings);
+    fn measure(&mut self, body: &mut Body, workspace: &mut Workspace, timings: &mut Timings) {
+        let wanted = (self.method.tangent(), self.method.load_factor());
+        self.measure_forces(body, workspace, true, wanted, timings);
     }
 
     /// Forces and residual, and a tangent where one is wanted, under a load factor; rotations `follow` a displacement that
     /// is new.
-    fn measure_forces(&mut self, body: &mut Body, follow: bool, wanted: (Option<Tangent>, f64), timings: &mut Timings) {
+    fn measure_forces(
+        &mut self,
+        body: &mut Body,
+        workspace: &mut Workspace,
+        follow: bool,
+        wanted: (Option<Tangent>, f64),
+        timings: &mut Timings,
+    ) {
         self.residual = measure(
             &body.problem,
             &mut body.state,
             (self.method.kinematics(), follow),
             wanted,
             &mut self.forces,
-            &mut self.workspace,
+            workspace,
             timings,
         );
     }
@@ -221,7 +264,10 @@ impl Search {
         if holds || self.status == Status::Running || self.kinematics() == Kinematics::Linear {
             return Certificate::default();
         }
-        let Self { forces, workspace, method, .. } = self;
+        let made = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
+        let Ok(made) = made else { return Certificate::default() };
+        let workspace = self.workspace.insert(made);
+        let Self { forces, method, .. } = self;
         let load_factor = method.load_factor();
         let certificate = timed(&mut self.timings.certify, || Certificate {
             fixed_point_rho: fixed_point_rho(problem, state, load_factor, forces, workspace),

@@ -53,6 +53,13 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
         .collect()
 }
 
+/// About how long [`times_from_rest`] takes, where a run takes so long.
+#[must_use]
+pub fn expected_time(run: Duration) -> Duration {
+    let [all, fewest] = [REPETITIONS, FEWEST].map(|repetitions| run * (WARM_UP + repetitions) as u32);
+    all.min(fewest.max(LONG))
+}
+
 /// How often a run is timed.
 #[derive(Clone, Debug)]
 pub(super) struct Runs {

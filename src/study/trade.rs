@@ -5,11 +5,12 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use nalgebra::Vector2;
 
-use super::reference::{Reference, end, first_probe, system_of};
-use super::timing::times_from_rest;
+use super::reference::{Reference, end, finest_element, first_probe, system_of};
+use super::timing::{expected_time, times_from_rest};
 use super::{parallel, pareto};
 use crate::assembly::System;
 use crate::dynamics::StopReason;
@@ -170,7 +171,7 @@ pub enum StudyError {
 /// How far a study is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress<'a> {
-    /// Fraction that is done, 0 to 1; guessed from sizes.
+    /// Fraction that is done, 0 to 1: of the time that is expected, from sizes and from what has been timed so far.
     pub fraction: f64,
     /// What is measured now.
     pub now: &'a str,
@@ -192,6 +193,8 @@ pub enum Extent {
 
 /// The most iterations that are looked at, for methods that do not end before.
 const MOST_ITERATIONS: u32 = 20;
+/// The part of a study's time that goes by before anything is timed.
+const ENDS_SHARE: f64 = 0.1;
 /// The numbers of iterations that are kept.
 const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, MOST_ITERATIONS];
 
@@ -202,20 +205,31 @@ impl Study {
     /// [`StudyError`].
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
         let meshes = meshes(scene, extent);
-        let all: f64 = meshes.iter().map(|m| m.weight).sum();
         let mut study = Self::begin(scene, observe)?;
         // What is not timed first, on all cores: the timed part is then alone on the machine.
         let ends = |mesh: &MeshChoice| MeshEnds::find(scene, mesh);
-        let ends = parallel::map(&meshes, ends, |_| {
-            observe(Progress { fraction: 0.0, now: "the ends of the methods", so_far: None })
+        let ends = parallel::map(&meshes, ends, |done| {
+            let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
+            observe(Progress { fraction, now: "the ends of the methods", so_far: None })
         });
+        let ends = ends.into_iter().map(|ends| ends.ok_or(StudyError::Cancelled)?).collect::<Result<Vec<_>, _>>()?;
+        let all: f64 = ends.iter().map(MeshEnds::expected_time).sum();
+        // The likely answers first: those of the element that converges fastest.
+        let mut order: Vec<_> = meshes.iter().zip(&ends).collect();
+        order.sort_by_key(|(mesh, _)| mesh.element != finest_element(scene));
         let mut done = 0.0;
-        for (mesh, ends) in meshes.iter().zip(ends) {
-            let fraction = done / all;
-            let ends = ends.ok_or(StudyError::Cancelled)??;
-            study.measure(scene, mesh, &ends, &mut |now| check(observe(Progress { fraction, now, so_far: None })))?;
-            done += mesh.weight;
-            check(observe(Progress { fraction: done / all, now: "", so_far: Some(&study) }))?;
+        for (mesh, ends) in order {
+            let time = ends.expected_time();
+            let fraction = |part: f64| ENDS_SHARE + (1.0 - ENDS_SHARE) * (done + part * time) / all;
+            study.measure(scene, mesh, ends, &mut |part, now| {
+                check(observe(Progress { fraction: fraction(part), now, so_far: None }))
+            })?;
+            study.measurements.sort_by_key(|m| {
+                let of = |mesh: &MeshChoice| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
+                meshes.iter().position(of)
+            });
+            check(observe(Progress { fraction: fraction(1.0), now: "", so_far: Some(&study) }))?;
+            done += time;
         }
         Ok(study)
     }
@@ -235,21 +249,22 @@ impl Study {
         })
     }
 
-    /// Adds every method on a mesh, and marks the front anew. `say` is told what is measured, and calls it off.
+    /// Adds every method on a mesh, and marks the front anew. `say` is told which part of it is done and what is measured,
+    /// and calls it off.
     pub(super) fn measure(
         &mut self,
         scene: &Scene,
         mesh: &MeshChoice,
         ends: &MeshEnds,
-        say: &mut dyn FnMut(&str) -> Result<(), StudyError>,
+        say: &mut dyn FnMut(f64, &str) -> Result<(), StudyError>,
     ) -> Result<(), StudyError> {
         let MeshChoice { element, cells, .. } = *mesh;
         let words = mesh_words(element, cells);
         let truth = self.reference.first().displacement;
         let percent = |a, b| self.reference.percent(a, b);
-        let MeshEnds { system, exact, linear } = ends;
-        for method in METHODS.iter().map(|m| m.kind) {
-            say(&format!("{words}, {}", method.id()))?;
+        let MeshEnds { system, exact, linear, .. } = ends;
+        for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
+            say(number as f64 / METHODS.len() as f64, &format!("{words}, {}", method.id()))?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` has no number of iterations to choose: it ends by itself.
             let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };
@@ -333,17 +348,25 @@ pub(super) struct MeshEnds {
     exact: Vector2<f64>,
     /// … and that of linear theory.
     linear: Vector2<f64>,
+    /// The time it took to find them.
+    time: Duration,
 }
 
 impl MeshEnds {
     pub fn find(scene: &Scene, mesh: &MeshChoice) -> Result<Self, StudyError> {
         let meshed = mesh.with(MethodKind::Newton).apply(scene);
         let system = system_of(&meshed)?;
+        let start = Instant::now();
         let first_end = |method| -> Result<_, StudyError> {
             Ok(end(&meshed, method, &system)?.first().copied().unwrap_or_default())
         };
         let (exact, linear) = (first_end(MethodKind::Newton)?, first_end(MethodKind::Linear)?);
-        Ok(Self { system, exact, linear })
+        Ok(Self { system, exact, linear, time: start.elapsed() })
+    }
+
+    /// About how long its measurement takes, s.
+    fn expected_time(&self) -> f64 {
+        METHODS.len() as f64 * expected_time(self.time).as_secs_f64()
     }
 }
 

@@ -87,9 +87,11 @@ impl Tuning {
             }
             let MeshChoice { weight, .. } = *mesh;
             let before = study.measurements.len();
-            let fraction = done / all;
             let ends = MeshEnds::find(scene, mesh)?;
-            study.measure(scene, mesh, &ends, &mut |now| check(observe(Progress { fraction, now, so_far: None })))?;
+            study.measure(scene, mesh, &ends, &mut |part, now| {
+                let fraction = (done + part * weight) / all;
+                check(observe(Progress { fraction, now, so_far: None }))
+            })?;
             done += weight;
             let added = &study.measurements[before..];
             let met = demand.max_error_percent.is_some() && added.iter().any(|m| m.converged && study.meets(m, demand));

@@ -15,22 +15,23 @@ use self::setting::PANES;
 use self::trace::Trace;
 use super::action::{Action, ViewOptions};
 use super::eye::Eye;
-use super::finder::LISTEN;
-use super::headline::semibold;
+use super::headline::{semibold, truth_words};
+use super::job::LISTEN;
+use super::language::{count, fill, percent, sentence, tr, translated};
 use super::legend::Mark;
 use super::overlay::{self, Overlay, Projection};
 use super::palette::{BODY, HEADLINE, Palette, SMALL};
 use super::playback::Playback;
-use super::pointer::{Look, Reach, Wish};
+use super::pointer::{Body, Look, Reach, Wish};
 use super::stage::viewport;
 use super::toolbar::{Icon, choice, icon_button};
-use super::verdict::{Errors, error_color, sentence};
+use super::verdict::{Errors, error_color};
 use crate::assembly::System;
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::{Reference, Setting};
-use crate::words::{count, engineering, percent, prefix, three_digits, two_digits};
+use crate::words::{engineering, prefix, three_digits, two_digits};
 
 mod pane;
 mod setting;
@@ -60,7 +61,8 @@ const LOW_FOR_TWO_ROWS: f32 = 680.0;
 /// What the comparison is of, and how it is looked at.
 pub(super) struct CompareInput<'a> {
     pub scene: &'a Scene,
-    /// The scene's equations.
+    /// The scene that these equations are of.
+    pub shown: &'a Scene,
     pub system: &'a Arc<System>,
     pub truth: Option<&'a Reference>,
     pub view: &'a ViewOptions,
@@ -184,7 +186,7 @@ impl Compare {
         let (moves, holds) = ctx.input(|i| (i.pointer.delta() != egui::Vec2::ZERO, i.pointer.any_down()));
         self.trace.follow(input.scene);
         let equations =
-            if self.is_changed(input.scene) { self.equations(input.scene, input.system) } else { Vec::new() };
+            if self.is_changed(input.scene) { self.equations(input.shown, input.system) } else { Vec::new() };
         let mut is_new = false;
         let share = WORK / u32::try_from(self.panes.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes {
@@ -231,7 +233,7 @@ impl Compare {
     fn presets(&mut self, ui: &mut Ui, input: &CompareInput<'_>, shows_trace: bool) {
         let elements: Vec<ElementKind> = input.scene.elements().collect();
         let join = |words: Vec<&str>| words.join(" | ");
-        let methods = join(METHODS_PRESET.iter().map(|method| method.id()).collect());
+        let methods = join(METHODS_PRESET.iter().map(|method| tr(method.id())).collect());
         let meshed = join(elements.iter().map(|element| element.id()).collect());
         let chosen = [PaneSetting::default(), input.chosen.map(PaneSetting::from).unwrap_or_default()];
         let presets = [
@@ -250,7 +252,7 @@ impl Compare {
                 "The mesh of this file can have one element only",
             ),
             (
-                "present | budget".to_owned(),
+                tr("present | budget").to_owned(),
                 chosen.to_vec(),
                 input.chosen.is_some(),
                 "The present setting beside the fastest that meets the limits of Budget",
@@ -262,20 +264,20 @@ impl Compare {
             for (name, settings, enabled, tip, unless) in presets {
                 let is_chosen = enabled && self.settings() == settings;
                 let button = ui.add_enabled(enabled, egui::Button::selectable(is_chosen, name));
-                if button.on_hover_text(tip).on_disabled_hover_text(unless).clicked() {
+                if button.on_hover_text(tr(tip)).on_disabled_hover_text(tr(unless)).clicked() {
                     self.set(&settings);
                 }
             }
-            let more = ui.add_enabled(self.panes.len() < *PANES.end(), egui::Button::new("+ Pane"));
-            if more.on_hover_text("Another pane").on_disabled_hover_text("Four are the most").clicked() {
+            let more = ui.add_enabled(self.panes.len() < *PANES.end(), egui::Button::new(tr("+ Pane")));
+            if more.on_hover_text(tr("Another pane")).on_disabled_hover_text(tr("Four are the most")).clicked() {
                 let used = |method: MethodKind| self.panes.iter().any(|pane| pane.setting.method == Some(method));
                 let unused = METHODS.iter().map(|entry| entry.kind).find(|&method| !used(method));
                 self.panes.push(Pane::new(unused.map(PaneSetting::of_method).unwrap_or_default()));
                 self.fit();
             }
             let icon = if shows_trace { Icon::Close } else { Icon::Open };
-            let button = icon_button(ui, icon, "Load curve", Some("Load curve"), shows_trace);
-            if button.on_hover_text("The load curve, traced while the load is dragged").clicked() {
+            let button = icon_button(ui, icon, tr("Load curve"), Some(tr("Load curve")), shows_trace);
+            if button.on_hover_text(tr("The load curve, traced while the load is dragged")).clicked() {
                 self.shows_trace = Some(!shows_trace);
             }
         });
@@ -413,7 +415,7 @@ impl Compare {
         let Some(pane) = self.panes.get(number) else { return };
         let palette = Palette::new(ui.visuals());
         let shown = pane.setting.of(input.scene);
-        let name = format!("Pane {}", number + 1);
+        let name = fill!("Pane %{n}", n = number + 1);
         ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
         ui.horizontal(|ui| {
             let color = shown.method.map_or(palette.text, |method| palette.method(method));
@@ -437,7 +439,7 @@ impl Compare {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     let button = ui
                         .add(egui::Button::new(RichText::new("×").size(18.0)).frame(false).min_size(vec2(24.0, 24.0)));
-                    let words = format!("Close pane {}", number + 1);
+                    let words = fill!("Close pane %{n}", n = number + 1);
                     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));
                     if button.on_hover_text(words).clicked() {
                         *change = Some((number, None));
@@ -453,19 +455,21 @@ impl Compare {
         let palette = Palette::new(ui.visuals());
         let setting = pane.setting.of(input.scene);
         let (bad, words) = match pane.doing() {
-            Doing::Refused(reason) => (true, sentence(reason)),
+            Doing::Refused(reason) => (true, sentence(&translated(reason))),
             Doing::Rests(end) => match end.status.failure() {
-                Some(reason) => (true, format!("Does not converge: {reason}.")),
+                Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = translated(&reason))),
                 None => {
-                    let stopped = if end.status.is_success() { "" } else { ", stopped" };
+                    let stopped = if end.status.is_success() { "" } else { tr(", stopped") };
                     let time = engineering(two_digits(end.seconds), "s");
                     // Pictures without bars have nothing that differs from run to run.
                     let time = if input.view.bars { format!("{time} · ") } else { String::new() };
                     (false, format!("{time}{}{stopped}", count(end.iterations, "iteration")))
                 }
             },
-            Doing::Works(iterations) => (false, format!("solving: {}", count(iterations, "iteration"))),
-            Doing::Iterates(_) if !input.running => (false, "paused".to_owned()),
+            Doing::Works(iterations) => {
+                (false, fill!("solving: %{iterations}", iterations = count(iterations, "iteration")))
+            }
+            Doing::Iterates(_) if !input.running => (false, tr("paused").to_owned()),
             Doing::Iterates(iterations) => (false, count(iterations, "iteration")),
         };
         let error = pane.error.filter(|_| !bad);
@@ -489,13 +493,14 @@ impl Compare {
         let galley = painter.layout_job(job);
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
         painter.galley(at.min, galley, ink);
-        let error = error.map_or_else(String::new, |error| format!("error {}, ", percent(error)));
-        let spoken = format!("{name}: {setting}: {error}{words}");
+        let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));
+        let spoken = format!("{name}: {}: {error}{words}", setting.words());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
-        let truth = input.truth.map_or_else(|| "the truth, once that is known".to_owned(), ToString::to_string);
-        response.on_hover_text(format!(
-            "{words}\nError: distance of the first probe from {truth}. Time and iterations: of a solve from rest."
-        ));
+        let tip = fill!(
+            "Error: distance of the first probe from %{truth}. Time and iterations: of a solve from rest.",
+            truth = truth_words(input.truth)
+        );
+        response.on_hover_text(format!("{words}\n{tip}"));
     }
 
     /// The body of a pane, over what its pass has drawn.
@@ -515,7 +520,7 @@ impl Compare {
             handles: &handles,
             scales: eye.scales([place.width(), place.height()].map(f64::from)),
         };
-        let wish = pane.pointer.follow(ui, &response, &reach, None);
+        let wish = pane.pointer.follow(ui, &response, &reach, Body::None);
         match wish.look {
             Look::Same => {}
             Look::At(camera) => {
@@ -555,7 +560,13 @@ impl Compare {
         }
         if pane.is_outdated() {
             painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.6));
-            painter.text(place.center(), Align2::CENTER_CENTER, "solving…", FontId::proportional(BODY), palette.text);
+            painter.text(
+                place.center(),
+                Align2::CENTER_CENTER,
+                tr("solving…"),
+                FontId::proportional(BODY),
+                palette.text,
+            );
         } else if pane.has_failed() {
             // What is no equilibrium is no result.
             painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.55));
@@ -573,7 +584,7 @@ impl Compare {
         let mut entry = |words: &str, mark: Mark, color: Color32| {
             mark.paint(&painter, pos2(x, middle), color);
             let at = pos2(x + Mark::WIDTH + 6.0, middle);
-            let place = painter.text(at, Align2::LEFT_CENTER, words, font.clone(), palette.secondary);
+            let place = painter.text(at, Align2::LEFT_CENTER, tr(words), font.clone(), palette.secondary);
             x = place.right() + 16.0;
         };
         if view.exact {
@@ -595,7 +606,7 @@ impl Compare {
         overlay::color_bar(&painter, bar, palette.map(view.field));
         let left = put(bar.left() - 8.0, low);
         if left - x > 140.0 {
-            painter.text(pos2(left, middle), Align2::RIGHT_CENTER, view.field.name(), font, palette.secondary);
+            painter.text(pos2(left, middle), Align2::RIGHT_CENTER, tr(view.field.name()), font, palette.secondary);
         }
     }
 }
@@ -642,7 +653,7 @@ fn pick<T: Copy + PartialEq>(
                 *value = Some(kind);
             }
         }
-        let about = format!("{panels} at present; follows the panel");
+        let about = fill!("%{setting} at present; follows the panel", setting = tr(panels));
         if choice(ui, palette, value.is_none(), of_panel, &about).clicked() {
             *value = None;
         }
@@ -651,7 +662,7 @@ fn pick<T: Copy + PartialEq>(
 }
 
 fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut dyn FnMut(&mut Ui)) {
-    let words = format!("{pane} {what}");
+    let (words, text) = (format!("{pane} {}", tr(what)), tr(text));
     let combo = ComboBox::from_id_salt(&words).selected_text(RichText::new(text)).width(width).height(420.0).truncate();
     let response = combo.show_ui(ui, menu).response;
     response.widget_info(|| {
@@ -668,14 +679,14 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
     let words = |[along, across]: [u32; 2]| format!("{along}×{across}");
     let Some(beam) = &scene.beam else {
         return combo(ui, pane, "mesh", "as meshed", width, &mut |ui| {
-            ui.label("The mesh is that of the file.");
+            ui.label(tr("The mesh is that of the file."));
         });
     };
     let own = beam.cells;
     let text = words(cells.unwrap_or(own));
     combo(ui, pane, "mesh", &text, width, &mut |ui| {
         ui.set_width(200.0);
-        let about = format!("{} at present; follows the panel", words(own));
+        let about = fill!("%{setting} at present; follows the panel", setting = words(own));
         if choice(ui, palette, cells.is_none(), "the panel's", &about).clicked() {
             *cells = None;
         }

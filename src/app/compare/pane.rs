@@ -1,9 +1,8 @@
 //! A pane: a simulation of its own on the scene with a setting of its own. Small ones iterate between two frames, large
 //! ones beside the window.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use egui::{Pos2, Rect, Stroke, Ui};
@@ -13,18 +12,18 @@ use super::setting::PaneSetting;
 use crate::app::action::ViewOptions;
 use crate::app::arrow::Forces;
 use crate::app::drawing::Drawing;
+use crate::app::job::{Heard, Job};
 use crate::app::overlay::Projection;
 use crate::app::pointer::Pointer;
 use crate::app::probe;
 use crate::app::shape::Shape;
+use crate::app::size::{MOST_UNKNOWNS, unknowns};
 use crate::assembly::System;
 use crate::render::Camera;
-use crate::scene::{Beam, ElementKind, MeshFile, Scene};
+use crate::scene::{Beam, MeshFile, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status, probe_results};
 use crate::study::Reference;
 
-/// More unknowns than this are not solved between two frames.
-const MOST_UNKNOWNS: f64 = 4000.0;
 /// A solve of a load that is no longer wanted may take so long.
 const LONGEST_OUTDATED: Duration = Duration::from_millis(300);
 
@@ -80,19 +79,12 @@ enum Body {
     Refused(String),
 }
 
-/// A solve beside the window. Dropped, it is called off.
+/// A solve beside the window, which says how many iterations it has made.
 #[derive(Debug)]
 struct Errand {
-    receiver: Receiver<Result<Box<Simulation>, SimulationError>>,
-    cancel: Arc<AtomicBool>,
-    iterations: Arc<AtomicU32>,
+    job: Job<u32, Result<Box<Simulation>, SimulationError>>,
+    iterations: u32,
     since: Instant,
-}
-
-impl Drop for Errand {
-    fn drop(&mut self) {
-        self.cancel.store(true, Ordering::Relaxed);
-    }
 }
 
 /// What is to be solved.
@@ -122,12 +114,12 @@ impl Task {
         })
     }
 
-    fn solve(self, cancel: &AtomicBool, iterations: &AtomicU32) -> Result<Box<Simulation>, SimulationError> {
+    /// Solves it; `say` is told the iterations made, and calls the rest off.
+    fn solve(self, say: impl Fn(u32) -> ControlFlow<()>) -> Result<Box<Simulation>, SimulationError> {
         let most = self.most_iterations;
         let mut simulation = self.begin()?;
-        while !has_ended(&simulation, most) && !cancel.load(Ordering::Relaxed) {
+        while !has_ended(&simulation, most) && say(simulation.iterations()).is_continue() {
             simulation.step();
-            iterations.store(simulation.iterations(), Ordering::Relaxed);
         }
         Ok(simulation)
     }
@@ -214,7 +206,7 @@ impl Pane {
         match (&self.end, &self.body) {
             (Some(end), _) => Doing::Rests(end),
             (None, Body::Refused(reason)) => Doing::Refused(reason),
-            (None, Body::Away(errand)) => Doing::Works(errand.iterations.load(Ordering::Relaxed)),
+            (None, Body::Away(errand)) => Doing::Works(errand.iterations),
             (None, Body::Here(simulation)) => Doing::Iterates(simulation.iterations()),
             (None, Body::None) => Doing::Iterates(0),
         }
@@ -342,16 +334,18 @@ impl Pane {
 
     /// Takes the simulation that comes back; says whether it is not away.
     fn hear(&mut self) -> bool {
-        let Body::Away(errand) = &self.body else { return true };
-        let heard = errand.receiver.try_recv();
+        let Body::Away(errand) = &mut self.body else { return true };
         if self.given != self.wanted && errand.since.elapsed() > LONGEST_OUTDATED {
-            errand.cancel.store(true, Ordering::Relaxed);
+            errand.job.call_off();
         }
-        self.body = match heard {
-            Err(TryRecvError::Empty) => return false,
-            Ok(Ok(simulation)) => Body::Here(simulation),
-            Ok(Err(error)) => Body::Refused(error.to_string()),
-            Err(TryRecvError::Disconnected) => Body::Refused("the solve ended unexpectedly".to_owned()),
+        self.body = loop {
+            match errand.job.hear() {
+                Heard::News(iterations) => errand.iterations = iterations,
+                Heard::Nothing => return false,
+                Heard::Done(Ok(simulation)) => break Body::Here(simulation),
+                Heard::Done(Err(error)) => break Body::Refused(error.to_string()),
+                Heard::Died => break Body::Refused("the solve ended unexpectedly".to_owned()),
+            }
         };
         if self.given == self.wanted {
             self.conclude();
@@ -373,7 +367,7 @@ impl Pane {
         self.from_rest = simulation.is_none();
         let system = Equations::of(equations, &scene);
         let task = Task { simulation, scene, system, from_rest: false, most_iterations: self.setting.iterations };
-        self.is_large = is_large(&task.scene);
+        self.is_large = unknowns(&task.scene) > MOST_UNKNOWNS;
         if self.is_large {
             self.send(task);
         } else {
@@ -382,13 +376,8 @@ impl Pane {
     }
 
     fn send(&mut self, task: Task) {
-        let (sender, receiver) = channel();
-        let (cancel, iterations) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));
-        let errand = Errand { receiver, cancel: cancel.clone(), iterations: iterations.clone(), since: Instant::now() };
-        // Nobody listening is as good as being called off.
-        let work = move || drop(sender.send(task.solve(&cancel, &iterations)));
-        self.body = match std::thread::Builder::new().name("pane".to_owned()).spawn(work) {
-            Ok(_) => Body::Away(errand),
+        self.body = match Job::start("pane", move |line| task.solve(|iterations| line.say(iterations))) {
+            Ok(job) => Body::Away(Errand { job, iterations: 0, since: Instant::now() }),
             Err(error) => Body::Refused(format!("no thread for the solve: {error}")),
         };
     }
@@ -452,7 +441,7 @@ impl Pane {
             from_rest: false,
             most_iterations: self.setting.iterations,
         };
-        let solved = task.solve(&AtomicBool::new(false), &AtomicU32::new(0));
+        let solved = task.solve(|_| ControlFlow::Continue(()));
         self.body = solved.map_or_else(|error| Body::Refused(error.to_string()), Body::Here);
         (self.wanted, self.given) = (Some(wanted.clone()), Some(wanted));
         (self.from_rest, self.end) = (true, None);
@@ -499,23 +488,4 @@ impl Equations {
         let own = all.iter().find(|own| own.beam == scene.beam && own.mesh == scene.mesh);
         own.map(|own| own.system.clone())
     }
-}
-
-/// Whether a solve may take longer than a frame.
-fn is_large(scene: &Scene) -> bool {
-    // Nodes a side of a cell.
-    let along = if scene.element() == ElementKind::T6 { 2.0 } else { 1.0 };
-    let unknowns = match (&scene.beam, &scene.mesh) {
-        (Some(beam), _) => {
-            let [a, b] = beam.cells.map(|n| f64::from(n) * along + 1.0);
-            2.0 * a * b
-        }
-        // A node takes a line of the file, and is counted without its elements' lines.
-        (None, Some(mesh)) => {
-            let lines = mesh.text.as_ref().map_or(0, |text| text.lines().count());
-            2.0 * lines as f64 * along
-        }
-        (None, None) => 0.0,
-    };
-    unknowns > MOST_UNKNOWNS
 }

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use crate::app::language::{self, tr};
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
@@ -98,6 +99,18 @@ impl From<Setting> for PaneSetting {
             cells: setting.cells,
             iterations: Some(setting.iterations),
         }
+    }
+}
+
+impl PaneSetting {
+    /// What it is called in the window.
+    pub(super) fn words(&self) -> String {
+        let method = self.method.map(|method| tr(method.id()).to_owned());
+        let element = self.element.map(|element| element.id().to_owned());
+        let cells = self.cells.map(|[along, across]| format!("{along}×{across}"));
+        let iterations = self.iterations.map(|n| language::count(n, "iteration"));
+        let parts: Vec<String> = [method, element, cells, iterations].into_iter().flatten().collect();
+        if parts.is_empty() { tr("the scene").to_owned() } else { parts.join(" ") }
     }
 }
 

@@ -8,6 +8,7 @@ use super::setting::PaneSetting;
 use crate::app::action::Action;
 use crate::app::budget::{marker, question};
 use crate::app::finder::Finder;
+use crate::app::language::{fill, tr};
 use crate::app::palette::{BODY, Palette, SMALL};
 use crate::app::plot::still;
 use crate::scene::limits::{self, Limit};
@@ -235,7 +236,7 @@ impl Trace {
     /// Shows the curve of the panes; a press in it sets the load.
     pub(super) fn show(&mut self, ui: &mut Ui, scene: &Scene, panes: &[Pane], actions: &mut Vec<Action>) {
         let Some(axis) = self.axis else {
-            ui.centered_and_justified(|ui| ui.weak("The scene has no load whose curve could be traced."));
+            ui.centered_and_justified(|ui| ui.weak(tr("The scene has no load whose curve could be traced.")));
             return;
         };
         let list = (0.3 * ui.available_width()).clamp(150.0, 250.0);
@@ -270,16 +271,16 @@ impl Trace {
         let top = 1.2 * if known > 0.0 { known } else { good(true) };
         let top = if top > 0.0 { top } else { 1.0 };
         let unit = axis.limit.unit;
-        let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
-        let plot = still(&palette, "trace", (axis.name, unit), (&format!("{probe} moves"), "m"));
+        let probe = tr(scene.probes.first().map_or("probe", |probe| probe.name.as_str()));
+        let plot = still(&palette, "trace", (tr(axis.name), unit), (&fill!("%{probe} moves", probe = probe), "m"));
         let response = plot.show(ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [reach, top]));
-            let now = VLine::new("now", axis.magnitude).color(palette.load.gamma_multiply(0.7)).width(1.0);
+            let now = VLine::new(tr("now"), axis.magnitude).color(palette.load.gamma_multiply(0.7)).width(1.0);
             plot.vline(now.allow_hover(false));
             if !line.is_empty() {
-                plot.line(Line::new("exact beam", PlotPoints::from(line)).color(palette.exact).width(2.0));
+                plot.line(Line::new(tr("exact beam"), PlotPoints::from(line)).color(palette.exact).width(2.0));
             }
-            plot.points(Points::new("exact", truths).color(palette.exact).radius(5.0).shape(MarkerShape::Plus));
+            plot.points(Points::new(tr("exact"), truths).color(palette.exact).radius(5.0).shape(MarkerShape::Plus));
             // Dots in the same place lie in each other.
             for (setting, smaller) in settings.iter().copied().zip([0.0, 1.0, 2.0, 3.0]) {
                 let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
@@ -290,7 +291,7 @@ impl Trace {
                     let places = own.map(|dot| [dot.load, if good { dot.deflection } else { 0.03 * top }]);
                     places.filter(|p| p[1] <= top && p[0] <= reach).collect()
                 };
-                let name = setting.to_string();
+                let name = setting.words();
                 plot.points(
                     Points::new(name.clone(), drawn(true, false)).color(color).radius(3.8 - 0.7 * smaller).shape(shape),
                 );
@@ -298,12 +299,12 @@ impl Trace {
                     Points::new(name.clone(), drawn(true, true)).color(color).radius(7.0 - 1.5 * smaller).shape(shape),
                 );
                 let failed = [drawn(false, false), drawn(false, true)].concat();
-                let failed = Points::new(format!("{name} does not converge"), failed);
+                let failed = Points::new(fill!("%{setting} does not converge", setting = name), failed);
                 plot.points(failed.color(color).radius(4.0).shape(MarkerShape::Cross));
             }
         });
         let area = response.response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-        area.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Load curve"));
+        area.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, tr("Load curve")));
         if area.is_pointer_button_down_on()
             && let Some(at) = area.interact_pointer_pos()
             && let Some(direction) = self.direction
@@ -331,24 +332,24 @@ impl Trace {
         let palette = Palette::new(ui.visuals());
         ui.spacing_mut().item_spacing.y = 2.0;
         let load = engineering(three_digits(axis.magnitude), axis.limit.unit);
-        let head = format!("{} {load}", axis.name);
+        let head = format!("{} {load}", tr(axis.name));
         ui.add_space(2.0);
-        ui.label(egui::RichText::new(head).color(palette.load)).on_hover_text("Press in the plot to set it");
+        ui.label(egui::RichText::new(head).color(palette.load)).on_hover_text(tr("Press in the plot to set it"));
         if !self.line.is_empty() || !self.truths.is_empty() {
             let value = self.exact_at(axis.magnitude).map(|u| engineering(three_digits(u), "m"));
-            row(ui, &palette, palette.exact, None, "exact", &value.unwrap_or_default(), false);
+            row(ui, &palette, palette.exact, None, tr("exact"), &value.unwrap_or_default(), false);
         }
         for pane in panes {
             let setting = pane.setting.of(scene);
             let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
             let (value, bad) = match (pane.answer(), pane.doing()) {
-                (_, Doing::Refused(_)) => ("no solution".to_owned(), true),
+                (_, Doing::Refused(_)) => (tr("no solution").to_owned(), true),
                 (Some((probe, true)), _) => (engineering(three_digits(probe.u.norm()), "m"), false),
-                (Some((_, false)), _) => ("does not converge".to_owned(), true),
-                (None, _) => ("iterates".to_owned(), false),
+                (Some((_, false)), _) => (tr("does not converge").to_owned(), true),
+                (None, _) => (tr("iterates").to_owned(), false),
             };
             let mark = Some(marker(element).0);
-            row(ui, &palette, palette.method(method), mark, &setting.to_string(), &value, bad);
+            row(ui, &palette, palette.method(method), mark, &setting.words(), &value, bad);
         }
     }
 }

@@ -13,7 +13,8 @@ use egui::{
 use self::thumbnail::Thumbnail;
 use self::workshop::Workshop;
 use super::action::Action;
-use super::finder::LISTEN;
+use super::job::LISTEN;
+use super::language::tr;
 use super::palette::{BODY, Palette, SMALL};
 use super::panel::PanelInput;
 use crate::scene::{Analysis, Scene, registry};
@@ -84,15 +85,15 @@ impl Gallery {
     pub(super) fn show(&mut self, ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action>) {
         let palette = Palette::new(ui.visuals());
         let window = ui.ctx().content_rect().size();
-        let label = ui.label(RichText::new("Scene").color(palette.secondary));
+        let label = ui.label(RichText::new(tr("Scene")).color(palette.secondary));
         let opened = ComboBox::from_id_salt("scene")
-            .selected_text(&input.scene.name)
+            .selected_text(tr(&input.scene.name))
             .width(if wide { 190.0 } else { 120.0 })
             .height((window.y - 64.0).max(200.0))
             .truncate()
             .show_ui(ui, |ui| self.entries(ui, input, window.x, actions));
         self.is_open = opened.inner.is_some();
-        opened.response.labelled_by(label.id).on_hover_text(&input.scene.about);
+        opened.response.labelled_by(label.id).on_hover_text(tr(&input.scene.about));
     }
 
     fn entries(&mut self, ui: &mut Ui, input: &PanelInput<'_>, window: f32, actions: &mut Vec<Action>) {
@@ -107,15 +108,19 @@ impl Gallery {
         ui.set_width(width * columns as f32 + GAP * (columns - 1) as f32);
         ui.spacing_mut().item_spacing = vec2(GAP, GAP);
         ui.horizontal(|ui| {
-            if ui.button("Open a file…").on_hover_text("A scene file, or one that was used last (Ctrl+O)").clicked() {
+            if ui
+                .button(tr("Open a file…"))
+                .on_hover_text(tr("A scene file, or one that was used last (Ctrl+O)"))
+                .clicked()
+            {
                 actions.push(Action::OpenFile);
             }
-            ui.label(RichText::new("or drop one on the window").small().color(palette.secondary));
+            ui.label(RichText::new(tr("or drop one on the window")).small().color(palette.secondary));
         });
         // Who opens it by a key goes on by keys.
         let by_key = ui.input(|i| !i.pointer.any_down() && !i.pointer.any_released());
         for (analysis, heading) in GROUPS {
-            ui.label(RichText::new(heading).small().color(palette.secondary));
+            ui.label(RichText::new(tr(heading)).small().color(palette.secondary));
             let group: Vec<&Entry> = ENTRIES.iter().filter(|entry| entry.analysis == analysis).collect();
             for row in group.chunks(columns) {
                 ui.horizontal(|ui| {
@@ -144,7 +149,7 @@ impl Gallery {
         const TEXT: f32 = 12.0;
         let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_present, entry.id));
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(entry.about.as_str()));
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(tr(&entry.about)));
         if response.gained_focus() {
             response.scroll_to_me(None);
         }
@@ -175,10 +180,10 @@ impl Gallery {
         // On what is chosen or under the pointer only the text's own colour has the contrast.
         let quiet = if fill == palette.control { palette.secondary } else { palette.text };
         let mut job = LayoutJob::default();
-        job.append(&entry.name, 0.0, format(BODY, palette.text));
+        job.append(tr(&entry.name), 0.0, format(BODY, palette.text));
         job.append(entry.id, 8.0, format(SMALL, quiet));
         job.append("\n", 0.0, format(BODY, palette.text));
-        job.append(&entry.about, 0.0, format(SMALL, quiet));
+        job.append(tr(&entry.about), 0.0, format(SMALL, quiet));
         job.wrap = TextWrapping { max_width: rect.right() - PADDING - left, max_rows: 4, ..TextWrapping::default() };
         let galley = ui.painter().layout_job(job);
         let at = egui::pos2(left, rect.center().y - 0.5 * galley.size().y);

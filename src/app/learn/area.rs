@@ -6,10 +6,10 @@ use nalgebra::Vector2;
 use super::{Learn, Shown, triangle};
 use crate::app::action::Action;
 use crate::app::field::NumberField;
+use crate::app::language::{fill, percent, tr};
 use crate::app::palette::{HEADLINE, Palette, SMALL};
 use crate::scene::limits::Limit;
 use crate::scene::{Load, MethodKind};
-use crate::words::percent;
 
 /// The force on the tip, and the area of the body beside that of the exact solution.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
@@ -39,7 +39,7 @@ fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Ac
         _ => None,
     });
     let Some((number, [x, y])) = first else {
-        ui.label("There is no force: set the card up again.");
+        ui.label(tr("There is no force: set the card up again."));
         return;
     };
     let field = NumberField {
@@ -80,6 +80,7 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
     const FULL: f64 = 100.0;
     const NAME: f32 = 56.0;
     const NUMBER: f32 = 78.0;
+    let name = tr(name);
     let words = growth.map_or_else(|| "\u{2013}".to_owned(), growth_words);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     let painter = ui.painter();
@@ -97,6 +98,8 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
         let part = (growth.unwrap_or(0.0).abs() / FULL).min(1.0) as f32;
         painter.rect_filled(bar.with_max_x(bar.left() + part * bar.width()), 2.0, color);
     }
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("area, {name}: {words}")));
-    response.on_hover_text("Area over that at rest");
+    response.widget_info(|| {
+        WidgetInfo::labeled(Role::Label, true, fill!("area, %{name}: %{growth}", name = name, growth = words))
+    });
+    response.on_hover_text(tr("Area over that at rest"));
 }

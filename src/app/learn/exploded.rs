@@ -7,10 +7,10 @@ use super::frames::{angle_words, paint_picked};
 use super::triangle::{Triangle, frames};
 use super::{Learn, Shown, View, not_triangles};
 use crate::app::action::Action;
+use crate::app::language::{fill, percent, tr};
 use crate::app::palette::{Palette, SMALL};
 use crate::rotation::Rotation;
 use crate::simulation::Simulation;
-use crate::words::percent;
 
 /// How far the middles of the triangles are apart, over those at rest.
 const APART: f64 = 1.5;
@@ -57,28 +57,29 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     let palette = Palette::new(ui.visuals());
     let small = |text: &str| RichText::new(text).size(SMALL).color(palette.secondary);
     ui.horizontal(|ui| {
-        ui.label("As it is");
+        ui.label(tr("As it is"));
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).clamp(60.0, 260.0);
         let name = "Turned back";
         let slider = ui.add(Slider::new(&mut learn.turned, 0.0..=1.0).show_value(false));
-        let label = ui.label(name);
+        let label = ui.label(tr(name));
         slider
             .labelled_by(label.id)
-            .on_hover_text("From the bent beam to its triangles, each turned back by its own R");
+            .on_hover_text(tr("From the bent beam to its triangles, each turned back by its own R"));
     });
     ui.add_space(6.0);
     let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
         return not_triangles(ui, learn, actions);
     };
-    ui.label(format!("Triangle {}: turned by {},", learn.picked + 1, angle_words(triangle.rotation)));
+    let angle = angle_words(triangle.rotation);
+    ui.label(fill!("Triangle %{n}: turned by %{angle},", n = learn.picked + 1, angle = angle));
     let s = triangle.stretch;
-    ui.label(format!(
-        "strain \u{3b5}: along {}, across {}, shear {}",
-        signed_percent(s.m11 - 1.0),
-        signed_percent(s.m22 - 1.0),
-        signed_percent(s.m12),
+    ui.label(fill!(
+        "strain \u{3b5}: along %{along}, across %{across}, shear %{shear}",
+        along = signed_percent(s.m11 - 1.0),
+        across = signed_percent(s.m22 - 1.0),
+        shear = signed_percent(s.m12),
     ));
-    ui.label(small("Line: the shape at rest. Colour: the largest strain, of which K makes the forces."));
+    ui.label(small(tr("Line: the shape at rest. Colour: the largest strain, of which K makes the forces.")));
 }
 
 /// A strain, percent.

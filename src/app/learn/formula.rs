@@ -3,6 +3,8 @@
 use egui::text::LayoutJob;
 use egui::{Align, Color32, FontId, TextFormat};
 
+use crate::app::language::tr;
+
 /// Size of a formula, points.
 pub(super) const SIZE: f32 = 19.0;
 /// Size of what is raised or lowered.
@@ -39,7 +41,11 @@ pub(super) fn plain(markup: &str) -> String {
 /// Runs of letters that are set alike: text, level, whether slanted.
 fn pieces(markup: &str) -> Vec<(String, Level, bool)> {
     let mut pieces: Vec<(String, Level, bool)> = Vec::new();
-    let (mut level, mut upright) = (Level::Line, false);
+    let mut level = Level::Line;
+    let mut push = |text: &str, level, slanted| match pieces.last_mut() {
+        Some((before, own, same)) if (*own, *same) == (level, slanted) => before.push_str(text),
+        _ => pieces.push((text.to_owned(), level, slanted)),
+    };
     let mut letters = markup.chars().peekable();
     while let Some(letter) = letters.next() {
         match letter {
@@ -48,14 +54,14 @@ fn pieces(markup: &str) -> Vec<(String, Level, bool)> {
                 level = if letter == '^' { Level::Raised } else { Level::Lowered };
             }
             '}' => level = Level::Line,
-            '`' => upright = !upright,
+            '`' => {
+                let word: String = letters.by_ref().take_while(|letter| *letter != '`').collect();
+                push(tr(&word), level, false);
+            }
             _ => {
                 // A transposed T is no variable.
-                let slanted = letter.is_alphabetic() && !upright && !(letter == 'T' && level == Level::Raised);
-                match pieces.last_mut() {
-                    Some((text, own, same)) if (*own, *same) == (level, slanted) => text.push(letter),
-                    _ => pieces.push((letter.to_string(), level, slanted)),
-                }
+                let slanted = letter.is_alphabetic() && !(letter == 'T' && level == Level::Raised);
+                push(letter.encode_utf8(&mut [0; 4]), level, slanted);
             }
         }
     }

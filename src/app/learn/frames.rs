@@ -6,6 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::triangle::{Triangle, frames};
 use super::{Learn, Shown, View, formula, not_triangles};
 use crate::app::action::Action;
+use crate::app::language::{fill, tr};
 use crate::app::palette::{BODY, Palette, SMALL};
 use crate::rotation::Rotation;
 
@@ -65,7 +66,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         return not_triangles(ui, learn, actions);
     };
     let palette = Palette::new(ui.visuals());
-    ui.label(format!("Triangle {}, turned by {}", learn.picked + 1, angle_words(triangle.rotation)));
+    let angle = angle_words(triangle.rotation);
+    ui.label(fill!("Triangle %{n}, turned by %{angle}", n = learn.picked + 1, angle = angle));
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
@@ -78,7 +80,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     });
     ui.add_space(4.0);
     ui.label(
-        egui::RichText::new("S is symmetric: it stretches along two axes at right angles, and turns nothing.")
+        egui::RichText::new(tr("S is symmetric: it stretches along two axes at right angles, and turns nothing."))
             .size(SMALL)
             .color(palette.secondary),
     );

@@ -4,11 +4,11 @@ use egui::{Button, RichText, Ui};
 
 use super::{Learn, Shown};
 use crate::app::action::Action;
+use crate::app::language::{fill, percent, tr};
 use crate::app::palette::{Palette, SMALL};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, Status, probe_results};
 use crate::study::Reference;
-use crate::words::percent;
 
 /// How far an element is off on the scene's cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,12 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     for element in scene.elements() {
         let error = known.as_ref().and_then(|all| all.iter().find(|e| e.element == element));
         let words = match error {
-            Some(e) => format!("{}: {} off, {} unknowns", element.id(), percent(e.percent), e.unknowns),
+            Some(e) => fill!(
+                "%{element}: %{error} off, %{n} unknowns",
+                element = element.id(),
+                error = percent(e.percent),
+                n = e.unknowns
+            ),
             None => element.id().to_owned(),
         };
         let chosen = scene.element() == element;
@@ -55,12 +60,12 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             scene.set_element(element);
             actions.push(Action::Edit("Element", scene));
         }
-        ui.add(egui::Label::new(RichText::new(element.entry().about).size(SMALL).color(palette.secondary)).wrap());
+        ui.add(egui::Label::new(RichText::new(tr(element.entry().about)).size(SMALL).color(palette.secondary)).wrap());
         ui.add_space(2.0);
     }
     if known.is_none() {
         let words =
             if learn.is_looking() { "Looking for the errors." } else { "The truth of this scene is not known." };
-        ui.label(RichText::new(words).size(SMALL).color(palette.secondary));
+        ui.label(RichText::new(tr(words)).size(SMALL).color(palette.secondary));
     }
 }

@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 use super::triangle::{Triangle, assembled, frames};
 use super::{Learn, Shown, formula, not_triangles};
 use crate::app::action::Action;
+use crate::app::language::{fill, spaced, tr};
 use crate::app::palette::{Palette, SMALL};
 use crate::render::colormap;
 use crate::simulation::Field;
@@ -38,21 +39,23 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         for (markup, plain, matrix) in [("K_{e}", "Ke", &stiffness.ke), ("R K_{e} R^{T}", "R Ke RT", &turned)] {
             ui.vertical(|ui| {
                 ui.label(formula::set(markup, palette.text));
-                let words = format!("{plain} of triangle {}, 6 by 6", learn.picked + 1);
+                let words = fill!("%{matrix} of triangle %{n}, 6 by 6", matrix = plain, n = learn.picked + 1);
                 cells(ui, &palette, (scale * SMALL_SIDE, largest, &words), matrix, &local, &|_, _| true);
             });
         }
         ui.vertical(|ui| whole(ui, shown, &palette, scale * LARGE_SIDE, &triangle));
     });
     let (all, free) = (2 * simulation.system().mesh().nodes().len(), simulation.system().dofs());
-    let note = format!(
-        "Triangle {}: nodes {}; framed: its blocks. Grey: what clamping takes away, {all} \u{2212} {} = {free} unknowns. Red is \
-         positive, blue negative.",
-        learn.picked + 1,
-        triangle.nodes.map(|n| (n + 1).to_string()).join(", "),
-        all - free,
+    let note = fill!(
+        "Triangle %{n}: nodes %{nodes}; framed: its blocks. Grey: what clamping takes away, %{all} \u{2212} %{clamped} = \
+         %{free} unknowns. Red is positive, blue negative.",
+        n = learn.picked + 1,
+        nodes = triangle.nodes.map(|n| (n + 1).to_string()).join(", "),
+        all = all,
+        clamped = all - free,
+        free = free,
     );
-    ui.add(egui::Label::new(RichText::new(note).size(SMALL).color(palette.secondary)).wrap());
+    ui.add(egui::Label::new(spaced(RichText::new(note), SMALL).size(SMALL).color(palette.secondary)).wrap());
 }
 
 /// The matrix of the body before clamping, and what clamping takes from it.
@@ -63,7 +66,7 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle:
     ui.label(formula::set("\u{3a3} R K_{e} R^{T}", palette.text));
     let matrix = (all <= MOST_UNKNOWNS).then(|| assembled(simulation)).flatten();
     let Some(matrix) = matrix else {
-        ui.label("Too many unknowns to draw.");
+        ui.label(tr("Too many unknowns to draw."));
         return;
     };
     let mesh = simulation.system().mesh();
@@ -74,7 +77,8 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle:
         }
     }
     let stored = |i: usize, j: usize| coupled[(i / 2) * nodes + j / 2];
-    let words = format!("the body's matrix, {all} by {all}, of which {free} by {free} are left");
+    let words =
+        fill!("the body's matrix, %{all} by %{all}, of which %{free} by %{free} are left", all = all, free = free);
     let (rect, _) = cells(ui, palette, (side, matrix.amax(), &words), &matrix, &name_of, &stored);
     let cell = rect.width() / all as f32;
     let block = |i: usize, j: usize, size: f32| {
@@ -98,7 +102,7 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle:
 
 /// An unknown, in words.
 fn name_of(unknown: usize) -> String {
-    format!("node {} {}", unknown / 2 + 1, if unknown.is_multiple_of(2) { "x" } else { "y" })
+    fill!("node %{n} %{axis}", n = unknown / 2 + 1, axis = if unknown.is_multiple_of(2) { "x" } else { "y" })
 }
 
 /// A square of coloured cells, zero in the middle of the map; pointing at one says its value.
@@ -130,8 +134,10 @@ fn cells(
     let under = response.hover_pos().and_then(|at| index(rect, cell, count, at));
     let response = match under {
         Some((i, j)) => {
-            let value = if stored(i, j) { engineering(three_digits(matrix[(i, j)]), "N/m") } else { "no entry".into() };
-            response.on_hover_text_at_pointer(format!("{value}\nforce: {}, moved: {}", name(i), name(j)))
+            let value =
+                if stored(i, j) { engineering(three_digits(matrix[(i, j)]), "N/m") } else { tr("no entry").into() };
+            let places = fill!("force: %{row}, moved: %{column}", row = name(i), column = name(j));
+            response.on_hover_text_at_pointer(format!("{value}\n{places}"))
         }
         None => response,
     };

@@ -9,8 +9,9 @@ use super::drawing::Drawing;
 use super::field::Messages;
 use super::finder::Finder;
 use super::lab::Lab;
+use super::language::{fill, spaced, tr};
 use super::mode::Mode;
-use super::palette::{HEADLINE, Palette};
+use super::palette::{BODY, HEADLINE, Palette};
 use super::panel::PanelInput;
 use crate::render::Camera;
 use crate::scene::{self, Analysis, MethodKind, Scene, SolverSettings, Source, registry};
@@ -35,6 +36,8 @@ use locking::ElementError;
 /// Height of the row of cards, points; at most a part of the window's.
 const HEIGHT: f32 = 258.0;
 const SHARE: f32 = 0.42;
+/// A row of less height, points, has no room for most cards.
+const LOW: f32 = 240.0;
 
 /// Below this width, points, what is beside the words is under them.
 const TWO_COLUMNS: f32 = 560.0;
@@ -278,12 +281,20 @@ impl Learn {
             let card = self.card();
             let bars = egui::scroll_area::ScrollBarVisibility::VisibleWhenNeeded;
             ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
-            let scroll = |part: &str, card: usize| {
-                ScrollArea::vertical().id_salt((part, card)).auto_shrink([false, false]).scroll_bar_visibility(bars)
-            };
             let number = self.card;
+            let scroll = |ui: &mut Ui, part: &str, show: &mut dyn FnMut(&mut Ui)| {
+                // A bar that came would wrap the words anew, and might go again for that: in a low row its room is free.
+                let room = ui.available_width() - ui.spacing().scroll.allocated_width();
+                let area = ScrollArea::vertical().id_salt((part, number)).auto_shrink([false, false]);
+                area.scroll_bar_visibility(bars).show(ui, |ui| {
+                    if height < LOW {
+                        ui.set_max_width(room);
+                    }
+                    show(ui);
+                });
+            };
             if ui.available_width() < TWO_COLUMNS {
-                scroll("card", number).show(ui, |ui| {
+                scroll(ui, "card", &mut |ui| {
                     text(ui, card);
                     ui.add_space(8.0);
                     (card.show)(ui, shown, self, actions);
@@ -297,10 +308,8 @@ impl Learn {
                 ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
                 show(&mut ui);
             };
-            column(left, &mut |ui| _ = scroll("words", number).show(ui, |ui| text(ui, card)));
-            column(right, &mut |ui| {
-                scroll("drawing", number).show(ui, |ui| (card.show)(ui, shown, self, actions));
-            });
+            column(left, &mut |ui| scroll(ui, "words", &mut |ui| text(ui, card)));
+            column(right, &mut |ui| scroll(ui, "drawing", &mut |ui| (card.show)(ui, shown, self, actions)));
         });
     }
 
@@ -310,7 +319,7 @@ impl Learn {
         let (card, count) = (self.card, CARDS.len());
         ui.horizontal(|ui| {
             let wide = ui.available_width() > 720.0;
-            let title = RichText::new(self.card().title).size(HEADLINE).strong().color(palette.text);
+            let title = RichText::new(tr(self.card().title)).size(HEADLINE).strong().color(palette.text);
             let nav = if wide { 470.0 } else { 246.0 };
             let room = (ui.available_width() - nav).max(80.0);
             ui.scope(|ui| {
@@ -319,25 +328,27 @@ impl Learn {
             });
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
-                if ui.button("Leave").on_hover_text("Back to your own scene (Esc)").clicked() {
+                if ui.button(tr("Leave")).on_hover_text(tr("Back to your own scene (Esc)")).clicked() {
                     actions.push(Action::Toggle(Toggle::Mode(Mode::Explore)));
                 }
                 if wide {
                     let tip = "This card\u{2019}s scene again, as it was";
-                    if ui.button("Set up again").on_hover_text(tip).clicked() {
+                    if ui.button(tr("Set up again")).on_hover_text(tr(tip)).clicked() {
                         actions.push(Action::Card(card));
                     }
                 }
-                let next = ui.add_enabled(card + 1 < count, egui::Button::new("Next \u{203a}"));
-                if next.on_hover_text("The next card (right arrow or Enter)").clicked() {
+                let next = ui.add_enabled(card + 1 < count, egui::Button::new(tr("Next \u{203a}")));
+                if next.on_hover_text(tr("The next card (right arrow or Enter)")).clicked() {
                     actions.push(Action::Card(card + 1));
                 }
                 if wide {
                     dots(ui, &palette, card, actions);
                 }
-                ui.label(RichText::new(format!("{} of {count}", card + 1)).color(palette.secondary));
-                let back = ui.add_enabled(card > 0, egui::Button::new("\u{2039} Back"));
-                if back.on_hover_text("The card before (left arrow)").clicked() {
+                ui.label(
+                    RichText::new(fill!("%{n} of %{count}", n = card + 1, count = count)).color(palette.secondary),
+                );
+                let back = ui.add_enabled(card > 0, egui::Button::new(tr("\u{2039} Back")));
+                if back.on_hover_text(tr("The card before (left arrow)")).clicked() {
                     actions.push(Action::Card(card - 1));
                 }
             });
@@ -387,9 +398,9 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
         if response.has_focus() {
             ui.painter().circle_stroke(rect.center(), 7.0, egui::Stroke::new(1.5, palette.accent));
         }
-        let name = format!("Card {}: {}", i + 1, CARDS[i].title);
+        let name = fill!("Card %{n}: %{title}", n = i + 1, title = tr(CARDS[i].title));
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, i == card, &name));
-        if response.on_hover_text(CARDS[i].title).clicked() {
+        if response.on_hover_text(tr(CARDS[i].title)).clicked() {
             actions.push(Action::Card(i));
         }
     }
@@ -400,7 +411,8 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
 /// Sentences, formula, and what to do.
 fn text(ui: &mut Ui, card: &Card) {
     let palette = Palette::new(ui.visuals());
-    ui.add(egui::Label::new(RichText::new(card.words).color(palette.text)).wrap());
+    let words = spaced(RichText::new(tr(card.words)), BODY).color(palette.text);
+    ui.add(egui::Label::new(words).wrap());
     ui.add_space(4.0);
     let chip = egui::Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(egui::Margin::symmetric(12, 5));
     chip.show(ui, |ui| {
@@ -417,15 +429,15 @@ fn text(ui: &mut Ui, card: &Card) {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 16.0), Sense::hover());
         let triangle = [vec2(-3.0, -5.0), vec2(5.0, 0.0), vec2(-3.0, 5.0)].map(|v| rect.center() + v);
         ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
-        ui.label(RichText::new(card.task).color(palette.accent).font(FontId::proportional(super::palette::BODY)));
+        ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
     });
 }
 
 /// Says that a card is of three-node triangles, with a button that sets it up again.
 fn not_triangles(ui: &mut Ui, learn: &Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        ui.label("These numbers are of three-node triangles.");
-        if ui.button("Back to the article\u{2019}s beam").clicked() {
+        ui.label(tr("These numbers are of three-node triangles."));
+        if ui.button(tr("Back to the article\u{2019}s beam")).clicked() {
             actions.push(Action::Card(learn.card));
         }
     });

@@ -4,12 +4,12 @@ use egui::{Align2, FontId, Painter, Rect, RichText, Role, Sense, Stroke, Ui, Wid
 
 use super::{Learn, Shown};
 use crate::app::action::Action;
+use crate::app::language::{count, fill, tr};
 use crate::app::palette::{Palette, SMALL};
 use crate::app::verdict::rho_number;
 use crate::method::METHODS;
 use crate::scene::MethodKind;
 use crate::simulation::Status;
-use crate::words::count;
 
 /// Buttons that iterate, and the residuals.
 pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
@@ -20,12 +20,12 @@ pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: 
             ("From rest", "Back to rest (R)", Action::Reset, true),
             ("Go on", "Iterate to the end (Space)", Action::ToggleRun, !ended && !shown.input.running),
         ] {
-            if ui.add_enabled(on, egui::Button::new(name)).on_hover_text(tip).clicked() {
+            if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
                 actions.push(action);
             }
         }
         if let Some(ratio) = last_ratio(shown.input.residuals) {
-            ui.label(format!("last step: residual \u{d7} {}", rho_number(ratio)));
+            ui.label(fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio)));
         }
     });
     plot(ui, shown, learn);
@@ -37,17 +37,18 @@ pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions
         for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
             let chosen = shown.input.scene.solver.method == method.kind;
             let words = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
-            if ui.selectable_label(chosen, words).on_hover_text(method.about).clicked() && !chosen {
+            if ui.selectable_label(chosen, tr(words)).on_hover_text(tr(method.about)).clicked() && !chosen {
                 let mut scene = Box::new(shown.input.scene.clone());
                 scene.solver.method = method.kind;
                 actions.push(Action::Edit("Method", scene));
             }
         }
         let simulation = shown.input.simulation;
+        let iterations = count(simulation.iterations(), "iteration");
         ui.label(match simulation.status() {
-            Status::Converged => format!("there after {}", count(simulation.iterations(), "iteration")),
-            Status::Running => count(simulation.iterations(), "iteration"),
-            _ => format!("given up after {}", count(simulation.iterations(), "iteration")),
+            Status::Converged => fill!("there after %{iterations}", iterations = iterations),
+            Status::Running => iterations,
+            _ => fill!("given up after %{iterations}", iterations = iterations),
         });
     });
     plot(ui, shown, learn);
@@ -100,24 +101,25 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     inside.line(points, Stroke::new(1.6, color));
     let small = FontId::proportional(SMALL);
     if let Some(rho) = rho {
-        let words = format!("\u{3c1} = {}: the line's slope", rho_number(rho));
+        let words = fill!("\u{3c1} = %{rho}: the line's slope", rho = rho_number(rho));
         painter.text(rect.right_top() + vec2(-2.0, 22.0), Align2::RIGHT_TOP, words, small, palette.exact);
     }
+    let iterations = count(residuals.len() as u64, "iteration");
     let words = match (residuals.last(), rho) {
-        (Some(last), Some(rho)) => {
-            format!(
-                "Residual {last:.1e} after {}; rho = {}",
-                count(residuals.len() as u64, "iteration"),
-                rho_number(rho)
-            )
-        }
-        _ => format!("{} so far", count(residuals.len() as u64, "iteration")),
+        (Some(last), Some(rho)) => fill!(
+            "Residual %{residual} after %{iterations}; rho = %{rho}",
+            residual = format!("{last:.1e}"),
+            iterations = iterations,
+            rho = rho_number(rho)
+        ),
+        _ => fill!("%{iterations} so far", iterations = iterations),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &words));
-    response
-        .on_hover_text("Force out of balance over all forces, after each iteration; grey dashes: what is asked for");
+    response.on_hover_text(tr(
+        "Force out of balance over all forces, after each iteration; grey dashes: what is asked for",
+    ));
     if rho.is_none() && learn.is_looking() {
-        ui.label(RichText::new("Looking for \u{3c1}.").size(SMALL).color(palette.secondary));
+        ui.label(RichText::new(tr("Looking for \u{3c1}.")).size(SMALL).color(palette.secondary));
     }
 }
 

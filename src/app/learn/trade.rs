@@ -4,11 +4,13 @@ use egui::{Button, Grid, ProgressBar, RichText, Ui};
 
 use super::{Learn, Shown};
 use crate::app::action::Action;
+use crate::app::budget::setting_words;
+use crate::app::language::{fill, percent, tr, translated};
 use crate::app::palette::{Palette, SMALL};
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::{Measurement, Study};
-use crate::words::{engineering, percent, two_digits};
+use crate::words::{engineering, two_digits};
 
 /// Errors that can be asked for, percent.
 pub(super) const ASKED: [f64; 3] = [10.0, 1.0, 0.1];
@@ -31,17 +33,17 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     let palette = Palette::new(ui.visuals());
     ui.horizontal_wrapped(|ui| {
         if let Some((fraction, now)) = shown.progress {
-            if ui.button("Cancel").on_hover_text("Stop measuring; what has been measured stays").clicked() {
+            if ui.button(tr("Cancel")).on_hover_text(tr("Stop measuring; what has been measured stays")).clicked() {
                 actions.push(Action::Measure(false));
             }
             ui.add(ProgressBar::new(fraction).desired_width(110.0).show_percentage());
-            ui.add(egui::Label::new(RichText::new(now).size(SMALL)).truncate());
+            ui.add(egui::Label::new(RichText::new(translated(now)).size(SMALL)).truncate());
         } else {
             let tip = "Measure error and time of every element and method on meshes up to 40 cells, on this machine";
-            if ui.add(Button::new("Measure")).on_hover_text(tip).clicked() {
+            if ui.add(Button::new(tr("Measure"))).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
-            ui.label("error at most");
+            ui.label(tr("error at most"));
             for asked in ASKED {
                 if ui.selectable_label(learn.asked == asked, percent(asked)).clicked() {
                     learn.asked = asked;
@@ -53,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     Grid::new("trade").num_columns(METHODS.len() + 1).spacing([14.0, 6.0]).show(ui, |ui| {
         ui.label("");
         for method in METHODS {
-            ui.label(RichText::new(method.id).color(palette.method(method.kind)));
+            ui.label(RichText::new(tr(method.id)).color(palette.method(method.kind)));
         }
         ui.end_row();
         for element in shown.input.scene.elements() {
@@ -66,8 +68,11 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         }
     });
     let words = match shown.study {
-        Some(study) => format!("Error against {}. Grey: the closest it gets.", study.reference),
-        None => "Nothing measured yet: it takes some seconds.".to_owned(),
+        Some(study) => fill!(
+            "Error against %{truth}. Grey: the closest it gets.",
+            truth = translated(&study.reference.to_string())
+        ),
+        None => tr("Nothing measured yet: it takes some seconds.").to_owned(),
     };
     ui.label(RichText::new(words).size(SMALL).color(palette.secondary));
 }
@@ -78,8 +83,13 @@ fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, bool)>) {
         return;
     };
     let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
-    let words = if *good { time.clone() } else { format!("{} off", percent(m.error.bound())) };
+    let words = if *good { time.clone() } else { fill!("%{error} off", error = percent(m.error.bound())) };
     let color = if *good { palette.text } else { palette.secondary };
-    let tip = format!("{}: {time}, error {}", m.setting, percent(m.error.bound()));
+    let tip = fill!(
+        "%{setting}: %{time}, error %{error}",
+        setting = setting_words(&m.setting),
+        time = time,
+        error = percent(m.error.bound())
+    );
     ui.label(RichText::new(words).color(color)).on_hover_text(tip);
 }

@@ -5,8 +5,9 @@ use egui::Ui;
 use super::{Action, PanelInput, PanelState, number_row};
 use crate::app::action::MOST_ITERATIONS;
 use crate::app::field::{NumberField, show_message};
+use crate::app::language::{count, joined, tr};
 use crate::scene::{Analysis, Material, Plane, Scene, limits};
-use crate::words::{count, engineering};
+use crate::words::engineering;
 
 /// A material with a name.
 struct Preset {
@@ -29,8 +30,8 @@ const PRESETS: [Preset; 4] = [
 /// The material in a few words: `rubber, 1 MPa`.
 pub(super) fn material_summary(scene: &Scene) -> String {
     let young = scene.material.young;
-    let name = PRESETS.iter().find(|preset| preset.range.contains(&young)).map(|p| p.name.to_lowercase());
-    name.into_iter().chain([engineering(young, "Pa")]).collect::<Vec<_>>().join(", ")
+    let name = PRESETS.iter().find(|preset| preset.range.contains(&young)).map(|p| tr(p.name).to_lowercase());
+    joined(name.into_iter().chain([engineering(young, "Pa")]))
 }
 
 /// The mesh in a few words: `5 × 1, 24 unknowns`.
@@ -39,8 +40,8 @@ pub(super) fn mesh_summary(input: &PanelInput<'_>) -> String {
         .scene
         .beam
         .as_ref()
-        .map_or_else(|| "from a file".to_owned(), |beam| format!("{} × {}", beam.cells[0], beam.cells[1]));
-    format!("{cells}, {}", count(input.simulation.system().dofs() as u64, "unknown"))
+        .map_or_else(|| tr("from a file").to_owned(), |beam| format!("{} × {}", beam.cells[0], beam.cells[1]));
+    joined([cells, count(input.simulation.system().dofs() as u64, "unknown")])
 }
 
 pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
@@ -51,7 +52,7 @@ pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelSta
             let preset = Material { young, poisson, density, ..scene.material };
             let tip = format!("E {}, ν {poisson}, {}", engineering(young, "Pa"), engineering(density, "kg/m³"));
             let chosen = preset == scene.material;
-            if ui.selectable_label(chosen, name).on_hover_text(tip).clicked() && !chosen {
+            if ui.selectable_label(chosen, tr(name)).on_hover_text(tip).clicked() && !chosen {
                 actions.push(Action::Edit("Young E", Box::new(Scene { material: preset, ..scene.clone() })));
             }
         }
@@ -109,12 +110,12 @@ pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelSta
         |s, v| s.material.thickness = v,
     );
     ui.horizontal(|ui| {
-        ui.label("Plane");
+        ui.label(tr("Plane"));
         for (plane, word, tip) in [
             (Plane::Stress, "stress", "No stress out of the plane: a thin plate."),
             (Plane::Strain, "strain", "No strain out of the plane: a slice of something long."),
         ] {
-            if ui.radio(m.plane == plane, word).on_hover_text(tip).clicked() && m.plane != plane {
+            if ui.radio(m.plane == plane, tr(word)).on_hover_text(tr(tip)).clicked() && m.plane != plane {
                 let mut scene = Box::new(scene.clone());
                 scene.material.plane = plane;
                 actions.push(Action::Edit("Plane", scene));

@@ -4,9 +4,9 @@ use egui::{ComboBox, Ui};
 
 use super::{Action, PanelInput, PanelState, ViewOptions};
 use crate::app::field::show_message;
+use crate::app::language::{count, fill, joined, tr};
 use crate::assembly::{Edge, System};
 use crate::scene::{Load, Place, Scene};
-use crate::words::count;
 
 /// Edges that a load is looked for on, before all others.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];
@@ -46,8 +46,8 @@ pub(super) fn edge_for_moment(scene: &Scene, system: &System) -> Option<String> 
 /// A place in words.
 fn words(place: &Place) -> String {
     match place {
-        Place::Edge(name) => name.clone(),
-        Place::At([x, y]) => format!("point ({x}, {y})"),
+        Place::Edge(name) => tr(name).to_owned(),
+        Place::At([x, y]) => fill!("point (%{x}, %{y})", x = x, y = y),
     }
 }
 
@@ -70,11 +70,11 @@ fn row(
 ) -> Option<String> {
     let mut picked = None;
     ui.horizontal(|ui| {
-        let name = ui.label(label);
+        let name = ui.label(tr(label));
         let combo = ComboBox::from_id_salt((label, id)).selected_text(words(present)).show_ui(ui, |ui| {
             for edge in edges {
                 let is_present = matches!(present, Place::Edge(name) if name == edge.name());
-                let entry = ui.selectable_label(is_present, edge.name());
+                let entry = ui.selectable_label(is_present, tr(edge.name()));
                 if entry.hovered() || entry.has_focus() {
                     view.edge = Some(edge.name().to_owned());
                 }
@@ -84,7 +84,7 @@ fn row(
             }
         });
         let button =
-            combo.response.labelled_by(name.id).on_hover_text("The edge it is on; other edges are in the list");
+            combo.response.labelled_by(name.id).on_hover_text(tr("The edge it is on; other edges are in the list"));
         if let (true, Place::Edge(name), None) = (button.hovered(), present, &view.edge) {
             view.edge = Some(name.clone());
         }
@@ -95,7 +95,7 @@ fn row(
 /// What is on edges, in a few words.
 pub(super) fn summary(scene: &Scene) -> String {
     let loads = scene.loads.iter().filter_map(place_of).count();
-    format!("{}, {}", count(loads as u64, "load"), count(scene.supports.len() as u64, "support"))
+    joined([count(loads as u64, "load"), count(scene.supports.len() as u64, "support")])
 }
 
 /// Shows where loads and supports are.

@@ -5,6 +5,7 @@ use egui::Ui;
 use super::{Action, PanelInput, PanelState, edges};
 use crate::app::arrow::{DOWN, SMALLEST, largest_force, polar_form, vector};
 use crate::app::field::NumberField;
+use crate::app::language::{joined, tr};
 use crate::app::turn::{self, largest_moment};
 use crate::assembly::System;
 use crate::scene::{Load, Scene, limits};
@@ -36,7 +37,7 @@ pub(super) fn summary(scene: &Scene) -> String {
     let gravity = gravity_of(scene).map(|g| polar_form(g).0).filter(|&g| g > 0.0).map(|g| engineering(g, "m/s²"));
     let moment = moment_of(scene).filter(|&m| m != 0.0).map(|m| engineering(m, "N m"));
     let both: Vec<String> = gravity.into_iter().chain(moment).collect();
-    if both.is_empty() { "none".to_owned() } else { both.join(", ") }
+    if both.is_empty() { tr("none").to_owned() } else { joined(both) }
 }
 
 /// Force and its direction.

@@ -8,6 +8,7 @@ use egui::{Align2, ComboBox, FontId, RichText, Role, ScrollArea, Sense, Stroke, 
 use super::action::{Action, ViewOptions};
 use super::arrow::DOWN;
 use super::field::{Messages, NumberField, show_message};
+use super::language::{Language, spaced, tr};
 use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
 use super::quality::Quality;
@@ -58,6 +59,8 @@ pub(super) struct PanelInput<'a> {
     /// How far the result is to be trusted.
     pub quality: &'a Quality,
     pub adapter: &'a str,
+    /// What the window speaks.
+    pub language: Language,
 }
 
 /// What the panel remembers from frame to frame.
@@ -101,7 +104,7 @@ pub(super) fn show(
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
     scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
         let palette = Palette::new(ui.visuals());
-        let about = RichText::new(&input.scene.about).small().color(palette.secondary);
+        let about = spaced(RichText::new(tr(&input.scene.about)), SMALL).small().color(palette.secondary);
         ui.add(egui::Label::new(about).wrap());
         ui.add_space(4.0);
         method(ui, input, state, actions);
@@ -126,7 +129,7 @@ pub(super) fn show(
         fold(ui, "Mesh", &summary, false, |ui| body::mesh(ui, input, state, actions));
         let summary = view::summary(view, input.scene);
         fold(ui, "View", &summary, false, |ui| view::options(ui, input, state, view, actions));
-        fold(ui, "File", "open, save, picture, movie", false, |ui| view::keep(ui, actions));
+        fold(ui, "File", tr("open, save, picture, movie"), false, |ui| view::keep(ui, actions));
         fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
     });
 }
@@ -137,6 +140,7 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
     const ICON: f32 = 18.0;
     let palette = Palette::new(ui.visuals());
     let mut state = CollapsingState::load_with_default_open(ui.ctx(), ui.make_persistent_id(("fold", title)), open);
+    let name = tr(title);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     if response.clicked() {
         state.toggle(ui);
@@ -150,7 +154,7 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
         paint_default_icon(ui, state.openness(ui.ctx()), &response.clone().with_new_rect(icon));
         let at = rect.left_center() + vec2(ICON, 0.0);
         let font = FontId::proportional(BODY);
-        let title = ui.painter().text(at, Align2::LEFT_CENTER, title, font, palette.text);
+        let title = ui.painter().text(at, Align2::LEFT_CENTER, name, font, palette.text);
         let left = title.right() + 10.0;
         let mut job = egui::text::LayoutJob::simple_singleline(
             summary.to_owned(),
@@ -162,7 +166,7 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
         let at = egui::pos2(rect.right() - galley.size().x, rect.center().y - 0.5 * galley.size().y);
         ui.painter().galley(at, galley, palette.secondary);
     }
-    let words = format!("{title}: {summary}");
+    let words = format!("{name}: {summary}");
     response.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, &words));
     response.on_hover_cursor(egui::CursorIcon::PointingHand);
     state.show_body_unindented(ui, |ui| {
@@ -200,10 +204,10 @@ fn picker<'a>(
     let mut picked = None;
     ui.horizontal(|ui| {
         let left = ui.cursor().left();
-        let name = ui.label(label);
+        let name = ui.label(tr(label));
         ui.add_space((left + LABEL_WIDTH - name.rect.right() - ui.spacing().item_spacing.x).max(0.0));
         ComboBox::from_id_salt(label)
-            .selected_text(chosen.0)
+            .selected_text(tr(chosen.0))
             .width(ui.available_width())
             .height(420.0)
             .show_ui(ui, |ui| {
@@ -216,7 +220,7 @@ fn picker<'a>(
             })
             .response
             .labelled_by(name.id)
-            .on_hover_text(chosen.1);
+            .on_hover_text(tr(chosen.1));
     });
     picked
 }

@@ -4,6 +4,7 @@ use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, number_row, picker};
 use crate::app::field::{NumberField, show_message};
+use crate::app::language::{fill, joined, tr};
 use crate::dynamics::INTEGRATORS;
 use crate::scene::{Scene, limits};
 use crate::words::{engineering, three_digits};
@@ -14,17 +15,17 @@ const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.12
 /// Integrator and time step in a few words.
 pub(super) fn summary(input: &PanelInput<'_>) -> String {
     let settings = &input.scene.dynamics;
-    format!("{}, {}", settings.integrator.id(), engineering(settings.time_step, "s"))
+    joined([tr(settings.integrator.id()), &engineering(settings.time_step, "s")])
 }
 
 pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let settings = &input.scene.dynamics;
     ui.horizontal(|ui| {
-        ui.label("Speed");
+        ui.label(tr("Speed"));
         for (speed, word) in SPEEDS {
             let chosen = (input.playback.pace.speed() - speed).abs() < 1e-9;
             let tip = "Simulated seconds a second: 1 is real time, less is slow motion";
-            if ui.selectable_label(chosen, word).on_hover_text(tip).clicked() {
+            if ui.selectable_label(chosen, word).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Speed(speed));
             }
         }
@@ -32,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
     ui.horizontal(|ui| {
         let marked = input.playback.is_marked();
         let tip = "Reset goes to where the body is now, in place of the start; again: to the start (H)";
-        if ui.selectable_label(marked, "Reset to here").on_hover_text(tip).clicked() {
+        if ui.selectable_label(marked, tr("Reset to here")).on_hover_text(tr(tip)).clicked() {
             actions.push(Action::Mark);
         }
     });
@@ -46,13 +47,13 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
     }
     show_message(ui, &state.messages, "Integrator");
     ui.horizontal_wrapped(|ui| {
-        ui.label("Beside it")
-            .on_hover_text("The same motion under other integrators, as outlines and lines in the plots");
+        ui.label(tr("Beside it"))
+            .on_hover_text(tr("The same motion under other integrators, as outlines and lines in the plots"));
         for entry in INTEGRATORS.iter().filter(|entry| entry.kind != settings.integrator) {
             let companion = input.playback.companions().iter().find(|c| c.integrator == entry.kind);
             let stopped = companion.is_some_and(|c| c.has_stopped());
             let tip = if stopped { "It has stopped: its step is too long" } else { entry.about };
-            if ui.selectable_label(companion.is_some(), entry.id).on_hover_text(tip).clicked() {
+            if ui.selectable_label(companion.is_some(), tr(entry.id)).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Compare(entry.kind));
             }
         }
@@ -109,7 +110,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
         |s, v| s.dynamics.damping.stiffness = v,
     );
     if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {
-        let words = format!("The longest stable step about rest is {}.", engineering(critical, "s"));
+        let words = fill!("The longest stable step about rest is %{step}.", step = engineering(critical, "s"));
         if settings.time_step > critical {
             let set = |step: f64| {
                 let mut scene = Box::new(input.scene.clone());
@@ -118,7 +119,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             };
             ui.horizontal_wrapped(|ui| {
                 ui.colored_label(ui.visuals().error_fg_color, words);
-                if ui.button("Use 0.9 of it").clicked() {
+                if ui.button(tr("Use 0.9 of it")).clicked() {
                     actions.push(set(three_digits(0.9 * critical)));
                 }
             });

@@ -3,20 +3,21 @@
 use egui::{Grid, RichText, Ui};
 
 use super::{PanelInput, supports};
-use crate::app::headline::UNKNOWN;
+use crate::app::headline::{UNKNOWN, truth_words};
+use crate::app::language::{count, fill, joined, percent, sentence, tr, translated};
 use crate::app::palette::Palette;
-use crate::app::verdict::{Errors, rho, sentence, stability};
+use crate::app::verdict::{Errors, rho, stability};
 use crate::method::rho_words;
 use crate::simulation::{Motion, Simulation, Status, energy};
-use crate::words::{count, engineering, engineering_pair, percent, three_digits};
+use crate::words::{engineering, engineering_pair, three_digits};
 
 /// Room for what a row is, points.
 const NAME_WIDTH: f32 = 84.0;
 
 /// What is behind the fold, in a few words.
 pub(super) fn summary(input: &PanelInput<'_>) -> String {
-    if input.simulation.motion().is_some() { "energy, steps, times" } else { "certificate, reactions, times" }
-        .to_owned()
+    let moves = input.simulation.motion().is_some();
+    tr(if moves { "energy, steps, times" } else { "certificate, reactions, times" }).to_owned()
 }
 
 pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, errors: &Errors) {
@@ -24,6 +25,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, errors: &Errors) {
     let secondary = Palette::new(ui.visuals()).secondary;
     ui.spacing_mut().item_spacing.y = 3.0;
     let mut row = |name: &str, value: String, tip: &str| {
+        let (name, tip) = (tr(name), tr(tip));
         ui.horizontal_top(|ui| {
             let left = ui.cursor().left();
             let label = ui.label(RichText::new(name).small().color(secondary)).on_hover_text(tip);
@@ -34,7 +36,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, errors: &Errors) {
     if let Some(motion) = simulation.motion() {
         motion_rows(&mut row, input, motion);
         probe_row(&mut row, simulation);
-        frame_row(&mut row, input, "a time step");
+        frame_row(&mut row, input, "Time of a time step");
     } else {
         search_rows(&mut row, input, errors);
     }
@@ -46,22 +48,31 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
     let simulation = input.simulation;
     row(
         "Iterations",
-        format!("{}, residual {:.2e}", simulation.iterations(), simulation.residual()),
+        fill!(
+            "%{n}, residual %{residual}",
+            n = simulation.iterations(),
+            residual = format!("{:.2e}", simulation.residual())
+        ),
         "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
     );
     probe_row(row, simulation);
-    let truth = input.truth.map_or_else(|| "a truth".to_owned(), ToString::to_string);
     let words = errors.own.zip(input.truth).map_or_else(
         || UNKNOWN.to_owned(),
-        |(error, truth)| format!("{} of {}", percent(error), engineering(truth.first().displacement.norm(), "m")),
+        |(error, truth)| {
+            let whole = engineering(truth.first().displacement.norm(), "m");
+            fill!("%{error} of %{whole}", error = percent(error), whole = whole)
+        },
     );
-    row("Error", words, &format!("Distance of the first probe from {truth}, over its displacement"));
+    let truth = truth_words(input.truth);
+    row("Error", words, &fill!("Distance of the first probe from %{truth}, over its displacement", truth = truth));
     quality_rows(row, input);
     let (factor, steps) = simulation.load_stepping();
-    row("Load steps", format!("{steps}, at {:.3} % of the load", 100.0 * factor), "Parts in which the load is put on");
+    let part = format!("{:.3} %", 100.0 * factor);
+    let words = fill!("%{n}, at %{part} of the load", n = steps, part = part);
+    row("Load steps", words, "Parts in which the load is put on");
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
-    row("Equilibrium", word.to_owned(), "Certified: whether the exact tangent A + G is positive definite");
-    let words = rho(simulation).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&rho_words(rho)));
+    row("Equilibrium", tr(word).to_owned(), "Certified: whether the exact tangent A + G is positive definite");
+    let words = rho(simulation).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&translated(&rho_words(rho))));
     let tip =
         "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended";
     row("ρ", words, tip);
@@ -74,12 +85,13 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
     if let Some(auto) = simulation.auto_report() {
         let [solves, factors] = [count(auto.solves, "back substitution"), count(auto.factorizations, "factorization")];
         let error = match auto.estimated_error {
-            error if error.is_finite() => format!("Estimated error {}, ", percent(100.0 * error)),
-            _ => String::new(),
+            error if error.is_finite() => Some(fill!("Estimated error %{error}", error = percent(100.0 * error))),
+            _ => None,
         };
-        row("Auto", sentence(&auto.decision.to_string()), &format!("{error}{solves}, {factors}"));
+        let tip = joined(error.into_iter().chain([solves, factors]));
+        row("Auto", sentence(&translated(&auto.decision.to_string())), &tip);
     }
-    frame_row(row, input, "the iterations of one displayed frame");
+    frame_row(row, input, "Time of the iterations of one displayed frame");
 }
 
 /// A row of the result: what it is, its value, and more about it.
@@ -92,7 +104,7 @@ fn time(duration: std::time::Duration) -> String {
 fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
     for probe in simulation.problem().probes().iter().take(1) {
         let u = probe.mean(simulation.displacement());
-        row(&format!("{} x, y", probe.name), engineering_pair(u.into(), "m"), "Displacement of the probe");
+        row(&format!("{} x, y", tr(&probe.name)), engineering_pair(u.into(), "m"), "Displacement of the probe");
     }
 }
 
@@ -101,7 +113,7 @@ fn quality_rows(row: &mut Row<'_>, input: &PanelInput<'_>) {
     let known = *input.simulation.status() == Status::Converged;
     let quality = input.quality;
     let error = quality.mesh_error_percent.filter(|_| known);
-    let words = error.map_or_else(|| UNKNOWN.to_owned(), |error| format!("{} (estimate)", percent(error)));
+    let words = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
     let tip = "Of the mesh alone, in the energy norm: the elements' stresses against those recovered at the nodes";
     row("Mesh error", words, tip);
     let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
@@ -109,16 +121,16 @@ fn quality_rows(row: &mut Row<'_>, input: &PanelInput<'_>) {
     let words = match (known, &warning) {
         (false, _) => UNKNOWN.to_owned(),
         (true, None) => strain,
-        (true, Some(_)) => format!("{strain}: too large"),
+        (true, Some(_)) => fill!("%{strain}: too large", strain = strain),
     };
-    let tip =
-        "The largest principal strain".to_owned() + &warning.map_or_else(String::new, |words| format!("; {words}"));
+    let tip = tr("The largest principal strain");
+    let tip = warning.map_or_else(|| tip.to_owned(), |words| format!("{tip}; {}", translated(&words)));
     row("Strain", words, &tip);
 }
 
 fn frame_row(row: &mut Row<'_>, input: &PanelInput<'_>, what: &str) {
     let unknowns = count(input.simulation.system().dofs() as u64, "unknown");
-    row("Frame", format!("{}, {unknowns}", time(input.timings.total())), &format!("Time of {what}"));
+    row("Frame", joined([time(input.timings.total()), unknowns]), what);
 }
 
 /// Time, pace, steps and energy of a motion.
@@ -126,24 +138,29 @@ fn motion_rows(row: &mut Row<'_>, input: &PanelInput<'_>, motion: &Motion) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
     let pace = &input.playback.pace;
     let factor = match pace.factor() {
-        Some(factor) if pace.lags() => format!("{factor:.2} of real time: too slow"),
-        Some(factor) => format!("{factor:.2} of real time"),
+        Some(factor) if pace.lags() => fill!("%{factor} of real time: too slow", factor = format!("{factor:.2}")),
+        Some(factor) => fill!("%{factor} of real time", factor = format!("{factor:.2}")),
         None => UNKNOWN.to_owned(),
     };
     let tip = "Simulated seconds a second; a machine that cannot keep up slows the motion down";
     row("Pace", factor, tip);
     let counts = motion.counts();
-    let halvings = if counts.halvings > 0 { format!(", {}", count(counts.halvings, "halving")) } else { String::new() };
+    let halvings = (counts.halvings > 0).then(|| count(counts.halvings, "halving"));
     row(
         "Steps",
-        format!("{}, {}{halvings}", counts.steps, count(counts.solves, "solve")),
+        joined([counts.steps.to_string(), count(counts.solves, "solve")].into_iter().chain(halvings)),
         "Time steps since the start; a step that does not converge is halved",
     );
     if let Some(auto) = motion.auto_report(input.scene) {
         let factors = count(auto.factorizations, "factorization");
         let linear = count(auto.linear_steps, "step");
-        let tip = format!("{factors} for {}; {linear} under linear theory", count(auto.solves, "back substitution"));
-        row("Auto", sentence(&auto.decision.to_string()), &tip);
+        let tip = fill!(
+            "%{factors} for %{solves}; %{linear} under linear theory",
+            factors = factors,
+            solves = count(auto.solves, "back substitution"),
+            linear = linear
+        );
+        row("Auto", sentence(&translated(&auto.decision.to_string())), &tip);
     }
     let ledger = motion.ledger();
     let joules = |value: f64| engineering(value, "J");
@@ -171,11 +188,11 @@ fn stages(ui: &mut Ui, input: &PanelInput<'_>) {
     ];
     Grid::new("stages").num_columns(stages.len()).min_col_width(58.0).spacing([10.0, 0.0]).show(ui, |ui| {
         for (name, _, tip) in stages {
-            ui.label(RichText::new(name).small().color(secondary)).on_hover_text(tip);
+            ui.label(RichText::new(tr(name)).small().color(secondary)).on_hover_text(tr(tip));
         }
         ui.end_row();
         for (_, duration, tip) in stages {
-            ui.label(RichText::new(time(duration)).small()).on_hover_text(tip);
+            ui.label(RichText::new(time(duration)).small()).on_hover_text(tr(tip));
         }
     });
 }

@@ -4,6 +4,7 @@ use egui::{ComboBox, Id, Ui};
 
 use super::{Action, PanelInput, PanelState};
 use crate::app::field::NumberField;
+use crate::app::language::{fill, joined, tr};
 use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
 use crate::simulation::Simulation;
 use crate::words::{engineering, engineering_pair};
@@ -28,7 +29,7 @@ pub(super) fn chosen(ui: &Ui, input: &PanelInput<'_>) -> Option<usize> {
 pub(super) fn summary(scene: &Scene, number: usize) -> String {
     scene.supports.get(number).map_or_else(String::new, |support| {
         let way = engineering_pair(support.displacement, "m");
-        if support.turn == 0.0 { way } else { format!("{way}, {}", engineering(support.turn, "rad")) }
+        if support.turn == 0.0 { way } else { joined([way, engineering(support.turn, "rad")]) }
     })
 }
 
@@ -45,19 +46,19 @@ pub(super) fn show(
     let original = input.original.supports.get(number);
     if scene.supports.len() > 1 {
         ui.horizontal(|ui| {
-            let label = ui.label("Support");
+            let label = ui.label(tr("Support"));
             ComboBox::from_id_salt("support")
-                .selected_text(support.place.to_string())
+                .selected_text(tr(&support.place.to_string()))
                 .show_ui(ui, |ui| {
                     for (i, other) in scene.supports.iter().enumerate() {
-                        if ui.selectable_label(i == number, other.place.to_string()).clicked() {
+                        if ui.selectable_label(i == number, tr(&other.place.to_string())).clicked() {
                             ui.data_mut(|data| data.insert_temp(Id::unique(("support", input.scene_name)), i));
                         }
                     }
                 })
                 .response
                 .labelled_by(label.id)
-                .on_hover_text("The support that the sliders move");
+                .on_hover_text(tr("The support that the sliders move"));
         });
     }
     let reach = reach(0.1 * input.simulation.system().size());
@@ -123,13 +124,15 @@ pub(super) fn reaction_rows(row: &mut dyn FnMut(&str, String, &str), simulation:
         let force = engineering_pair(reaction.force.into(), "N");
         let (name, tip) = match &reaction.place {
             Place::Edge(edge) => (
-                format!("From {edge}"),
-                format!(
-                    "Force of this support on the body; its moment about the edge's middle is {}",
-                    engineering(reaction.moment, "N m")
+                fill!("From %{edge}", edge = tr(edge)),
+                fill!(
+                    "Force of this support on the body; its moment about the edge's middle is %{moment}",
+                    moment = engineering(reaction.moment, "N m")
                 ),
             ),
-            place @ Place::At(_) => (format!("Support {i}"), format!("Force of the support at {place} on the body")),
+            place @ Place::At(_) => {
+                (fill!("Support %{n}", n = i), fill!("Force of the support at %{place} on the body", place = place))
+            }
         };
         row(&name, force, &tip);
     }

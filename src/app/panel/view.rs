@@ -4,6 +4,7 @@ use egui::{ComboBox, Ui};
 
 use super::{Action, PanelInput, PanelState, ViewOptions};
 use crate::app::field::NumberField;
+use crate::app::language::{joined, tr};
 use crate::scene::{Analysis, Scene, limits};
 use crate::simulation::{Field, Simulation};
 use crate::stress::RecoveryScratch;
@@ -16,24 +17,24 @@ pub(super) fn options(
     actions: &mut Vec<Action>,
 ) {
     ui.horizontal(|ui| {
-        let label = ui.label("Colour");
+        let label = ui.label(tr("Colour"));
         ComboBox::from_id_salt("field")
-            .selected_text(view.field.name())
+            .selected_text(tr(view.field.name()))
             .show_ui(ui, |ui| {
                 for field in Field::ALL {
-                    if ui.selectable_label(field == view.field, field.name()).clicked() {
+                    if ui.selectable_label(field == view.field, tr(field.name())).clicked() {
                         actions.push(Action::Color(field));
                     }
                 }
             })
             .response
             .labelled_by(label.id)
-            .on_hover_text("The quantity the body is coloured with");
+            .on_hover_text(tr("The quantity the body is coloured with"));
     });
     let mut fixed = view.fixed_range.is_some();
     if ui
-        .checkbox(&mut fixed, "Fixed colour range")
-        .on_hover_text("Keep the ends of the colour map; else they follow the values")
+        .checkbox(&mut fixed, tr("Fixed colour range"))
+        .on_hover_text(tr("Keep the ends of the colour map; else they follow the values"))
         .changed()
     {
         view.fixed_range = fixed.then(|| value_range(input.simulation, view.field, view.raw));
@@ -66,16 +67,17 @@ pub(super) fn options(
     }
     ui.horizontal_wrapped(|ui| {
         let tip = "Values as each element has them, not recovered at the nodes: they jump where the mesh is coarse";
-        ui.checkbox(&mut view.raw, "Raw").on_hover_text(tip);
-        ui.checkbox(&mut view.wireframe, "Wireframe").on_hover_text("Element edges (W)");
-        ui.checkbox(&mut view.rest_outline, "Rest").on_hover_text("Outline of the body at rest (O)");
+        ui.checkbox(&mut view.raw, tr("Raw")).on_hover_text(tr(tip));
+        ui.checkbox(&mut view.wireframe, tr("Wireframe")).on_hover_text(tr("Element edges (W)"));
+        ui.checkbox(&mut view.rest_outline, tr("Rest")).on_hover_text(tr("Outline of the body at rest (O)"));
         if input.scene.analysis == Analysis::Dynamic {
-            ui.checkbox(&mut view.trail, "Trail").on_hover_text("Where the tip has been (Y)");
+            ui.checkbox(&mut view.trail, tr("Trail")).on_hover_text(tr("Where the tip has been (Y)"));
         } else {
-            ui.checkbox(&mut view.exact, "Exact").on_hover_text("Outline of the exact solution, where it is known (X)");
-            ui.checkbox(&mut view.ghost, "Linear").on_hover_text("Outline of the linear solution (G)");
+            let tip = "Outline of the exact solution, where it is known (X)";
+            ui.checkbox(&mut view.exact, tr("Exact")).on_hover_text(tr(tip));
+            ui.checkbox(&mut view.ghost, tr("Linear")).on_hover_text(tr("Outline of the linear solution (G)"));
         }
-        if ui.button("Fit").on_hover_text("Show the whole body (F)").clicked() {
+        if ui.button(tr("Fit")).on_hover_text(tr("Show the whole body (F)")).clicked() {
             actions.push(Action::Fit);
         }
     });
@@ -84,7 +86,7 @@ pub(super) fn options(
 /// What the picture shows, in a few words.
 pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     let moves = scene.analysis == Analysis::Dynamic;
-    let field = view.field.name().trim_end_matches(" stress");
+    let field = tr(view.field.name());
     let shown = [
         (view.wireframe, "wires"),
         (view.rest_outline, "rest"),
@@ -92,8 +94,8 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
         (view.ghost && !moves, "linear"),
         (view.trail && moves, "trail"),
     ];
-    let shown = shown.into_iter().filter_map(|(on, word)| on.then_some(word));
-    std::iter::once(field).chain(shown).collect::<Vec<_>>().join(", ")
+    let shown = shown.into_iter().filter_map(|(on, word)| on.then(|| tr(word)));
+    joined(std::iter::once(field).chain(shown))
 }
 
 /// What can be taken away.
@@ -107,7 +109,7 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             ("Record", "Record the scene from its start as a GIF here; again: stop (V)", Action::Record),
             ("Copy scene", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
         ] {
-            if ui.button(name).on_hover_text(tip).clicked() {
+            if ui.button(tr(name)).on_hover_text(tr(tip)).clicked() {
                 actions.push(action);
             }
         }

@@ -9,6 +9,7 @@ use thiserror::Error;
 use self::film::Film;
 pub use self::film::MovieFormat;
 use super::lab::Lab;
+use super::language::{self, Language, fill};
 use super::panel::range_of;
 use super::shot::Canvas;
 use super::{AppError, ThemeChoice};
@@ -85,6 +86,8 @@ pub struct RecordOptions {
     pub fps: Option<u16>,
     /// Light or dark.
     pub theme: ThemeChoice,
+    /// Of the words.
+    pub language: Language,
 }
 
 /// What is being done.
@@ -166,6 +169,7 @@ pub fn record(
     let new_lab = || -> Result<Lab, AppError> {
         let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
         lab.set_panel(false);
+        lab.set_language(options.language);
         let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));
         lab.fix_view(camera, preview.range);
         Ok(lab)
@@ -213,6 +217,7 @@ pub fn record(
 
 /// Draws the lab, and the time or the iteration above the body.
 fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, RenderError> {
+    language::speak(lab.language());
     let simulation = lab.simulation();
     let text = match simulation.motion() {
         Some(_) => {
@@ -220,7 +225,7 @@ fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, Rende
             let digits = -simulation.scene().dynamics.time_step.log10();
             format!("{:.*} s", digits.ceil().clamp(2.0, 9.0) as usize, simulation.state().time())
         }
-        None => format!("iteration {k}"),
+        None => fill!("iteration %{n}", n = k),
     };
     canvas.draw(lab, &mut |ctx| {
         let painter = ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("recorded time")));

@@ -213,6 +213,19 @@ fn largest_rotation(r: &[Rotation]) -> f64 {
 }
 
 impl Method for Auto {
+    fn copy(&self) -> Box<dyn Method> {
+        let Self { refused, linear, steps, newton, report, .. } = self;
+        Box::new(Self {
+            refused: *refused,
+            linear: *linear,
+            steps: *steps,
+            lengths: self.lengths.clone(),
+            newton: newton.clone(),
+            report: *report,
+            ..Self::default()
+        })
+    }
+
     fn restart(&mut self, why: Restart) {
         let old = std::mem::take(self);
         *self = match why {

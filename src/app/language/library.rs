@@ -1,0 +1,190 @@
+//! The library makes its sentences in English. Here they are taken apart again, for the catalogue.
+
+use super::{filled, tr};
+
+/// Its sentences. A place takes what stands there, as little as can be, and that is translated in its turn; the places `n`
+/// and `key` take no space. The first one that fits is it: the special before the general.
+const SENTENCES: &[&str] = &[
+    // How an iteration ended.
+    "the limit of %{count} is reached; more may do",
+    "the residual has not fallen for %{n} iterations: rounding allows no smaller one",
+    "the residual has not fallen for %{n} iterations: this load is too large for the iteration; lower it",
+    "the body has gone more than %{n} times its size away; lower the load",
+    "the body has gone more than %{n} times its size away",
+    "the iteration did not reach its tolerance within %{n} solves",
+    "a step failed even at %{n} s: %{error}",
+    "the motion exploded: the step of %{n} s, the critical one is about %{critical} s",
+    "%{error}; lower the load",
+    // What errors are measured against.
+    "%{truth} (its own error about %{own} %); beam theory, with its small strains, is %{off} % off",
+    "%{truth}; beam theory, with its small strains, is %{off} % off",
+    "%{truth} (its own error about %{own} %)",
+    "no truth: the fine motion of the scene stops: %{reason}",
+    "no truth: the mesh of %{n} elements is too large to be refined",
+    // Jumps, ρ, strains.
+    "beyond %{percent} of the load no stable equilibrium was found",
+    "it jumped: beyond %{percent} of the load the next equilibrium is %{distance} away",
+    "the warped iteration converges near here: ρ = %{n} < 1",
+    "the warped iteration cannot converge here: ρ = %{n} > 1",
+    "strains reach %{n} %: beyond %{most} % the linear law between stress and strain is no material's",
+    // Threads that could not be had.
+    "no thread for the solve: %{error}",
+    "no thread for the study: %{error}",
+    // Axes of a load path.
+    "part of the load, %{unit}",
+    "turn of %{place}, %{unit}",
+    "way of %{place}, %{unit}",
+    "reaction of %{place} along it, %{unit}",
+    "reaction of %{place}, %{unit}",
+    "displacement of %{probe}, %{unit}",
+    "support %{n}",
+    // What is refused.
+    "expected a whole number, got %{got}",
+    "expected one of %{known}, got %{got}",
+    "expected cells at most %{n} times as long as high or as high as long, got %{got}",
+    "expected a straight edge, got %{edge}, which is not",
+    "expected %{low} to %{high}, got %{got} cells in all",
+    "expected %{low} to %{high}, got %{got}",
+    "`%{text}` is no number; expected %{expected}",
+    "`%{text}` can be read in two ways: write a decimal point, or groups of three digits as in 30,000",
+    "`%{text}` has the unknown unit `%{unit}`; expected %{expected}",
+    "`%{text}` is %{got}; expected %{expected}",
+    "the factor of %{n} unknowns does not fit in memory; expected a coarser mesh",
+    "%{key}: %{message}",
+    // Settings, and what stands in the places above.
+    "%{mesh}, %{method}, %{count}",
+    "%{element} as meshed",
+    "%{n} triangles",
+    "%{n} quadrilaterals",
+    "%{n} iterations",
+    "%{n} iteration",
+    "%{quantity} (%{unit})",
+];
+
+/// What is shown for a text of the library, of any kind.
+pub(in crate::app) fn translated(english: &str) -> String {
+    let known = tr(english);
+    if known != english {
+        return known.to_owned();
+    }
+    let fitting = |sentence: &&'static str| Some((*sentence, places(sentence, english)?));
+    let Some((sentence, places)) = SENTENCES.iter().find_map(|sentence| fitting(&sentence)) else {
+        return english.to_owned();
+    };
+    let names: Vec<&str> = places.iter().map(|place| place.0).collect();
+    let values: Vec<String> = places.iter().map(|place| translated(place.1)).collect();
+    filled(sentence, &names, &values)
+}
+
+/// What stands in the places of a sentence, where a text is one such.
+fn places<'a>(sentence: &'static str, text: &'a str) -> Option<Vec<(&'static str, &'a str)>> {
+    let (before, mut pattern) = sentence.split_once("%{").unwrap_or((sentence, ""));
+    let mut rest = text.strip_prefix(before)?;
+    let mut places = Vec::new();
+    while !pattern.is_empty() {
+        let (name, after) = pattern.split_once('}')?;
+        let (literal, next) = after.split_once("%{").unwrap_or((after, ""));
+        let value = match (literal.is_empty(), next.is_empty()) {
+            (true, true) => std::mem::take(&mut rest),
+            (_, true) => std::mem::take(&mut rest).strip_suffix(literal)?,
+            _ => {
+                let (value, behind) = rest.split_once(literal)?;
+                rest = behind;
+                value
+            }
+        };
+        let is_word = !value.is_empty() && !value.contains(' ');
+        if value.is_empty() || !is_word && ["n", "key"].contains(&name) {
+            return None;
+        }
+        places.push((name, value));
+        pattern = next;
+    }
+    rest.is_empty().then_some(places)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Language, speak};
+    use super::*;
+    use crate::dynamics::{StepError, StopReason};
+    use crate::method::{Decision, IterationError, Reason, rho_words};
+    use crate::scene::limits::{CELLS, FORCE};
+    use crate::scene::{self, Source, units};
+    use crate::study::{Jump, LoadPath, Reference, Setting, path_chart};
+
+    fn open(id: &str) -> scene::Scene {
+        scene::open(&Source { name: id.into(), assignments: Vec::new() }).unwrap()
+    }
+
+    /// What is said in the catalogue's own words, with nothing left in English but what was put in.
+    #[test]
+    fn the_sentences_of_the_library_are_translated() {
+        speak(Language::Chinese);
+        let mut texts = vec![
+            Reason::IterationLimit(500).to_string(),
+            Reason::RoundingFloor(30).to_string(),
+            Reason::Stalled(30).to_string(),
+            Reason::RanAway(1e6).to_string(),
+            Reason::NoDescent.to_string(),
+            Reason::Iteration(IterationError::NotFinite).to_string(),
+            Decision::OldFactor.to_string(),
+            StopReason::Step { step: 1e-3, error: StepError::NotConverged(20) }.to_string(),
+            StopReason::Exploded { step: 0.1, critical: 0.02 }.to_string(),
+            StopReason::RanAway(100.0).to_string(),
+            StopReason::Interrupted.to_string(),
+            Jump { factor: 1.0, distance: 0.0 }.to_string(),
+            Jump { factor: 0.5, distance: 0.0 }.to_string(),
+            Jump { factor: 0.5, distance: 0.1 }.to_string(),
+            crate::stress::strain_warning(0.5).unwrap(),
+            FORCE.check(-1.0).unwrap_err().to_string(),
+            CELLS.expected("\u{201c}0\u{201d}").to_string(),
+            format!("beam.cells: {} cells in all", CELLS.check(0.0).unwrap_err()),
+        ];
+        texts.extend([0.5, 2.0, 1e4].map(rho_words));
+        texts.extend(["0,5", "3 kgg", "3 kg", "?"].map(|text| units::parse(text, "N").unwrap_err().to_string()));
+        for id in ["article", "cantilever", "cook", "bracket"] {
+            texts.push(Reference::of(&open(id)).unwrap().to_string());
+            texts.push(Setting::of(&open(id), 4).to_string());
+        }
+        for id in ["snap", "jump"] {
+            let path = LoadPath::of(&open(id)).unwrap();
+            let drawn = path_chart::drawn(&path, &open(id), &path_chart::Ordinate::Usual);
+            texts.extend([drawn.x_label, drawn.y_label]);
+        }
+        for text in texts {
+            let said = translated(&text);
+            // A key of a scene stays as it is written.
+            let own = said.replace("beam.cells", "");
+            let left = own.split(|c: char| !c.is_ascii_alphabetic()).find(|word| word.len() > 2);
+            assert!(said != text && left.is_none(), "{text:?}: {said:?} has {left:?}");
+        }
+    }
+
+    #[test]
+    fn every_sentence_is_in_the_catalogue_and_fits_itself() {
+        speak(Language::Chinese);
+        for sentence in SENTENCES {
+            assert_ne!(tr(sentence), *sentence);
+            let text = sentence.replace("%{", "").replace('}', "");
+            assert!(places(sentence, &text).is_some(), "{sentence}");
+        }
+    }
+
+    #[test]
+    fn places_take_what_stands_there() {
+        let of = |text| places("%{key}: %{message}", text);
+        assert_eq!(
+            of("beam.cells: expected 1: one"),
+            Some(vec![("key", "beam.cells"), ("message", "expected 1: one")])
+        );
+        assert_eq!(of("not one word: a message"), None);
+        assert_eq!(of("nothing: "), None);
+        assert_eq!(places("the end", "the end"), Some(Vec::new()));
+        assert_eq!(places("the end", "the end of it"), None);
+        speak(Language::English);
+        assert_eq!(translated("500 iterations"), "500 iterations");
+        speak(Language::Chinese);
+        assert_eq!(translated("no such sentence"), "no such sentence");
+    }
+}

@@ -1,0 +1,282 @@
+//! Large bodies are meshed and solved beside the window, which goes on meanwhile. Here every body is large.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use std::sync::Arc;
+
+use common::lab::{pick, type_into, unfold};
+use common::{scene, scene_with, solved};
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use nalgebra::Vector2;
+use warpbeam::app::Lab;
+use warpbeam::scene::{Load, MethodKind, Scene, Source};
+use warpbeam::simulation::{Simulation, Status};
+
+/// A window in which nothing is solved between two frames; every frame is checked.
+fn harness(id: &str) -> Harness<'static, Lab> {
+    let scene = scene(id);
+    let simulation = Simulation::new(&scene).unwrap();
+    let mut lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
+    lab.set_most_unknowns(0.0);
+    let builder = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400);
+    let mut harness = builder.build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            let before = body(lab);
+            lab.ui(ui);
+            is_of_one_state(lab, &before);
+        },
+        lab,
+    );
+    settle(&mut harness);
+    harness
+}
+
+/// Frames until nothing is left to do beside the window.
+fn settle(harness: &mut Harness<'_, Lab>) {
+    wait(harness, |lab| !lab.is_working() && !lab.iterates());
+}
+
+fn wait(harness: &mut Harness<'_, Lab>, holds: impl Fn(&Lab) -> bool) {
+    harness.step();
+    while !holds(harness.state()) {
+        harness.step();
+        std::thread::yield_now();
+    }
+}
+
+/// The corners of the body's triangles, m, element by element; nothing of other elements.
+fn body(lab: &Lab) -> Vec<Vector2<f64>> {
+    let simulation = lab.simulation();
+    let mesh = simulation.system().mesh();
+    if mesh.element().entry().nodes.len() != 3 {
+        return Vec::new();
+    }
+    let place = |n: &u32| mesh.nodes()[*n as usize] + simulation.displacement()[*n as usize];
+    mesh.elements().flat_map(|nodes| nodes.iter().map(place).collect::<Vec<_>>()).collect()
+}
+
+/// Body, arrows, linear outline and what is drawn are of one mesh and one load: that of the simulation, as it is or as it
+/// was `before` this frame's clicks.
+fn is_of_one_state(lab: &Lab, before: &[Vector2<f64>]) {
+    let simulation = lab.simulation();
+    assert_eq!(simulation.displacement().len(), simulation.system().mesh().nodes().len());
+    if let Some(linear) = lab.linear() {
+        assert_eq!(linear.scene().loads, simulation.scene().loads, "the linear outline is of another load");
+        assert!(Arc::ptr_eq(linear.system(), simulation.system()), "the linear outline is of another mesh");
+    }
+    let after = body(lab);
+    if !before.is_empty() && !after.is_empty() {
+        let drawn = lab.frame().positions;
+        assert!(drawn == before || drawn == after, "another body is drawn");
+    }
+    for (load, _) in lab.arrow_tips() {
+        assert!(matches!(simulation.scene().loads[load], Load::Force { .. }), "an arrow of another scene");
+    }
+}
+
+/// What is shown in the end is what a solve of the scene that is wanted gives.
+fn agrees_with_solve(lab: &Lab) {
+    assert_eq!(lab.scene(), lab.simulation().scene());
+    assert_eq!(*lab.simulation().status(), Status::Converged);
+    let fresh = solved(lab.scene());
+    let largest = fresh.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let off = lab.simulation().displacement().iter().zip(fresh.displacement()).map(|(a, b)| (a - b).norm());
+    let off = off.fold(0.0, f64::max);
+    assert!(off < 1e-5 * largest, "{off} of {largest}");
+    assert!(lab.simulation().certificate().is_some(), "it is not certified");
+}
+
+/// Every way to change a scene ends where a solve of it ends.
+#[test]
+fn every_edit_goes_through_the_worker_and_ends_where_solve_ends() {
+    let mut harness = harness("cantilever");
+    agrees_with_solve(harness.state());
+    let edits: [(&str, &dyn Fn(&mut Harness<'_, Lab>)); 9] = [
+        ("a load", &|h| type_into(h, "Force", "700")),
+        ("a direction", &|h| type_into(h, "Direction", "-60")),
+        ("a method", &|h| pick(h, "Method", "newton")),
+        ("an element", &|h| pick(h, "Element", "t6")),
+        ("a mesh", &|h| type_into(h, "Cells along", "30")),
+        ("a material", &|h| type_into(h, "Young E", "2 MPa")),
+        ("a reset", &|h| h.get_by_label("Reset").click()),
+        ("undo", &|h| h.key_press_modifiers(Modifiers::COMMAND, Key::Z)),
+        ("another scene", &|h| pick(h, "Scene", "elastica")),
+    ];
+    for (what, edit) in edits {
+        let before = harness.state().scene().clone();
+        edit(&mut harness);
+        settle(&mut harness);
+        if what != "a reset" {
+            assert_ne!(*harness.state().scene(), before, "{what} changes nothing");
+        }
+        agrees_with_solve(harness.state());
+    }
+}
+
+/// Paused, single steps and going on are what they are between frames.
+#[test]
+fn a_body_beside_the_window_is_paused_and_stepped() {
+    let mut harness = harness("article");
+    let iterations = harness.state().simulation().iterations();
+    harness.get_by_label("Step").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().simulation().iterations(), 1);
+    harness.key_press(Key::N);
+    settle(&mut harness);
+    assert_eq!(harness.state().simulation().iterations(), 2);
+    // Paused, an edit leaves the body where it is.
+    let u = harness.state().simulation().displacement().to_vec();
+    type_into(&mut harness, "Force", "12000");
+    settle(&mut harness);
+    assert_eq!(harness.state().simulation().displacement(), u);
+    assert_eq!(harness.state().simulation().scene(), harness.state().scene());
+    harness.get_by_label("Reset").click();
+    settle(&mut harness);
+    assert!(harness.state().simulation().displacement().iter().all(|u| *u == Vector2::zeros()));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut harness);
+    harness.get_by_label("Run").click();
+    harness.step();
+    settle(&mut harness);
+    assert_eq!(harness.state().simulation().iterations(), iterations);
+    agrees_with_solve(harness.state());
+}
+
+/// A mesh that takes long enough to be met on its way, under another load.
+fn large() -> Scene {
+    scene_with("cantilever", &["beam.cells=[400,40]", "load.0.force=[0,-700]"])
+}
+
+/// While a mesh is made the picture before stays, says what is done, and comes back where that is cancelled.
+#[test]
+fn cancel_brings_back_what_was() {
+    let mut harness = harness("cantilever");
+    let before = (harness.state().scene().clone(), harness.state().simulation().displacement().to_vec());
+    let shown = harness.state().frame().positions.to_vec();
+    let tips = harness.state().arrow_tips();
+    harness.state_mut().set_scene(large()).unwrap();
+    harness.step();
+    assert!(harness.state().is_working());
+    assert_eq!(*harness.state().scene(), large(), "controls show what is wanted");
+    assert_eq!(*harness.state().simulation().scene(), before.0, "the picture stays");
+    assert_eq!(harness.state().arrow_tips(), tips, "the arrow is of another load than the body");
+    assert!(harness.query_by_label_contains("32,000 triangles").is_some(), "nothing is said");
+    harness.get_by_label("Cancel").click();
+    harness.step();
+    harness.step();
+    assert_eq!(*harness.state().scene(), before.0);
+    assert!(harness.query_by_label("Cancel").is_none(), "what nobody waits for is still named");
+    settle(&mut harness);
+    assert_eq!(harness.state().simulation().displacement(), before.1);
+    assert_eq!(harness.state().frame().positions, shown);
+    agrees_with_solve(harness.state());
+    // The body can be bent as before.
+    type_into(&mut harness, "Force", "500");
+    settle(&mut harness);
+    agrees_with_solve(harness.state());
+    // On the way to an equilibrium, too: by key.
+    let before = (harness.state().scene().clone(), harness.state().simulation().displacement().to_vec());
+    harness.state_mut().set_scene(before.0.clone().with_cells(300, 30)).unwrap();
+    wait(&mut harness, |lab| lab.simulation().scene() != &before.0);
+    if harness.state().is_working() {
+        harness.key_press(Key::Escape);
+        settle(&mut harness);
+        assert_eq!(*harness.state().scene(), before.0);
+        assert_eq!(harness.state().simulation().displacement(), before.1);
+    }
+    agrees_with_solve(harness.state());
+}
+
+/// A dragged slider asks for many meshes, and few are made: one at a time, the last one among them.
+#[test]
+fn a_dragged_slider_makes_few_bodies() {
+    let mut harness = harness("cantilever");
+    unfold(&mut harness, "Cells along");
+    let slider = harness.get_by_role_and_label(Role::Slider, "Cells along").rect();
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    harness.hover_at(at(0.5));
+    harness.drag_at(at(0.5));
+    harness.step();
+    let (mut wanted, mut shown): (Vec<Scene>, Vec<Scene>) = (Vec::new(), Vec::new());
+    for i in 0..60u8 {
+        harness.hover_at(at(0.5 + 0.005 * f32::from(i)));
+        harness.step();
+        let lab = harness.state();
+        if wanted.last() != Some(lab.scene()) {
+            wanted.push(lab.scene().clone());
+        }
+        if shown.last() != Some(lab.simulation().scene()) {
+            shown.push(lab.simulation().scene().clone());
+        }
+    }
+    harness.drop_at(at(0.795));
+    settle(&mut harness);
+    assert!(wanted.len() > 10, "{} meshes were asked for", wanted.len());
+    assert!(shown.len() <= wanted.len(), "{} meshes were shown", shown.len());
+    assert_eq!(harness.state().scene(), wanted.last().unwrap());
+    agrees_with_solve(harness.state());
+    // One drag is one step.
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut harness);
+    assert_eq!(*harness.state().scene(), scene("cantilever"));
+}
+
+/// What is wrong with a mesh is found beside the window, and said at the control; nothing is changed.
+#[test]
+fn what_is_wrong_is_said_and_nothing_is_changed() {
+    let mut harness = harness("cantilever");
+    let before = harness.state().scene().clone();
+    let wrong = before.clone().with_cells(20, 2).clamp("nowhere");
+    harness.state_mut().set_scene(wrong).unwrap();
+    settle(&mut harness);
+    assert_eq!(*harness.state().scene(), before);
+    agrees_with_solve(harness.state());
+    assert!(harness.state_mut().set_scene(before.clone().with_cells(0, 1)).is_err());
+    agrees_with_solve(harness.state());
+}
+
+/// A lab that is dropped ends what it has begun.
+#[test]
+fn a_dropped_lab_ends_its_worker() {
+    let mut lab = {
+        let scene = scene_with("cantilever", &["beam.cells=[200,20]", "solver.method=warped"]);
+        let simulation = Simulation::new(&scene).unwrap();
+        Lab::new(Source { name: "cantilever".into(), assignments: Vec::new() }, scene, simulation)
+    };
+    lab.set_most_unknowns(0.0);
+    lab.solve();
+    let system = Arc::downgrade(lab.simulation().system());
+    let mut heavy = lab.scene().clone();
+    heavy.set_force(0, [0.0, -1e4]).unwrap();
+    heavy.solver.tolerance = 1e-14;
+    heavy.solver.max_iterations = 100_000;
+    lab.set_scene(heavy).unwrap();
+    assert!(lab.is_working());
+    drop(lab);
+    while system.upgrade().is_some() {
+        std::thread::yield_now();
+    }
+}
+
+/// Solved at once, for a picture, is what it is beside the window.
+#[test]
+fn solve_waits_for_the_worker() {
+    let scene = scene("cantilever");
+    let simulation = Simulation::new(&scene).unwrap();
+    let mut lab = Lab::new(Source { name: "cantilever".into(), assignments: Vec::new() }, scene.clone(), simulation);
+    lab.set_most_unknowns(0.0);
+    lab.set_scene(scene.with_cells(24, 3)).unwrap();
+    lab.solve();
+    assert!(!lab.is_working());
+    agrees_with_solve(&lab);
+    let mut newton = lab.scene().clone();
+    newton.solver.method = MethodKind::Newton;
+    lab.set_scene(newton).unwrap();
+    lab.solve();
+    agrees_with_solve(&lab);
+}
