@@ -8,7 +8,7 @@ use super::panel::PanelInput;
 use super::toolbar::{Icon, icon_button};
 use super::verdict::{Errors, error_color, rho, rho_number};
 use crate::simulation::Motion;
-use crate::words::{engineering, percent};
+use crate::words::{engineering, percent, two_digits};
 
 /// In place of a number that is not known.
 pub(super) const UNKNOWN: &str = "\u{2013}";
@@ -145,10 +145,6 @@ fn of_motion<'a>(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> 
             gauge: Gauge::None,
         },
     ]
-}
-
-fn two_digits(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 /// A name, its number and its gauge.

@@ -2,10 +2,10 @@
 
 use super::palette::Palette;
 use super::panel::PanelInput;
-use crate::method::rho_words;
+use crate::method::{floor_words, rho_words};
 use crate::scene::{ElementKind, MethodKind, Scene, limits};
 use crate::simulation::{Simulation, Status, probe_results};
-use crate::words::{count, engineering, number, percent};
+use crate::words::{count, engineering, number, percent, two_digits};
 
 /// Where most of an error comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,14 +151,20 @@ pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
         );
         return lines;
     }
-    let residual = number(significant_residual(simulation.residual()));
+    let residual = number(two_digits(simulation.residual()));
     let asked = number(input.scene.solver.tolerance);
     lines.push(match simulation.status() {
+        Status::Converged if simulation.residual_floor().is_some() => {
+            format!("The forces balance to working precision: what is left is {residual} of them.")
+        }
         Status::Converged => {
             format!("The forces balance: what is left is {residual} of them, and {asked} is asked for.")
         }
         _ => format!("The forces are out of balance by {residual} of them; {asked} is asked for."),
     });
+    if let Some(floor) = simulation.residual_floor() {
+        lines.push(sentence(&floor_words(floor, input.scene.solver.tolerance)));
+    }
     match stability(simulation) {
         Some(true) => {
             lines.push("Stable: pushed a little, the body comes back (the exact tangent is positive definite).".into())
@@ -185,11 +191,6 @@ pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
         }
     }
     lines
-}
-
-/// A residual needs no more than two digits.
-fn significant_residual(residual: f64) -> f64 {
-    format!("{residual:.1e}").parse().unwrap_or(residual)
 }
 
 /// Something that would make a result better, in words, and the scene that has it.
@@ -246,5 +247,5 @@ pub(super) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> 
 
 /// ρ as it is shown: two digits, three above one tenth.
 pub(super) fn rho_number(rho: f64) -> String {
-    engineering(format!("{rho:.1e}").parse().unwrap_or(rho), "")
+    engineering(two_digits(rho), "")
 }

@@ -56,6 +56,8 @@ struct Body {
     elements: Box<dyn Elements>,
     edges: Vec<Edge>,
     nodal_areas: Vec<f64>,
+    /// The most elements that share a node.
+    valence: u32,
     /// Made when it is first asked for.
     recovery: OnceLock<Recovery>,
     size: f64,
@@ -65,10 +67,12 @@ impl Body {
     fn new(origin: Origin, mesh: Mesh) -> Self {
         let entry = mesh.entry();
         let mut nodal_areas = vec![0.0; mesh.nodes().len()];
+        let mut valences = vec![0; mesh.nodes().len()];
         for nodes in mesh.elements() {
             let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.node(n)).collect();
             for (&node, area) in nodes.iter().zip(entry.nodal_areas(&rest)) {
                 nodal_areas[node as usize] += area;
+                valences[node as usize] += 1;
             }
         }
         let (low, high) = mesh.bounds();
@@ -77,6 +81,7 @@ impl Body {
             elements: (entry.loops)(mesh.nodes(), mesh.connectivity()),
             edges: Edge::of(&mesh),
             nodal_areas,
+            valence: valences.into_iter().max().unwrap_or(0),
             recovery: OnceLock::new(),
             size: (high - low).norm(),
             mesh,
@@ -221,6 +226,12 @@ impl System {
         &self.body.nodal_areas
     }
 
+    /// The most elements that share a node.
+    #[must_use]
+    pub(super) fn valence(&self) -> u32 {
+        self.body.valence
+    }
+
     /// From quadrature points to nodes: made when it is first asked for, and shared.
     #[must_use]
     pub fn recovery(&self) -> &Recovery {
@@ -272,7 +283,7 @@ impl System {
     pub fn follow(&self, state: &mut State, kinematics: Kinematics) {
         let State { displacement: u, rotations, .. } = state;
         match kinematics {
-            Kinematics::Corotated => self.elements().rotations(u, rotations),
+            Kinematics::Corotated => self.elements().rotations(u.view(), rotations),
             Kinematics::Linear => rotations.fill(Rotation::IDENTITY),
         }
         self.turn_edges(state, kinematics);
