@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::status::ROUNDING;
+use super::status::{LOOSEST_FLOOR, ROUNDING};
 use crate::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use crate::element::Tangent;
 use crate::solver::{Factor, SolverError};
@@ -102,14 +102,15 @@ impl Iteration<'_> {
         });
     }
 
-    /// The bound of what rounding changes in the residual, where the residual is within it and both are small.
+    /// The bound of what rounding changes in the residual, where the residual is small and within it, and it
+    /// says something.
     pub(super) fn floor(&mut self) -> Option<f64> {
         if self.residual > ROUNDING {
             return None;
         }
         let Self { problem, forces, state, workspace, residual, .. } = self;
         let floor = timed(&mut self.timings.assemble, || problem.residual_floor(state, forces, &mut workspace.nodal));
-        floor.filter(|floor| *residual <= *floor && *floor <= ROUNDING)
+        floor.filter(|floor| *residual <= *floor && *floor <= LOOSEST_FLOOR)
     }
 
     /// Whether the supports are where they are at this load factor.

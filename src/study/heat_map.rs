@@ -43,6 +43,8 @@ pub fn heat_map(entries: &[Entry]) -> String {
                 };
                 (label.clone(), columns.iter().map(cell).collect())
             })
+            // A mesh file has not every element.
+            .filter(|(_, cells): &(String, Vec<Vec<usize>>)| cells.iter().flatten().any(|&count| count > 0))
             .collect(),
     };
     let panels = METHODS.iter().flat_map(|m| ElementKind::all().map(move |e| (e, m.kind)));
