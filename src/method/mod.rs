@@ -89,8 +89,8 @@ pub enum Verdict {
     Changed,
     /// Done.
     Converged,
-    /// Done as far as double precision goes: the residual is above the tolerance, no longer falls, and is within this bound
-    /// of what rounding changes in it.
+    /// Done as far as double precision goes: the residual is above the tolerance, and within this bound of what rounding
+    /// changes in it.
     AtRounding(f64),
     /// No use to go on.
     Stop(Reason),

@@ -681,7 +681,7 @@ impl Simulation {
     }
 
     /// Where a solve has converged to working precision only: a bound of what rounding changes in [`Self::residual`],
-    /// which is within it, above the tolerance, and no longer falls. `None` where the tolerance is met, or nothing is.
+    /// which is within it and above the tolerance. `None` where the tolerance is met, or nothing is.
     #[must_use]
     pub fn residual_floor(&self) -> Option<f64> {
         self.search().and_then(Search::residual_floor)

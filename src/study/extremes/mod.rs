@@ -368,12 +368,15 @@ pub(super) fn alphas(entries: &[Entry]) -> Vec<f64> {
     alphas
 }
 
+/// Whether a case is of a kind.
+type Kind = fn(&Case) -> bool;
+
 /// Percent of the cases of a kind under a load that end well, as the method counts it; `None` where there are none.
 fn percent_well(
     entries: &[Entry],
     (element, method): (ElementKind, MethodKind),
     alpha: f64,
-    is_of: fn(&Case) -> bool,
+    is_of: Kind,
 ) -> Option<f64> {
     let here = entries.iter().filter(|e| {
         let c = &e.case;
@@ -404,7 +407,7 @@ pub fn summary(entries: &[Entry]) -> String {
         text,
         "\n{at_rounding} of what converged did so to working precision: above the tolerance, within the bound of rounding"
     );
-    let kinds: [(fn(&Case) -> bool, &str); 4] = [
+    let kinds: [(Kind, &str); 4] = [
         (|c| c.is_plain() && !c.moved, "of the cases from rest, by load α = P L²/EI"),
         (
             |c| c.is_plain() && c.moved,
