@@ -19,7 +19,7 @@
 //! | symbol | meaning | shape, unit |
 //! |---|---|---|
 //! | `X`, `x` | rest and current node positions | n × 2, m |
-//! | `u = x − X` | displacement: what the state stores, so that small strains keep their digits | n × 2, m |
+//! | `u = x − X` | displacement: what the state stores, as a sum of two numbers, so that small strains keep their digits | n × 2, m |
 //! | `F = I + H` | deformation gradient Σ xₐ ⊗ ∇Nₐ at a quadrature point | 2 × 2 |
 //! | `R`, `S` | polar factors F = R S; R a proper rotation, S symmetric | 2 × 2 |
 //! | `E`, `ν`, `ρ`, `t` | Young's modulus Pa, Poisson ratio, density kg/m³, thickness m | scalars |
@@ -38,7 +38,7 @@
 //!
 //! Data flows one way, and the modules say so; each imports only from its left:
 //!
-//! [`words`], [`timings`], [`scene`] → [`rotation`], [`material`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
+//! [`words`], [`timings`], [`scene`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
 //! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`study`] → the commands and the
 //! window. [`truth`] needs the scene only; [`article`] stands beside.
 //!
@@ -61,6 +61,7 @@ pub mod article;
 pub mod assembly;
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod displacement;
 pub mod dynamics;
 pub mod element;
 pub mod export;

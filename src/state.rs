@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
+use crate::displacement::{Compensated, Displacement};
 use crate::rotation::Rotation;
 
 /// Where a body is and how it moves. Slices over nodes are in the mesh's order; rotations are those of the elements, one
@@ -10,7 +11,7 @@ use crate::rotation::Rotation;
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// u = x − X of every node, m.
-    pub(crate) displacement: Vec<Vector2<f64>>,
+    pub(crate) displacement: Displacement,
     /// R of every element or quadrature point. Where the polar factor of F is undefined it is the one before.
     pub(crate) rotations: Vec<Rotation>,
     /// How far every named edge has turned since rest, rad, full turns included; 0 for edges that are not straight.
@@ -52,7 +53,7 @@ impl State {
     #[must_use]
     pub(crate) fn at_rest(nodes: usize, rotations: usize, edges: usize) -> Self {
         Self {
-            displacement: vec![Vector2::zeros(); nodes],
+            displacement: Displacement::zeros(nodes),
             rotations: vec![Rotation::IDENTITY; rotations],
             turns: vec![0.0; edges],
             velocity: vec![Vector2::zeros(); nodes],
@@ -64,7 +65,7 @@ impl State {
 
     /// Back to rest.
     pub(crate) fn reset(&mut self) {
-        self.displacement.fill(Vector2::zeros());
+        self.displacement.reset();
         self.rotations.fill(Rotation::IDENTITY);
         self.turns.fill(0.0);
         self.stop();
@@ -79,7 +80,7 @@ impl State {
 
     /// Becomes a state of the same body, without allocating.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.displacement.clone_from(&other.displacement);
+        self.displacement.copy_from(&other.displacement);
         self.rotations.clone_from(&other.rotations);
         self.turns.clone_from(&other.turns);
         self.velocity.clone_from(&other.velocity);
@@ -92,6 +93,12 @@ impl State {
     #[must_use]
     pub fn displacement(&self) -> &[Vector2<f64>] {
         &self.displacement
+    }
+
+    /// The displacement with the digits beyond [`Self::displacement`], m.
+    #[must_use]
+    pub fn compensated(&self) -> Compensated<'_> {
+        self.displacement.view()
     }
 
     /// R of every element or quadrature point, element by element.
@@ -139,7 +146,7 @@ impl State {
         if !is_finite(&u) {
             return Err(StateError::NotFinite { what: "displacements" });
         }
-        Ok(Self { displacement: u, knows_net_force: false, ..self.clone() })
+        Ok(Self { displacement: Displacement::from_rounded(u), knows_net_force: false, ..self.clone() })
     }
 
     /// Accepts `other` as a state of the same body.

@@ -34,7 +34,7 @@ pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut words = String::new();
     for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
             words.push(',');
         }
         words.push(digit);
@@ -128,6 +128,12 @@ pub fn percent(value: f64) -> String {
         return format!("{} %", number(three_digits(value)));
     }
     format!("{} %", significant(value, 2))
+}
+
+/// A number rounded to two digits.
+#[must_use]
+pub fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 /// The nearest number of three significant digits: as much as a slider, a pointer or a clock is good for.

@@ -82,6 +82,7 @@ fn json_has_every_field_of_the_contract() {
             "iterations",
             "load_steps",
             "residual",
+            "residual_floor",
             "fixed_point_rho",
             "max_rotation_deg",
             "max_strain",
@@ -834,10 +835,15 @@ fn extremes_writes_the_stability_atlas() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let csv = fs::read_to_string(out.join("extremes.csv")).unwrap();
     let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
-    assert!(rows.len() >= 150 && rows.iter().all(|row| row.len() == 14));
+    assert!(rows.len() >= 150 && rows.iter().all(|row| row.len() == 17));
     for row in &rows {
         for value in row[3..8].iter().chain(&row[9..13]) {
             assert!(value.parse::<f64>().unwrap().is_finite(), "{row:?}");
+        }
+        // Working precision is a residual above the tolerance and within its bound.
+        if let Ok(floor) = row[16].parse::<f64>() {
+            let residual: f64 = row[10].parse().unwrap();
+            assert!(residual > 1e-8 && residual <= floor && floor <= 1e-5 && row[8] != "not_converged", "{row:?}");
         }
     }
     let count = |element: &str, method: &str, outcome: &str| {
@@ -845,13 +851,24 @@ fn extremes_writes_the_stability_atlas() {
     };
     for element in ["t3", "t6", "q4"] {
         let all = count(element, "newton", "");
-        // What rounding takes: L/H = 1000 with ν = 0.4999, and a cube under a thousand times what bends it.
+        // A cube under a thousand times what bends it is turned inside out.
         assert!(count(element, "newton", "certified") * 100 >= 80 * all, "{element}");
+        assert_eq!(count(element, "newton", "not_converged") + count(element, "newton", "stalled"), 0, "{element}");
+        // Distorted cells are as good as others, however large the load.
+        let distorted: Vec<_> = rows.iter().filter(|r| (r[0], r[1]) == (element, "newton") && r[14] != "0").collect();
+        assert!(distorted.len() >= 3 && distorted.iter().all(|r| r[8] == "certified"), "{distorted:?}");
         assert!(count(element, "warped", "stalled") > count(element, "newton", "stalled"), "{element}");
         // Every starting state, however bad, ends in a certified equilibrium.
         let bad_starts: Vec<_> =
             rows.iter().filter(|r| (r[0], r[1]) == (element, "newton") && r[2] != "rest").collect();
         assert!(bad_starts.len() >= 12 && bad_starts.iter().all(|r| r[8] == "certified"), "{bad_starts:?}");
+    }
+    // Mesh files come with the elements that they have.
+    for file in ["bracket", "clip", "cook"] {
+        let of = |element: &str| rows.iter().filter(|r| r[0] == element && r[15] == file).count();
+        assert!(of("t3") >= 12 && of("t6") == of("t3") && of("q4") == 0, "{file}");
+        let newton = rows.iter().filter(|r| (r[1], r[15]) == ("newton", file));
+        assert!(newton.into_iter().all(|r| r[3] != "0.1" || r[8] == "certified"), "{file}");
     }
     // The summary's counts are those of the table, and the picture is there.
     let summary = stdout(&output);

@@ -3,7 +3,7 @@
 use super::language::{count, fill, percent, sentence, tr, translated};
 use super::palette::Palette;
 use super::panel::PanelInput;
-use crate::method::rho_words;
+use crate::method::{floor_words, rho_words};
 use crate::scene::{ElementKind, MethodKind, Scene, limits};
 use crate::simulation::{Simulation, Status, probe_results};
 use crate::words::{self, engineering, number, two_digits};
@@ -154,6 +154,9 @@ pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
     let residual = number(two_digits(simulation.residual()));
     let asked = number(input.scene.solver.tolerance);
     lines.push(match simulation.status() {
+        Status::Converged if simulation.residual_floor().is_some() => {
+            fill!("The forces balance to working precision: what is left is %{residual} of them.", residual = residual)
+        }
         Status::Converged => {
             fill!(
                 "The forces balance: what is left is %{residual} of them, and %{asked} is asked for.",
@@ -167,6 +170,9 @@ pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
             asked = asked
         ),
     });
+    if let Some(floor) = simulation.residual_floor() {
+        lines.push(sentence(&translated(&floor_words(floor, input.scene.solver.tolerance))));
+    }
     let stable = stability(simulation).map(|stable| match stable {
         true => "Stable: pushed a little, the body comes back (the exact tangent is positive definite).",
         false => "Unstable: pushed a little, the body leaves (the exact tangent is not positive definite).",

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use crate::displacement::Displacement;
 use crate::mesh::Mesh;
 
 /// Marks a fixed unknown.
@@ -131,6 +132,13 @@ impl Pattern {
     pub fn add_free(&self, free: &[f64], factor: f64, nodal: &mut [Vector2<f64>]) {
         for (value, &unknown) in free.iter().zip(&self.free) {
             nodal[unknown as usize / 2][unknown as usize % 2] += factor * value;
+        }
+    }
+
+    /// Moves a body by `factor` times a vector over the free unknowns, m. What supports fix does not move.
+    pub(crate) fn advance(&self, free: &[f64], factor: f64, u: &mut Displacement) {
+        for (value, &unknown) in free.iter().zip(&self.free) {
+            u.advance(unknown as usize / 2, unknown as usize % 2, factor * value);
         }
     }
 

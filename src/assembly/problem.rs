@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::{Hand, Kinematics, Loads, Matrix, NodalProbe, Supports, System, SystemError};
-use crate::element::{Elements, MatrixSum, Rotations, Tangent};
+use crate::element::{Elements, MatrixSum, Rotations, Tangent, UNIT};
 use crate::material::Lame;
 use crate::rotation::Rotation;
 use crate::scene::{Load, Material, Scene, Support};
@@ -207,7 +207,7 @@ impl Problem {
     pub fn linearize(&self, state: &State, forces: &mut Forces, tangent: Option<(Tangent, &mut Matrix)>) {
         self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
             let rotations = Rotations::Given(&state.rotations);
-            elements.linearize(moduli, &state.displacement, rotations, force, magnitude, matrix);
+            elements.linearize(moduli, state.compensated(), rotations, force, magnitude, matrix);
         });
     }
 
@@ -229,7 +229,7 @@ impl Problem {
             }
         };
         self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
-            elements.linearize(moduli, u, rotations, force, magnitude, matrix);
+            elements.linearize(moduli, u.view(), rotations, force, magnitude, matrix);
         });
     }
 
@@ -241,7 +241,7 @@ impl Problem {
         forces: &mut Forces,
         tangent: Option<(Tangent, &mut Matrix)>,
     ) {
-        let states = states.map(|state| (&*state.displacement, &*state.rotations));
+        let states = states.map(|state| (state.compensated(), &*state.rotations));
         self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
             elements.linearize_between(moduli, states, force, magnitude, matrix);
         });
@@ -295,10 +295,33 @@ impl Problem {
         residual / pattern.norm(magnitude).max(pattern.norm(external))
     }
 
+    /// A bound of what rounding has changed in the relative residual of the last [`Self::balance`], to first order in the
+    /// unit roundoff: below it the forces balance as well as double precision can tell. `None` where a hand pulls.
+    /// `scratch` is a nodal vector to work in.
+    pub fn residual_floor(&self, state: &State, forces: &Forces, scratch: &mut [Vector2<f64>]) -> Option<f64> {
+        if self.hand.is_some() {
+            return None;
+        }
+        let Forces { magnitude, external, residual, .. } = forces;
+        scratch.fill(Vector2::zeros());
+        let moduli = self.material.membrane();
+        self.system.elements().add_rounding(moduli, state.compensated(), &state.rotations, scratch);
+        self.loads.add_rounding(&self.system, &state.displacement, external, scratch);
+        let sums = f64::from(self.system.valence());
+        for (bound, ((magnitude, external), residual)) in
+            scratch.iter_mut().zip(magnitude.iter().zip(external).zip(residual))
+        {
+            *bound += (magnitude * sums + external.abs() + residual.abs()) * UNIT;
+        }
+        let pattern = self.system.pattern();
+        let bound = pattern.norm(scratch) / pattern.norm(magnitude).max(pattern.norm(external));
+        bound.is_finite().then_some(bound)
+    }
+
     /// Elastic energy, J.
     #[must_use]
     pub fn elastic_energy(&self, state: &State) -> f64 {
-        self.system.elements().energy(self.material.membrane(), &state.displacement, &state.rotations)
+        self.system.elements().energy(self.material.membrane(), state.compensated(), &state.rotations)
     }
 
     /// Elastic energy and the potential of loads and hand at this load factor, J: what an equilibrium makes stationary.

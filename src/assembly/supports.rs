@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::edge::{no_such_edge, node_at};
 use super::{Kinematics, Matrix, NodeWeights, System};
+use crate::displacement::Displacement;
 use crate::element::{MatrixSum, Rotations, Tangent};
 use crate::mesh::Mesh;
 use crate::rotation::Rotation;
@@ -157,12 +158,12 @@ impl Supports {
             return;
         }
         let (rest, mut matrix) = (system.at_rest(), Matrix::new(system.pattern()));
-        let mut scratch = [rest.displacement.clone(), rest.displacement.clone()];
+        let mut scratch = [rest.displacement.to_vec(), rest.displacement.to_vec()];
         let [force, magnitude] = &mut scratch;
         let sum = MatrixSum { tangent: Tangent::WARPED, slots: system.slots(), values: matrix.slots() };
         let (elements, moduli) = (system.elements(), material.membrane());
         let rotations = Rotations::Given(&rest.rotations);
-        elements.linearize(moduli, &rest.displacement, rotations, force, magnitude, Some(sum));
+        elements.linearize(moduli, rest.compensated(), rotations, force, magnitude, Some(sum));
         self.diagonal = matrix.diagonal(system.pattern()).collect();
     }
 
@@ -204,9 +205,9 @@ impl Supports {
     }
 
     /// Puts the fixed components of a displacement where the supports take them at this load factor.
-    pub(crate) fn put(&self, mesh: &Mesh, factor: f64, kinematics: Kinematics, u: &mut [Vector2<f64>]) {
+    pub(crate) fn put(&self, mesh: &Mesh, factor: f64, kinematics: Kinematics, u: &mut Displacement) {
         for (node, axis, target) in self.targets(mesh, factor, kinematics) {
-            u[node as usize][axis] = target;
+            u.put(node, axis, target);
         }
     }
 
@@ -278,7 +279,7 @@ impl Supports {
             return false;
         }
         let turn = Rotation::from_angle(angle);
-        for (u, x) in state.displacement.iter_mut().zip(mesh.nodes()) {
+        for (u, x) in state.displacement.overwrite().iter_mut().zip(mesh.nodes()) {
             *u = turn.apply(x + *u - from) + to - x;
         }
         for r in &mut state.rotations {

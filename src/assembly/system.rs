@@ -56,6 +56,8 @@ struct Body {
     elements: Box<dyn Elements>,
     edges: Vec<Edge>,
     nodal_areas: Vec<f64>,
+    /// The most elements that share a node.
+    valence: u32,
     /// Made when it is first asked for.
     recovery: OnceLock<Recovery>,
     strip: OnceLock<[f64; 2]>,
@@ -66,10 +68,12 @@ impl Body {
     fn new(origin: Origin, mesh: Mesh) -> Self {
         let entry = mesh.entry();
         let mut nodal_areas = vec![0.0; mesh.nodes().len()];
+        let mut valences = vec![0; mesh.nodes().len()];
         for nodes in mesh.elements() {
             let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.node(n)).collect();
             for (&node, area) in nodes.iter().zip(entry.nodal_areas(&rest)) {
                 nodal_areas[node as usize] += area;
+                valences[node as usize] += 1;
             }
         }
         let (low, high) = mesh.bounds();
@@ -78,6 +82,7 @@ impl Body {
             elements: (entry.loops)(mesh.nodes(), mesh.connectivity()),
             edges: Edge::of(&mesh),
             nodal_areas,
+            valence: valences.into_iter().max().unwrap_or(0),
             recovery: OnceLock::new(),
             strip: OnceLock::new(),
             size: (high - low).norm(),
@@ -223,6 +228,12 @@ impl System {
         &self.body.nodal_areas
     }
 
+    /// The most elements that share a node.
+    #[must_use]
+    pub(super) fn valence(&self) -> u32 {
+        self.body.valence
+    }
+
     /// From quadrature points to nodes: made when it is first asked for, and shared.
     #[must_use]
     pub fn recovery(&self) -> &Recovery {
@@ -290,7 +301,7 @@ impl System {
     pub fn follow(&self, state: &mut State, kinematics: Kinematics) {
         let State { displacement: u, rotations, .. } = state;
         match kinematics {
-            Kinematics::Corotated => self.elements().rotations(u, rotations),
+            Kinematics::Corotated => self.elements().rotations(u.view(), rotations),
             Kinematics::Linear => rotations.fill(Rotation::IDENTITY),
         }
         self.turn_edges(state, kinematics);

@@ -85,9 +85,10 @@ pub(super) enum Command {
         after_help = "Exit codes: 0 both are met, 1 nothing meets them (the closest is printed), 2 bad input or usage."
     )]
     Tune(TuneArgs),
-    /// Solve at the extremes of load, stiffness, Poisson ratio, slenderness and starting state, and count how each method
-    /// ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary. The same of every integrator in
-    /// motion, at the extremes of stiffness, time step and weight: extremes-motion.csv, .svg and .png.
+    /// Solve at the extremes of load, stiffness, Poisson ratio, slenderness, cells and starting state, and on mesh files,
+    /// and count how each method ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary. The same
+    /// of every integrator in motion, at the extremes of stiffness, time step and weight: extremes-motion.csv, .svg and
+    /// .png.
     Extremes {
         #[command(flatten)]
         out: FolderArgs,

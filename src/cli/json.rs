@@ -44,6 +44,7 @@ pub(super) fn solution(
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
         "residual": number(solution.residual),
+        "residual_floor": solution.residual_floor.map(number),
         "fixed_point_rho": certificate.fixed_point_rho.map(number),
         "max_rotation_deg": number(deformation.max_rotation_deg),
         "max_strain": number(deformation.max_strain),

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::CliError;
 use super::commands::Spent;
 use crate::mesh::Mesh;
-use crate::method::{Certificate, rho_words};
+use crate::method::{Certificate, floor_words, rho_words};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status, StressResult};
 use crate::stress::strain_warning;
@@ -53,6 +53,7 @@ pub(super) fn solution(
         solution.dofs
     );
     let word = solution.status.word();
+    let precision = if solution.residual_floor.is_some() { " to working precision" } else { "" };
     let _ = match &solution.motion {
         Some(MotionResult { time, counts, .. }) => writeln!(
             text,
@@ -64,13 +65,16 @@ pub(super) fn solution(
         ),
         None => writeln!(
             text,
-            "{word} after {}, relative residual {:.2e}",
+            "{word}{precision} after {}, relative residual {:.2e}",
             count(solution.iterations, "iteration"),
             solution.residual
         ),
     };
     if let Some(reason) = solution.status.failure() {
         let _ = writeln!(text, "  {reason}");
+    }
+    if let Some(floor) = solution.residual_floor {
+        let _ = writeln!(text, "  {}", floor_words(floor, scene.solver.tolerance));
     }
     if let Some(jump) = jump.flatten() {
         let _ = writeln!(text, "{jump}");

@@ -33,7 +33,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let hand_at_start = solver.hand_force(start);
     solver.problem.set_time(start.time + 0.5 * h);
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
-    state.displacement.copy_from_slice(&solver.memory.free_flight);
+    state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
     solver.follow(state);
     let stage = Stage {
         inertia: 2.0 / (h * h),

@@ -33,7 +33,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let tangent = if from_start {
         Tangent::WARPED
     } else {
-        state.displacement.copy_from_slice(&solver.memory.free_flight);
+        state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
         solver.follow(state);
         solver.solves.tangent()
     };

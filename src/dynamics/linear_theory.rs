@@ -62,7 +62,7 @@ impl Scratch {
         let system = problem.system();
         let rest = system.at_rest();
         Ok(Self {
-            before: rest.displacement.clone(),
+            before: rest.displacement.to_vec(),
             forces: Forces::new(rest.displacement.len()),
             matrix: Matrix::new(system.pattern()),
             factor: Factor::new(system.symbolic())?,
@@ -117,7 +117,7 @@ impl LinearTheory {
         let Scratch { seen, way, forces, before, .. } = &mut **scratch;
         seen.copy_from(end);
         problem.follow_and_linearize(seen, Kinematics::Corotated, forces, None);
-        combine(&mut way.displacement, [(1.0, &end.displacement), (-1.0, &start.displacement)]);
+        combine(way.displacement.overwrite(), [(1.0, &end.displacement), (-1.0, &start.displacement)]);
         let (stored, stiffness) = (problem.elastic_energy(end), 2.0 * problem.elastic_energy(way));
         let corotated = dot(&way.displacement, &forces.internal) - dot(&way.displacement, before);
         let off = if stiffness > NO_WAY * stored { (corotated / stiffness - 1.0).abs() } else { 0.0 };

@@ -173,7 +173,7 @@ impl StageSolver<'_> {
         match self.kinematics {
             Kinematics::Corotated if stage.between => problem.linearize_between([start, state], forces, matrix),
             Kinematics::Linear if stage.between => {
-                combine(&mut mean.displacement, [(0.5, &start.displacement), (0.5, &state.displacement)]);
+                combine(mean.displacement.overwrite(), [(0.5, &start.displacement), (0.5, &state.displacement)]);
                 problem.linearize(mean, forces, matrix);
             }
             _ => problem.linearize(state, forces, matrix),
@@ -318,7 +318,7 @@ impl StageSolver<'_> {
             return Err(StepError::NotFinite);
         }
         let pattern = self.problem.system().pattern();
-        timed(&mut self.timings.solve, || pattern.add_free(&corrector.free, 1.0, &mut state.displacement));
+        timed(&mut self.timings.solve, || pattern.advance(&corrector.free, 1.0, &mut state.displacement));
         Ok(())
     }
 
@@ -462,7 +462,7 @@ fn damped_configuration(
 
 /// The terms of a stage's difference quotient: that of the unknown first, then the others.
 fn terms<'a>(stage: &Stage<'a>, state: &'a State) -> [(f64, &'a [Vector2<f64>]); TERMS] {
-    let mut terms = [(stage.rate, state.displacement.as_slice()); TERMS];
+    let mut terms = [(stage.rate, &*state.displacement); TERMS];
     terms[1..].iter_mut().zip(stage.others).for_each(|(term, other)| *term = *other);
     terms
 }

@@ -59,9 +59,10 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     });
     timed(&mut solver.timings.solve, || {
         let nodes = forces.residual.iter().zip(&*damping).zip(lumped).zip(system.pattern().mask());
+        let displacement = state.displacement.overwrite();
         for (i, (((f, d), m), mask)) in nodes.enumerate() {
             state.velocity[i] = (start.velocity[i] + (f - d) * (h / m)).component_mul(mask);
-            state.displacement[i] = start.displacement[i] + state.velocity[i] * h;
+            displacement[i] = start.displacement[i] + state.velocity[i] * h;
         }
     });
     if !is_finite(&state.displacement) || !is_finite(&state.velocity) {

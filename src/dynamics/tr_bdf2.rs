@@ -38,7 +38,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     }
     solver.problem.set_time(start.time + g);
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (g, &start.velocity)]);
-    state.displacement.copy_from_slice(&solver.memory.free_flight);
+    state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
     solver.follow(state);
     // The state gets another one at the end of the step.
     let mut net_force = std::mem::take(&mut state.net_force);
@@ -85,7 +85,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
             (-w * c0, &start.velocity),
         ],
     );
-    combine(&mut state.displacement, [(1.0, &middle.displacement), (h - g, &middle.velocity)]);
+    combine(state.displacement.overwrite(), [(1.0, &middle.displacement), (h - g, &middle.velocity)]);
     solver.follow(state);
     let backward = Stage {
         inertia: 1.0 / (w * w),

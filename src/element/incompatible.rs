@@ -6,10 +6,12 @@ use nalgebra::{Matrix2, Matrix4, Matrix4x2, Vector2};
 
 use super::isoparametric::{SMALLEST_STRETCH_TRACE, gather};
 use super::matrix::ElementMatrix;
+use super::rounding::{Rounded, RoundedPoint, UNIT};
 use super::{
     DiscreteGradient, ElementType, Elements, MatrixSum, QuadraturePoint, Rotations, StrainRate, StrainVisitor, Tangent,
     warped_strain,
 };
+use crate::displacement::Compensated;
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar, polar_or};
 
@@ -96,12 +98,12 @@ impl Quad {
         Self { centre, gamma }
     }
 
-    /// q.
+    /// q: the γₐ sum to zero, so that differences will do.
     #[inline]
     fn twist(&self, u: &[Vector2<f64>; 4]) -> Vector2<f64> {
         let mut q = Vector2::zeros();
-        for (u, gamma) in u.iter().zip(&self.gamma) {
-            q += u * *gamma;
+        for (own, gamma) in u.iter().zip(&self.gamma).skip(1) {
+            q += (own - u[0]) * *gamma;
         }
         q
     }
@@ -345,16 +347,16 @@ impl Elements for IncompatibleQuads {
         self.points[point / 4][point % 4].area
     }
 
-    fn rotations(&self, u: &[Vector2<f64>], r: &mut [Rotation]) {
+    fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]) {
         for ((nodes, quad), r) in self.elements().zip(r) {
-            *r = polar_or(&(Matrix2::identity() + quad.centre.displacement_gradient(&gather(nodes, u))), *r);
+            *r = polar_or(&(Matrix2::identity() + quad.centre.displacement_gradient(&u.relative(nodes))), *r);
         }
     }
 
     fn linearize(
         &self,
         moduli: Lame,
-        u: &[Vector2<f64>],
+        u: Compensated<'_>,
         mut rotations: Rotations<'_>,
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
@@ -362,7 +364,7 @@ impl Elements for IncompatibleQuads {
     ) {
         let condensed = self.condensed(moduli);
         for (e, (nodes, quad, k)) in self.with_twist(&condensed).enumerate() {
-            let u = gather(nodes, u);
+            let u = u.relative(nodes);
             let h = quad.centre.displacement_gradient(&u);
             let r = rotations.see(e, &h);
             let (strain, inverse_trace) = (warped_strain(r, &h), inverse_trace(r, &h));
@@ -384,6 +386,36 @@ impl Elements for IncompatibleQuads {
         }
     }
 
+    fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]) {
+        let condensed = self.condensed(moduli);
+        for ((nodes, quad, k), &r) in self.with_twist(&condensed).zip(r) {
+            let own = Rounded::relative(u, nodes);
+            let seen = RoundedPoint::new(&quad.centre, moduli, r, &own);
+            let h = quad.centre.displacement_gradient(&own.map(|own| own.value));
+            let k = symmetric(k) * moduli.mu;
+            let q = Rounded::sum(&own, &quad.gamma);
+            let twisted = Twisted::new(&k, back(r, q.value));
+            let inverse_trace = following(r, &h);
+            // Turned back, |R| is its own transpose.
+            let size = seen.turn * q.value.abs();
+            let dq = seen.turn * q.error + size * (8.0 * UNIT) + seen.turned * q.value.abs() * seen.angle;
+            let (force, across) = (twisted.force.abs(), Vector2::new(size.y, size.x));
+            let dforce = k.abs() * (dq + size * (5.0 * UNIT));
+            let dmoment = (dforce + force * (4.0 * UNIT)).dot(&across) + force.dot(&Vector2::new(dq.y, dq.x));
+            let moment = force.dot(&across);
+            let turn = moment * inverse_trace;
+            let dturn = dmoment * inverse_trace + turn * (seen.trace + 4.0 * UNIT);
+            let twist = seen.turn * force;
+            let dtwist = seen.turn * dforce + twist * (10.0 * UNIT) + seen.turned * force * seen.angle;
+            for ((&node, g), gamma) in nodes.iter().zip(&quad.centre.gradients).zip(&quad.gamma) {
+                let g_across = Vector2::new(g.y.abs(), g.x.abs());
+                let turned =
+                    seen.turn * g_across * (dturn + turn * 10.0 * UNIT) + seen.turned * g_across * (turn * seen.angle);
+                bound[node as usize] += seen.force(g, 3.0) + dtwist * gamma.abs() + turned;
+            }
+        }
+    }
+
     /// The part at the centre has [`DiscreteGradient`]. Of ½ q̃ K q̃ the difference is K q̃ₘ·(q̃₁ − q̃₀), q̃ₘ their mean.
     /// With R̄ half way between R₀ and R₁, δ the angle between these, q̂ = R̄ᵀq and b̂ = tr((R̄ J)ᵀF),
     ///
@@ -395,14 +427,14 @@ impl Elements for IncompatibleQuads {
     fn linearize_between(
         &self,
         moduli: Lame,
-        [(u0, r0), (u1, r1)]: [(&[Vector2<f64>], &[Rotation]); 2],
+        [(u0, r0), (u1, r1)]: [(Compensated<'_>, &[Rotation]); 2],
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
         mut matrix: Option<MatrixSum<'_>>,
     ) {
         let condensed = self.condensed(moduli);
         for (e, ((nodes, quad, k), r)) in self.with_twist(&condensed).zip(r0.iter().zip(r1)).enumerate() {
-            let (u, r) = ([gather(nodes, u0), gather(nodes, u1)], [*r.0, *r.1]);
+            let (u, r) = ([u0.relative(nodes), u1.relative(nodes)], [*r.0, *r.1]);
             let h = u.map(|u| quad.centre.displacement_gradient(&u));
             let q = u.map(|u| quad.twist(&u));
             let between = DiscreteGradient::new(h, r);
@@ -494,11 +526,11 @@ impl Elements for IncompatibleQuads {
         }
     }
 
-    fn energy(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation]) -> f64 {
+    fn energy(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation]) -> f64 {
         let condensed = self.condensed(moduli);
         let mut energy = 0.0;
         for ((nodes, quad, k), &r) in self.with_twist(&condensed).zip(r) {
-            let u = gather(nodes, u);
+            let u = u.relative(nodes);
             let strain = warped_strain(r, &quad.centre.displacement_gradient(&u));
             let q = back(r, quad.twist(&u));
             energy += quad.centre.area * moduli.energy_density(&strain) + 0.5 * moduli.mu * q.dot(&(symmetric(k) * q));

@@ -4,9 +4,11 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::matrix::{ElementMatrix, PointTangent};
+use super::rounding::{Rounded, RoundedPoint};
 use super::{
     DiscreteGradient, ElementType, Elements, MatrixSum, Rotations, StrainRate, StrainVisitor, Tangent, warped_strain,
 };
+use crate::displacement::Compensated;
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
@@ -37,15 +39,16 @@ impl<const N: usize> QuadraturePoint<N> {
         Self { gradients, area: weight * jacobian.determinant() }
     }
 
-    /// The displacement gradient H = F − I = Σ uₐ ⊗ ∇Nₐ.
+    /// The displacement gradient H = F − I = Σ uₐ ⊗ ∇Nₐ, which is Σ (uₐ − u₁) ⊗ ∇Nₐ.
     ///
-    /// From displacements, not positions: small strains keep their digits however large the coordinates.
+    /// From displacements, not positions, and from differences of these: small strains keep their digits however large
+    /// the coordinates and however far the element is carried.
     #[must_use]
     #[inline(always)]
     pub fn displacement_gradient(&self, u: &[Vector2<f64>; N]) -> Matrix2<f64> {
         let mut h = Matrix2::zeros();
-        for (u, g) in u.iter().zip(&self.gradients) {
-            h += u * g.transpose();
+        for (own, g) in u.iter().zip(&self.gradients).skip(1) {
+            h += (own - u[0]) * g.transpose();
         }
         h
     }
@@ -116,13 +119,12 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
         self.nodes.iter().zip(&self.points)
     }
 
-    /// Every element's displacements, points and rotations.
+    /// Every element's nodes, points and rotations.
     fn turned<'a>(
         &'a self,
-        u: &'a [Vector2<f64>],
         r: &'a [Rotation],
-    ) -> impl Iterator<Item = ([Vector2<f64>; N], &'a [QuadraturePoint<N>; Q], &'a [Rotation])> {
-        self.elements().zip(r.chunks_exact(Q)).map(|((nodes, points), r)| (gather(nodes, u), points, r))
+    ) -> impl Iterator<Item = (&'a [u32; N], &'a [QuadraturePoint<N>; Q], &'a [Rotation])> {
+        self.elements().zip(r.chunks_exact(Q)).map(|((nodes, points), r)| (nodes, points, r))
     }
 
     /// One sweep: `look` finds what is to be known of an element's points, and `seen` makes of it how a point is seen.
@@ -210,9 +212,9 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         self.points[point / Q][point % Q].area
     }
 
-    fn rotations(&self, u: &[Vector2<f64>], r: &mut [Rotation]) {
+    fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]) {
         for ((nodes, points), r) in self.elements().zip(r.chunks_exact_mut(Q)) {
-            let u = gather(nodes, u);
+            let u = u.relative(nodes);
             for (point, r) in points.iter().zip(r) {
                 *r = polar_or(&(Matrix2::identity() + point.displacement_gradient(&u)), *r);
             }
@@ -222,7 +224,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     fn linearize(
         &self,
         moduli: Lame,
-        u: &[Vector2<f64>],
+        u: Compensated<'_>,
         mut rotations: Rotations<'_>,
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
@@ -230,7 +232,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     ) {
         let none = (Rotation::IDENTITY, Matrix2::zeros());
         let look = |e: usize, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
-            let u = gather(nodes, u);
+            let u = u.relative(nodes);
             let mut looks = [none; Q];
             for (q, (look, point)) in looks.iter_mut().zip(points).enumerate() {
                 let h = point.displacement_gradient(&u);
@@ -245,6 +247,18 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         self.sweep((look, none), seen, moduli, force, magnitude, matrix);
     }
 
+    fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]) {
+        for (nodes, points, r) in self.turned(r) {
+            let own = Rounded::relative(u, nodes);
+            for (point, &r) in points.iter().zip(r) {
+                let seen = RoundedPoint::new(point, moduli, r, &own);
+                for (&node, g) in nodes.iter().zip(&point.gradients) {
+                    bound[node as usize] += seen.force(g, Q as f64);
+                }
+            }
+        }
+    }
+
     /// ψ = μ ‖S − I‖² + λ/2 tr²(S − I) depends on ‖F‖² and r = tr S only, and r² is quadratic in F. So with
     /// F̄ = (F₀ + F₁)/2, R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁) and t̄ = (r₀ + r₁)/2 − 2 the stress P = 2μ (F̄ − R̄) + λ t̄ R̄ has
     /// P : (F₁ − F₀) = ψ₁ − ψ₀ exactly, and P F̄ᵀ is symmetric (the idea of Simo and Tarnow 1992 and Gonzalez 2000, in
@@ -252,14 +266,14 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     fn linearize_between(
         &self,
         moduli: Lame,
-        [(u0, r0), (u1, r1)]: [(&[Vector2<f64>], &[Rotation]); 2],
+        [(u0, r0), (u1, r1)]: [(Compensated<'_>, &[Rotation]); 2],
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
     ) {
         let none = DiscreteGradient::new([Matrix2::zeros(); 2], [Rotation::IDENTITY; 2]);
         let look = |e: usize, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
-            let (u0, u1) = (gather(nodes, u0), gather(nodes, u1));
+            let (u0, u1) = (u0.relative(nodes), u1.relative(nodes));
             let mut looks = [none; Q];
             for (q, (look, point)) in looks.iter_mut().zip(points).enumerate() {
                 let h = [point.displacement_gradient(&u0), point.displacement_gradient(&u1)];
@@ -323,9 +337,10 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         }
     }
 
-    fn energy(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation]) -> f64 {
+    fn energy(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation]) -> f64 {
         let mut energy = 0.0;
-        for (u, points, r) in self.turned(u, r) {
+        for (nodes, points, r) in self.turned(r) {
+            let u = u.relative(nodes);
             for (point, &r) in points.iter().zip(r) {
                 energy += point.area * moduli.energy_density(&warped_strain(r, &point.displacement_gradient(&u)));
             }
@@ -347,7 +362,8 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
 
     fn visit_strains(&self, _: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>) {
         let mut q = 0;
-        for (u, points, r) in self.turned(u, r) {
+        for (nodes, points, r) in self.turned(r) {
+            let u = gather(nodes, u);
             for (point, &r) in points.iter().zip(r) {
                 let h = point.displacement_gradient(&u);
                 visit(q, &h, &warped_strain(r, &h));

@@ -4,6 +4,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
+use crate::displacement::Compensated;
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 use crate::scene::ElementKind;
@@ -14,6 +15,7 @@ mod incompatible;
 mod isoparametric;
 mod matrix;
 mod q4;
+mod rounding;
 mod side;
 mod t3;
 mod t6;
@@ -22,6 +24,7 @@ pub use cell::{Cell, Lattice};
 pub use discrete_gradient::DiscreteGradient;
 pub use incompatible::IncompatibleQuads;
 pub use isoparametric::{Isoparametric, QuadraturePoint};
+pub(crate) use rounding::UNIT;
 pub use side::side_weights;
 
 /// What a mesh, its loads, its files and its picture ask of an element, whichever it is.
@@ -247,7 +250,7 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
     fn point_area(&self, point: usize) -> f64;
 
     /// Sets every R to the polar factor of F(x); where that is undefined R stays.
-    fn rotations(&self, u: &[Vector2<f64>], r: &mut [Rotation]);
+    fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]);
 
     /// One sweep: finds the rotations where they are to follow `u`, adds the warped force Σ R Ke (Rᵀ x − X) to `force`,
     /// its elements' absolute values by component to `magnitude`, N, and a tangent to `matrix` where one is wanted, N/m.
@@ -258,12 +261,17 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
     fn linearize(
         &self,
         moduli: Lame,
-        u: &[Vector2<f64>],
+        u: Compensated<'_>,
         rotations: Rotations<'_>,
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
     );
+
+    /// Adds to `bound` what rounding can at most have changed in the forces of [`Self::linearize`] where the rotations are
+    /// the polar factors of F, or none, N: by component, to first order in the unit roundoff, and without that of adding up
+    /// elements.
+    fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]);
 
     /// One sweep between two states, as [`Self::linearize`]: the discrete gradient of the elastic energy, a force whose
     /// work from one to the other is exactly the difference of their energies, and that turns no body; and A and G at
@@ -271,7 +279,7 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
     fn linearize_between(
         &self,
         moduli: Lame,
-        states: [(&[Vector2<f64>], &[Rotation]); 2],
+        states: [(Compensated<'_>, &[Rotation]); 2],
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
@@ -286,7 +294,7 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
     fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]);
 
     /// Elastic energy Σ ψ dA, J.
-    fn energy(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation]) -> f64;
+    fn energy(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation]) -> f64;
 
     /// The smallest det F: area over that at rest, negative where an element is turned inside out.
     fn smallest_area_ratio(&self, u: &[Vector2<f64>]) -> f64;

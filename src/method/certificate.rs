@@ -66,13 +66,13 @@ pub fn support_stiffness(
     let mut stiffness = 0.0;
     for h in [H, -H] {
         trial.copy_from(state);
-        let mut way = trial.displacement.clone();
-        for (sign, u) in [(1.0, &mut way), (-1.0, &mut trial.displacement)] {
+        let mut ahead = trial.displacement.clone();
+        for (sign, u) in [(1.0, &mut ahead), (-1.0, &mut trial.displacement)] {
             supports.put(mesh, load_factor + h + sign * H, Kinematics::Corotated, u);
         }
-        way.iter_mut().zip(&trial.displacement).for_each(|(a, b)| *a = (*a - b) / (2.0 * H));
+        let mut way: Vec<_> = ahead.iter().zip(&trial.displacement).map(|(a, b)| (a - b) / (2.0 * H)).collect();
         supports.put(mesh, load_factor + h, Kinematics::Corotated, &mut trial.displacement);
-        pattern.add_free(&free, h, &mut trial.displacement);
+        pattern.advance(&free, h, &mut trial.displacement);
         system.follow(&mut trial, Kinematics::Corotated);
         problem.linearize(&trial, forces, None);
         problem.balance(&trial, Kinematics::Corotated, load_factor, forces);

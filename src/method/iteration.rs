@@ -1,7 +1,9 @@
 //! What an iteration works with, and the step all methods share.
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
+use super::status::{LOOSEST_FLOOR, ROUNDING};
 use crate::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use crate::element::Tangent;
 use crate::solver::{Factor, SolverError};
@@ -31,6 +33,8 @@ pub struct Workspace {
     pub(crate) factor: Factor,
     /// A vector over the free unknowns.
     pub(crate) free: Vec<f64>,
+    /// A nodal vector.
+    pub(crate) nodal: Vec<Vector2<f64>>,
     /// A state to try steps on.
     pub(crate) trial: State,
 }
@@ -46,6 +50,7 @@ impl Workspace {
             tangent: None,
             factor: Factor::new(system.symbolic())?,
             free: vec![0.0; system.dofs()],
+            nodal: vec![Vector2::zeros(); system.mesh().nodes().len()],
             trial: system.at_rest(),
         })
     }
@@ -95,6 +100,17 @@ impl Iteration<'_> {
         timed(&mut timings.assemble, || {
             assemble(problem, state, forces, workspace, tangent, load_factor);
         });
+    }
+
+    /// The bound of what rounding changes in the residual, where the residual is small and within it, and it
+    /// says something.
+    pub(super) fn floor(&mut self) -> Option<f64> {
+        if self.residual > ROUNDING {
+            return None;
+        }
+        let Self { problem, forces, state, workspace, residual, .. } = self;
+        let floor = timed(&mut self.timings.assemble, || problem.residual_floor(state, forces, &mut workspace.nodal));
+        floor.filter(|floor| *residual <= *floor && *floor <= LOOSEST_FLOOR)
     }
 
     /// Whether the supports are where they are at this load factor.
@@ -174,7 +190,7 @@ impl Iteration<'_> {
         if fraction != 1.0 {
             free.iter_mut().for_each(|v| *v *= fraction);
         }
-        self.problem.system().pattern().add_free(free, 1.0, &mut self.state.displacement);
+        self.problem.system().pattern().advance(free, 1.0, &mut self.state.displacement);
         self.workspace.tangent = None;
     }
 

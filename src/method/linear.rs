@@ -1,9 +1,7 @@
 //! Linear finite elements, article eqs. (1) and (3): K (x − X) = f. Right while rotations are small, absurdly long
 //! beyond.
 
-use nalgebra::Vector2;
-
-use super::status::{StallDetector, farthest};
+use super::status::StallDetector;
 use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
@@ -50,7 +48,7 @@ impl Method for Linear {
         }
         if !self.solved && !held {
             // The answer does not depend on where the body was; a large displacement would only round it.
-            it.state.displacement.fill(Vector2::zeros());
+            it.state.displacement.reset();
             it.forces.residual.copy_from_slice(&it.forces.external);
             self.solved = true;
         }
@@ -62,6 +60,6 @@ impl Method for Linear {
         if !it.supports_are_at(1.0, Kinematics::Linear) {
             return Verdict::Continue;
         }
-        self.stall.judge(it.residual, it.tolerances.residual, farthest(it.system(), it.state))
+        self.stall.judge(it)
     }
 }

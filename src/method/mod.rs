@@ -22,8 +22,8 @@ pub use auto::{AutoReport, Decision};
 pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_words, support_stiffness};
 pub(crate) use iteration::measure;
 pub use iteration::{Iteration, IterationError, Tolerances, Workspace};
-pub use status::Reason;
 pub(crate) use status::is_useful_start;
+pub use status::{Reason, floor_words};
 
 /// An entry of the registry.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +89,9 @@ pub enum Verdict {
     Changed,
     /// Done.
     Converged,
+    /// Done as far as double precision goes: the residual is above the tolerance, and within this bound of what rounding
+    /// changes in it.
+    AtRounding(f64),
     /// No use to go on.
     Stop(Reason),
 }

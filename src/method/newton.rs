@@ -8,7 +8,7 @@
 //! Supports that move are put on with the load: the body is turned as a whole with them, and what is left of their way
 //! enters the first step of a load step as a force.
 
-use super::status::{LONGEST_STEP, ROUNDING, farthest};
+use super::status::{FALLS, LONGEST_STEP, ROUNDING, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
@@ -63,6 +63,7 @@ pub struct Newton {
     descends: bool,
     no_descent: bool,
     last_step: f64,
+    last_residual: f64,
 }
 
 impl Default for Newton {
@@ -81,6 +82,7 @@ impl Default for Newton {
             descends: false,
             no_descent: false,
             last_step: 0.0,
+            last_residual: f64::INFINITY,
         }
     }
 }
@@ -95,6 +97,7 @@ impl Newton {
         self.steps = 0;
         self.shortest = f64::INFINITY;
         self.worse = 0;
+        self.last_residual = f64::INFINITY;
     }
 
     /// Back to the last equilibrium, with less load; or, if that was hardly any, to descent.
@@ -140,7 +143,7 @@ impl Newton {
         let mut fraction = 1.0;
         for _ in 0..MAX_HALVINGS {
             trial.copy_from(it.state);
-            problem.system().pattern().add_free(&it.workspace.free, fraction, &mut trial.displacement);
+            problem.system().pattern().advance(&it.workspace.free, fraction, &mut trial.displacement);
             problem.system().follow(trial, self.kinematics());
             let after = problem.energy(trial, self.target);
             if after.is_finite() && after <= before - SUFFICIENT * fraction * promised + noise {
@@ -211,11 +214,14 @@ impl Method for Newton {
             return if residual <= tolerance && is_there { Verdict::Converged } else { Verdict::Continue };
         }
         let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
-        if residual <= enough {
+        let falls = residual <= FALLS * self.last_residual;
+        self.last_residual = residual;
+        let floor = if residual <= enough || falls || self.target < 1.0 { None } else { it.floor() };
+        if residual <= enough || floor.is_some() {
             it.assemble(Tangent::EXACT, self.target);
             let stable = it.factorize().is_ok();
             if self.target == 1.0 && (stable || self.descends) {
-                return Verdict::Converged;
+                return floor.map_or(Verdict::Converged, Verdict::AtRounding);
             }
             if !stable && !self.descends {
                 return self.give_up_load_step(it.state);
@@ -242,7 +248,7 @@ impl Method for Newton {
             self.worse += 1;
         }
         if self.worse >= PATIENCE && residual < ROUNDING && self.target == 1.0 {
-            return Verdict::Stop(Reason::RoundingFloor(self.worse));
+            return Verdict::Stop(Reason::Stuck(self.worse));
         }
         let nodes = (it.workspace.free.len() as f64 * 0.5).sqrt();
         let too_long = self.last_step / nodes > LONGEST_STEP * it.system().size();

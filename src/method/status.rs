@@ -1,9 +1,9 @@
 //! When an iteration is over: converged, out of iterations, or going nowhere.
 
-use super::{IterationError, Verdict};
+use super::{Iteration, IterationError, Verdict};
 use crate::assembly::System;
 use crate::state::{State, largest};
-use crate::words::count;
+use crate::words::{count, number, two_digits};
 
 /// Why an iteration stopped before it converged.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,8 +11,8 @@ use crate::words::count;
 pub enum Reason {
     /// All iterations that were allowed.
     IterationLimit(u32),
-    /// The residual has not fallen for this many iterations, and is as small as rounding lets it be.
-    RoundingFloor(u32),
+    /// The residual has not fallen for this many iterations; it is small, and more than rounding explains.
+    Stuck(u32),
     /// The residual has not fallen for this many iterations, and is not small.
     Stalled(u32),
     /// A node is farther from its rest position than this many sizes of the body.
@@ -24,11 +24,11 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// Whether the iteration leads nowhere; if not it stopped while still improving, or at the limit of rounding.
+    /// Whether the iteration leads nowhere; if not it stopped while still improving, or near its end.
     #[must_use]
     pub fn is_divergence(&self) -> bool {
         match self {
-            Self::IterationLimit(_) | Self::RoundingFloor(_) | Self::NoDescent => false,
+            Self::IterationLimit(_) | Self::Stuck(_) | Self::NoDescent => false,
             Self::Stalled(_) | Self::RanAway(_) | Self::Iteration(_) => true,
         }
     }
@@ -40,8 +40,8 @@ impl std::fmt::Display for Reason {
             Self::IterationLimit(n) => {
                 write!(f, "the limit of {} is reached; more may do", count(*n, "iteration"))
             }
-            Self::RoundingFloor(n) => {
-                write!(f, "the residual has not fallen for {n} iterations: rounding allows no smaller one")
+            Self::Stuck(n) => {
+                write!(f, "the residual has not fallen for {n} iterations, and is more than rounding explains")
             }
             Self::Stalled(n) => write!(
                 f,
@@ -56,13 +56,24 @@ impl std::fmt::Display for Reason {
     }
 }
 
+/// What it means that a solve has ended at the bound of rounding in its residual, in words.
+#[must_use]
+pub fn floor_words(floor: f64, tolerance: f64) -> String {
+    let [floor, tolerance] = [floor, tolerance].map(|v| number(two_digits(v)));
+    format!("no digits are left: rounding may change the residual by {floor}, so {tolerance} cannot be asked for here")
+}
+
 /// Iterations without progress after which a fixed-point iteration is called off. A larger number lets slower
 /// iterations converge; a smaller one tells the user earlier that a load is hopeless.
 const PATIENCE: u32 = 30;
 /// A new best residual counts as progress if it is this much below the old one.
 const PROGRESS: f64 = 0.98;
-/// A residual that stays below this without falling has met rounding, not divergence.
+/// A residual below this is small: one that no longer falls is near its end, not diverging, and may be rounding.
 pub(super) const ROUNDING: f64 = 1e-6;
+/// A bound of rounding above this says too little of a residual for its solve to be called done.
+pub(super) const LOOSEST_FLOOR: f64 = 1e-5;
+/// A residual that is more than this part of the one before no longer falls as an iteration makes it.
+pub(super) const FALLS: f64 = 0.5;
 /// Displacement over the size of the body beyond which nothing useful is to be expected. The linear solution of a
 /// slender beam under a large load is absurdly long, and still what was asked for: so not too small.
 const FARTHEST: f64 = 1e6;
@@ -71,6 +82,7 @@ const FARTHEST: f64 = 1e6;
 #[derive(Clone, Debug, Default)]
 pub(super) struct StallDetector {
     best: Option<f64>,
+    last: Option<f64>,
     waiting: u32,
     pub(super) steps: StepLengths,
 }
@@ -96,11 +108,18 @@ impl StepLengths {
 }
 
 impl StallDetector {
-    /// Judges a state by its residual and by its largest displacement over the size of the body.
-    pub(super) fn judge(&mut self, residual: f64, tolerance: f64, farthest: f64) -> Verdict {
-        if residual <= tolerance {
+    /// Judges the state of an iteration.
+    pub(super) fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+        let residual = it.residual;
+        if residual <= it.tolerances.residual {
             return Verdict::Converged;
         }
+        if self.last.replace(residual).is_some_and(|last| residual > FALLS * last)
+            && let Some(floor) = it.floor()
+        {
+            return Verdict::AtRounding(floor);
+        }
+        let farthest = farthest(it.system(), it.state);
         let best = *self.best.get_or_insert(f64::INFINITY);
         if residual < PROGRESS * best {
             self.best = Some(residual);
@@ -113,7 +132,7 @@ impl StallDetector {
         } else if self.waiting < PATIENCE {
             Verdict::Continue
         } else if best < ROUNDING {
-            Verdict::Stop(Reason::RoundingFloor(self.waiting))
+            Verdict::Stop(Reason::Stuck(self.waiting))
         } else {
             Verdict::Stop(Reason::Stalled(self.waiting))
         }

@@ -5,7 +5,7 @@
 //!
 //! Supports that turn far are taken on in parts, an iteration each, and the load with them.
 
-use super::status::{StallDetector, farthest};
+use super::status::StallDetector;
 use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
@@ -78,6 +78,6 @@ impl Method for Warped {
         if self.load_factor < 1.0 || !it.supports_are_at(1.0, Kinematics::Corotated) {
             return Verdict::Continue;
         }
-        self.stall.judge(it.residual, it.tolerances.residual, farthest(it.system(), it.state))
+        self.stall.judge(it)
     }
 }

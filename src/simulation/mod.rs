@@ -68,6 +68,8 @@ pub struct Solution {
     pub load_steps: u32,
     /// ‖f_ext − f_int‖ / ‖Σ|fₑ|‖.
     pub residual: f64,
+    /// See [`Simulation::residual_floor`].
+    pub residual_floor: Option<f64>,
     /// Stability, and ρ, if [`Simulation::certify`] has been asked.
     pub certificate: Option<Certificate>,
     /// How far the body is deformed.
@@ -479,6 +481,7 @@ impl Simulation {
             iterations: self.iterations(),
             load_steps,
             residual: self.residual(),
+            residual_floor: self.residual_floor(),
             certificate: self.certificate(),
             deformation: Deformation::of(problem, state),
             probes: probe_results(problem, state),
@@ -683,6 +686,13 @@ impl Simulation {
             Process::Search(search) => search.residual(),
             Process::Motion(motion) => motion.residual(),
         }
+    }
+
+    /// Where a solve has converged to working precision only: a bound of what rounding changes in [`Self::residual`],
+    /// which is within it and above the tolerance. `None` where the tolerance is met, or nothing is.
+    #[must_use]
+    pub fn residual_floor(&self) -> Option<f64> {
+        self.search().and_then(Search::residual_floor)
     }
 
     /// Length of the last step over that of the one before: below 1 the iteration contracts.

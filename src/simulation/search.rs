@@ -1,9 +1,8 @@
 //! The search for an equilibrium: one iteration a step.
 
-use nalgebra::Vector2;
-
 use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
+use crate::displacement::Displacement;
 use crate::element::Tangent;
 use crate::method::{
     AutoReport, Certificate, Iteration, IterationError, Method, Reason, Restart, Tolerances, Verdict, Workspace,
@@ -19,11 +18,13 @@ use crate::timings::{Timings, timed};
 pub(super) struct Search {
     method: Box<dyn Method>,
     /// Displacement and turns before the present iteration.
-    previous: (Vec<Vector2<f64>>, Vec<f64>),
+    previous: (Displacement, Vec<f64>),
     forces: Forces,
     /// Made when it is needed first.
     workspace: Option<Workspace>,
     residual: f64,
+    /// What bounds the residual of a solve that ended at rounding.
+    floor: Option<f64>,
     iterations: u32,
     status: Status,
     certificate: Option<Certificate>,
@@ -44,6 +45,7 @@ impl Search {
             forces: Forces::new(body.state.displacement.len()),
             workspace: Some(Workspace::new(body.problem.system())?),
             residual: 0.0,
+            floor: None,
             iterations: 0,
             status: Status::Running,
             certificate: None,
@@ -128,6 +130,7 @@ impl Search {
     /// Forgets iterations and times, and measures the state it starts from.
     pub fn restart(&mut self, body: &mut Body, why: Restart) {
         self.iterations = 0;
+        self.floor = None;
         self.status = Status::Running;
         self.certificate = None;
         self.timings = Timings::default();
@@ -167,7 +170,7 @@ impl Search {
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         let mut timings = Timings::default();
         let State { displacement, turns, .. } = &body.state;
-        self.previous.0.clone_from(displacement);
+        self.previous.0.copy_from(displacement);
         self.previous.1.clone_from(turns);
         let iterated = self.with_method(body, &mut workspace, &mut timings, |method, it| method.iterate(it));
         self.iterations += 1;
@@ -176,7 +179,7 @@ impl Search {
             if self.residual.is_finite() { Ok(()) } else { Err(IterationError::NotFinite) }
         });
         if measured.is_err() {
-            body.state.displacement.copy_from_slice(&self.previous.0);
+            body.state.displacement.copy_from(&self.previous.0);
             body.state.turns.copy_from_slice(&self.previous.1);
             self.measure(body, &mut workspace, &mut timings);
         }
@@ -216,6 +219,10 @@ impl Search {
             Verdict::Continue => {}
             Verdict::Changed => self.measure(body, workspace, timings),
             Verdict::Converged => self.status = Status::Converged,
+            Verdict::AtRounding(floor) => {
+                self.status = Status::Converged;
+                self.floor = Some(floor);
+            }
             Verdict::Stop(reason) => self.status = reason.into(),
         }
         let most = body.scene.solver.max_iterations;
@@ -306,6 +313,10 @@ impl Search {
 
     pub fn residual(&self) -> f64 {
         self.residual
+    }
+
+    pub fn residual_floor(&self) -> Option<f64> {
+        self.floor
     }
 
     pub fn step_ratio(&self) -> Option<f64> {

@@ -10,9 +10,10 @@ pub enum Status {
     /// Not there yet.
     #[default]
     Running,
-    /// The residual is below the tolerance.
+    /// The residual is below the tolerance, or within what rounding changes in it; see
+    /// [`crate::Simulation::residual_floor`].
     Converged,
-    /// It stopped while still improving, or at the limit of rounding.
+    /// It stopped while still improving, or near its end.
     NotConverged(Reason),
     /// The iteration does not lead to an equilibrium; the state shown is its last finite one.
     Diverged(Reason),

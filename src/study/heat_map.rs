@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::extremes::motion::{MotionEntry, MotionOutcome, variant_words, variants};
-use super::extremes::{Entry, Outcome, Start, alphas};
+use super::extremes::{Entry, Outcome, alphas};
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
@@ -17,33 +17,25 @@ struct Panel {
     rows: Vec<(String, Vec<Vec<usize>>)>,
 }
 
-/// The atlas as a picture (SVG): for every element and method, load against slenderness; from rest, and from the other
-/// starts. A cell's bar is divided by how its cases ended.
+/// The atlas as a picture (SVG): for every element and method, load against slenderness; from rest, from the other starts,
+/// with distorted cells, and on mesh files. A cell's bar is divided by how its cases ended.
 #[must_use]
 pub fn heat_map(entries: &[Entry]) -> String {
     let columns = alphas(entries);
-    // Rows: slenderness from rest, then the other starts.
-    let mut rows: Vec<(String, Start, f64)> = entries
-        .iter()
-        .map(|e| match e.case.start {
-            Start::Rest => (format!("L/H {}", e.case.slenderness), Start::Rest, e.case.slenderness),
-            start => (start.id().to_owned(), start, e.case.slenderness),
-        })
-        .collect();
-    rows.sort_by(|a, b| (a.1, a.2).partial_cmp(&(b.1, b.2)).unwrap_or(std::cmp::Ordering::Equal));
+    let mut rows: Vec<(String, [f64; 2])> = entries.iter().map(|e| e.case.row()).collect();
+    rows.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     rows.dedup_by(|a, b| a.0 == b.0);
     let panel = |element: ElementKind, method: MethodKind| Panel {
         title: format!("{} {}: load α = P L²/EI", element.id(), method.id()),
         columns: columns.iter().map(|&alpha| number(alpha)).collect(),
         rows: rows
             .iter()
-            .map(|(label, start, slenderness)| {
+            .map(|(label, _)| {
                 let cell = |alpha: &f64| {
                     let here = entries.iter().filter(|e| {
                         let c = &e.case;
-                        (c.element, c.method, c.start, c.moved) == (element, method, *start, false)
-                            && c.alpha == *alpha
-                            && c.slenderness == *slenderness
+                        (c.element, c.method, c.moved, c.alpha) == (element, method, false, *alpha)
+                            && c.row().0 == *label
                     });
                     let mut count = vec![0; Outcome::COUNT];
                     here.for_each(|e| count[e.outcome as usize] += 1);
@@ -51,6 +43,8 @@ pub fn heat_map(entries: &[Entry]) -> String {
                 };
                 (label.clone(), columns.iter().map(cell).collect())
             })
+            // A mesh file has not every element.
+            .filter(|(_, cells): &(String, Vec<Vec<usize>>)| cells.iter().flatten().any(|&count| count > 0))
             .collect(),
     };
     let panels = METHODS.iter().flat_map(|m| ElementKind::all().map(move |e| (e, m.kind)));

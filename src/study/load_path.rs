@@ -197,7 +197,7 @@ impl Follower {
             }
             path.states.push(self.seen());
         }
-        path.end = self.state.displacement.clone();
+        path.end = self.state.displacement.to_vec();
         Some(path)
     }
 

@@ -55,8 +55,8 @@ fn end_on(simulation: &Simulation, mesh: Mesh, u: Vec<Vector2<f64>>) -> Result<V
     let probes = |u: &[Vector2<f64>]| problem.probes().iter().map(|p| p.mean(u)).collect();
     let system = problem.system();
     let mut state = system.at_rest();
-    state.displacement = u;
-    system.pattern().stop_fixed(&mut state.displacement);
+    state.displacement.overwrite().copy_from_slice(&u);
+    system.pattern().stop_fixed(state.displacement.overwrite());
     let (mut forces, mut matrix) = (Forces::new(state.displacement.len()), Matrix::new(system.pattern()));
     let mut factor = Factor::new(system.symbolic()).map_err(SimulationError::from)?;
     let mut free = vec![0.0; system.dofs()];
@@ -74,7 +74,7 @@ fn end_on(simulation: &Simulation, mesh: Mesh, u: Vec<Vector2<f64>>) -> Result<V
         if free.iter().any(|v| !v.is_finite()) {
             break;
         }
-        system.pattern().add_free(&free, 1.0, &mut state.displacement);
+        system.pattern().advance(&free, 1.0, &mut state.displacement);
         // Slender bodies have residuals that rounding keeps above a tolerance; their steps vanish all the same.
         let step = free.iter().fold(0.0f64, |most, v| most.max(v.abs()));
         if step <= SMALL_STEP * largest(&state.displacement) {

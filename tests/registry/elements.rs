@@ -574,7 +574,7 @@ fn between_two_states_it_works_by_the_energys_difference(kind: ElementKind) {
     let mut pairs = vec![(turned(0.0, |x| x), turned(-40.0, bent)), (turned(20.0, bent), turned(20.0, bent))];
     pairs.extend([1e-4, 30.0, 100.0, 178.0, -120.0].map(|degrees| (turned(10.0, bent), turned(10.0 + degrees, other))));
     for (a, b) in &pairs {
-        let states = [(a.displacement(), a.rotations()), (b.displacement(), b.rotations())];
+        let states = [(a.compensated(), a.rotations()), (b.compensated(), b.rotations())];
         let mut force = vec![Vector2::zeros(); nodes(&problem).len()];
         let mut magnitude = force.clone();
         system.elements().linearize_between(moduli, states, &mut force, &mut magnitude, None);

@@ -49,7 +49,7 @@ impl Scratch {
     fn new(problem: &Problem) -> Self {
         let rest = problem.system().at_rest();
         let forces = Forces::new(rest.displacement.len());
-        Self { sum: rest.displacement.clone(), probe: rest.clone(), forces, rest }
+        Self { sum: rest.displacement.to_vec(), probe: rest.clone(), forces, rest }
     }
 }
 
@@ -105,7 +105,7 @@ impl Expansion {
                 sum.fill(Vector2::zeros());
                 for scale in [scale, -scale] {
                     let terms = first.iter().zip(second.iter());
-                    let displacement = probe.displacement.iter_mut().zip(terms);
+                    let displacement = probe.displacement.overwrite().iter_mut().zip(terms);
                     displacement.for_each(|(p, (u, v))| *p = u * scale + v * (scale * scale));
                     problem.follow_and_linearize(probe, Kinematics::Corotated, forces, None);
                     problem.balance(probe, Kinematics::Corotated, scale, forces);
@@ -128,7 +128,7 @@ impl Expansion {
         }
         let Scratch { probe, forces, .. } = scratch.get_or_insert_with(|| Scratch::new(it.problem));
         for ahead in [CHECK_AHEAD, 1.0] {
-            probe.displacement.iter_mut().zip(first.iter()).for_each(|(p, u)| *p = u * ahead);
+            probe.displacement.overwrite().iter_mut().zip(first.iter()).for_each(|(p, u)| *p = u * ahead);
             report.factorizations += 1;
             let (problem, workspace) = (it.problem, &mut *it.workspace);
             let stable = timed(&mut it.timings.factorize, || {
@@ -137,7 +137,9 @@ impl Expansion {
             });
             workspace.tangent = None;
             if stable {
-                checked.get_or_insert_default().clone_from(&probe.displacement);
+                let checked = checked.get_or_insert_default();
+                checked.clear();
+                checked.extend_from_slice(&probe.displacement);
                 return true;
             }
         }

@@ -120,7 +120,7 @@ impl Auto {
         }
         if self.linear || from_rest {
             let linear = self.expansion.linear();
-            it.state.displacement.copy_from_slice(linear);
+            it.state.displacement.overwrite().copy_from_slice(linear);
             it.workspace.tangent = None;
             self.lengths.stepped(linear.iter().map(|u| u.norm_squared()).sum::<f64>().sqrt());
             return Ok(true);
@@ -297,12 +297,11 @@ impl Method for Auto {
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
         if let Some(newton) = &mut self.newton {
             let verdict = newton.judge(it);
-            return if verdict == Verdict::Converged {
+            if matches!(verdict, Verdict::Converged | Verdict::AtRounding(_)) {
                 self.report.estimated_error = it.residual;
-                self.accept(it)
-            } else {
-                verdict
-            };
+                self.accept(it);
+            }
+            return verdict;
         }
         if self.steps == 0 {
             if !it.supports_are_at(1.0, self.kinematics()) {

@@ -1,6 +1,8 @@
-//! The stability atlas: every method at the extremes of load, stiffness, Poisson ratio, slenderness, element shape, and
-//! from states no solver should be started in. Each case is classified; nothing in it is ever non-finite or a panic.
+//! The stability atlas: every method at the extremes of load, stiffness, Poisson ratio, slenderness and element shape, on
+//! mesh files, and from states no solver should be started in. Each case is classified; nothing in it is ever non-finite
+//! or a panic.
 
+mod body;
 pub mod motion;
 
 use std::collections::BTreeMap;
@@ -8,6 +10,8 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector2;
 
+use self::body::distorted;
+pub use self::body::{Body, FILES};
 use super::Extent;
 use crate::method::{METHODS, Reason};
 use crate::rotation::Rotation;
@@ -62,16 +66,18 @@ impl Start {
     }
 }
 
-/// One case of the atlas: a cantilever of height 1 m in plane strain.
+/// One case of the atlas: a cantilever of height 1 m in plane strain, or a built-in scene on a mesh file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
+    /// What is bent.
+    pub body: Body,
     /// Element.
     pub element: ElementKind,
     /// Method.
     pub method: MethodKind,
     /// Where it starts.
     pub start: Start,
-    /// Load α = P L²/EI, at the tip, across.
+    /// Load α = P L²/EI, at the tip, across; of a mesh file that of its scene, times α.
     pub alpha: f64,
     /// Young's modulus, Pa.
     pub young: f64,
@@ -81,6 +87,8 @@ pub struct Case {
     pub slenderness: f64,
     /// Length over height of a cell, as far as the beam allows.
     pub aspect: f64,
+    /// How far nodes are moved along the beam, every other one the other way, over the length of a cell.
+    pub distortion: f64,
     /// Whether the tip is moved across instead of loaded: as far as linear beam theory takes it under the load, α/3 of
     /// the length, and no farther than [`FARTHEST_TIP`] of it.
     pub moved: bool,
@@ -136,14 +144,17 @@ pub struct Entry {
     pub iterations: u32,
     /// Relative residual at the end.
     pub residual: f64,
-    /// The tip's displacement over the length: of the last finite state.
+    /// The bound of rounding in it, where it has converged to working precision only; see [`Simulation::residual_floor`].
+    pub residual_floor: Option<f64>,
+    /// The tip's displacement over the length, or the first probe's over the size: of the last finite state.
     pub tip: Vector2<f64>,
 }
 
 /// Iterations a case may take.
 const MAX_ITERATIONS: u32 = 300;
 
-/// All cases, a few hundred or a few thousand: a grid of loads and shapes from rest, and every start under some loads.
+/// All cases, a few hundred or many thousand: a grid of loads and shapes from rest, every start, distorted cells, and the
+/// scenes on mesh files.
 #[must_use]
 pub fn cases(extent: Extent) -> Vec<Case> {
     let full = extent == Extent::Full;
@@ -153,9 +164,12 @@ pub fn cases(extent: Extent) -> Vec<Case> {
     let poissons = pick(&[0.0, 0.4999], &[0.0, 0.3, 0.49, 0.4999]);
     let slendernesses = pick(&[1.0, 20.0, 1e3], &[1.0, 5.0, 20.0, 100.0, 1e3]);
     let aspects = pick(&[2.0], &[1.0, 5.0, 50.0]);
+    let distortions = pick(&[0.45], &[0.3, 0.45]);
+    let distorted_slendernesses = pick(&[20.0], &[5.0, 20.0, 100.0]);
     let mut cases = Vec::new();
     for (element, method) in ElementKind::all().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
         let ordinary = Case {
+            body: Body::Beam,
             element,
             method,
             start: Start::Rest,
@@ -164,6 +178,7 @@ pub fn cases(extent: Extent) -> Vec<Case> {
             poisson: 0.3,
             slenderness: 20.0,
             aspect: 2.0,
+            distortion: 0.0,
             moved: false,
         };
         for &alpha in &alphas {
@@ -183,15 +198,56 @@ pub fn cases(extent: Extent) -> Vec<Case> {
                     cases.push(Case { alpha, start, ..ordinary });
                 }
             }
+            for &distortion in &distortions {
+                let shapes = distorted_slendernesses.iter();
+                cases.extend(shapes.map(|&slenderness| Case { alpha, slenderness, distortion, ..ordinary }));
+            }
+            cases.extend(FILES.iter().filter_map(|&id| ordinary.on_file(id, alpha)));
         }
     }
     cases
 }
 
 impl Case {
+    /// The same element and method on a mesh file; `None` where the file has no such elements.
+    fn on_file(self, id: &'static str, alpha: f64) -> Option<Self> {
+        let scene = body::scene(id)?;
+        let Material { young, poisson, .. } = scene.material;
+        let case = Self { body: Body::File(id), alpha, young, poisson, slenderness: 1.0, aspect: 1.0, ..self };
+        scene.elements().any(|e| e == self.element).then_some(case)
+    }
+
+    /// Whether it is a beam of rectangular cells that starts at rest.
+    fn is_plain(&self) -> bool {
+        (self.body, self.start) == (Body::Beam, Start::Rest) && self.distortion == 0.0
+    }
+
+    /// What a row of the picture is called, and where it comes; cases of one row differ in what it does not name.
+    pub(super) fn row(&self) -> (String, [f64; 2]) {
+        match (self.body, self.start) {
+            (Body::File(id), _) => {
+                (id.to_owned(), [3.0, FILES.iter().position(|f| *f == id).unwrap_or_default() as f64])
+            }
+            (Body::Beam, Start::Rest) if self.distortion > 0.0 => {
+                (format!("distorted {}", self.distortion), [2.0, self.distortion])
+            }
+            (Body::Beam, Start::Rest) => (format!("L/H {}", self.slenderness), [0.0, self.slenderness]),
+            (Body::Beam, start) => (start.id().to_owned(), [1.0, f64::from(start as u8)]),
+        }
+    }
+
     /// The scene of the case.
     #[must_use]
     pub fn scene(&self) -> Scene {
+        if let Body::File(id) = self.body
+            && let Some(mut scene) = body::scene(id)
+        {
+            scene.set_element(self.element);
+            scene.scale_loads(self.alpha);
+            scene.solver.method = self.method;
+            scene.solver.max_iterations = MAX_ITERATIONS;
+            return scene;
+        }
         /// Cells along are as many as the aspect asks for, up to these.
         const MOST_CELLS: f64 = 200.0;
         let height = 1.0;
@@ -224,7 +280,10 @@ impl Case {
     /// What is wrong with its scene, which is a mistake in the atlas.
     pub fn solve(self) -> Result<Entry, SimulationError> {
         let scene = self.scene();
-        let mut simulation = Simulation::new(&scene)?;
+        let mut simulation = match distorted(&scene, self.distortion) {
+            Some(mesh) => Simulation::with_mesh(&scene, mesh)?,
+            None => Simulation::new(&scene)?,
+        };
         if self.start != Start::Rest {
             let nodes = simulation.system().mesh().nodes().iter().enumerate();
             let u = nodes.map(|(n, x)| self.start.place(n, *x, 1.0) - x).collect::<Vec<_>>();
@@ -241,8 +300,19 @@ impl Case {
             (Status::Diverged(Reason::Stalled(_)), _) => Outcome::Stalled,
             _ => Outcome::NotConverged,
         };
-        let tip = solution.probes.first().map_or(Vector2::zeros(), |p| p.u) / self.slenderness;
-        Ok(Entry { case: self, outcome, iterations: solution.iterations, residual: solution.residual, tip })
+        let length = match self.body {
+            Body::Beam => self.slenderness,
+            Body::File(_) => simulation.system().size(),
+        };
+        let tip = solution.probes.first().map_or(Vector2::zeros(), |p| p.u) / length;
+        Ok(Entry {
+            case: self,
+            outcome,
+            iterations: solution.iterations,
+            residual: solution.residual,
+            residual_floor: solution.residual_floor,
+            tip,
+        })
     }
 }
 
@@ -250,13 +320,13 @@ impl Case {
 #[must_use]
 pub fn table(entries: &[Entry]) -> String {
     let mut text = String::from(
-        "element,method,start,alpha,young,poisson,length_over_height,cell_aspect,outcome,iterations,residual,tip_x_over_l,tip_y_over_l,moved\n",
+        "element,method,start,alpha,young,poisson,length_over_height,cell_aspect,outcome,iterations,residual,tip_x_over_l,tip_y_over_l,moved,distortion,mesh,residual_floor\n",
     );
     for e in entries {
         let c = &e.case;
         let _ = writeln!(
             text,
-            "{},{},{},{},{},{},{},{},{},{},{:e},{},{},{}",
+            "{},{},{},{},{},{},{},{},{},{},{:e},{},{},{},{},{},{}",
             c.element.id(),
             c.method.id(),
             c.start.id(),
@@ -270,7 +340,10 @@ pub fn table(entries: &[Entry]) -> String {
             e.residual,
             e.tip.x,
             e.tip.y,
-            c.moved
+            c.moved,
+            c.distortion,
+            c.body.id(),
+            e.residual_floor.map_or_else(String::new, |floor| format!("{floor:e}"))
         );
     }
     text
@@ -295,20 +368,29 @@ pub(super) fn alphas(entries: &[Entry]) -> Vec<f64> {
     alphas
 }
 
-/// Percent of the cases from rest, loaded or moved, that end well, as the method counts it.
-fn percent_well(entries: &[Entry], element: ElementKind, method: MethodKind, (alpha, moved): (f64, bool)) -> f64 {
+/// Whether a case is of a kind.
+type Kind = fn(&Case) -> bool;
+
+/// Percent of the cases of a kind under a load that end well, as the method counts it; `None` where there are none.
+fn percent_well(
+    entries: &[Entry],
+    (element, method): (ElementKind, MethodKind),
+    alpha: f64,
+    is_of: Kind,
+) -> Option<f64> {
     let here = entries.iter().filter(|e| {
         let c = &e.case;
-        (c.element, c.method, c.start, c.moved) == (element, method, Start::Rest, moved) && c.alpha == alpha
+        (c.element, c.method) == (element, method) && c.alpha == alpha && is_of(c)
     });
     let well = |e: &&Entry| matches!(e.outcome, Outcome::Certified | Outcome::Converged);
-    100.0 * here.clone().filter(well).count() as f64 / here.count().max(1) as f64
+    let all = here.clone().count();
+    (all > 0).then(|| 100.0 * here.filter(well).count() as f64 / all as f64)
 }
 
 /// The counts for people, and where each method stops working.
 #[must_use]
 pub fn summary(entries: &[Entry]) -> String {
-    let mut text = format!("{} cases, plane strain\n\nelement method ", entries.len());
+    let mut text = format!("{} cases, beams in plane strain\n\nelement method ", entries.len());
     for outcome in Outcome::ALL {
         let _ = write!(text, " {:>14}", outcome.id());
     }
@@ -320,19 +402,37 @@ pub fn summary(entries: &[Entry]) -> String {
         }
         text.push('\n');
     }
-    for (moved, by) in
-        [(false, "load α = P L²/EI"), (true, "way of the tip that is moved, α/3 of the length, at most 0.8")]
-    {
-        let _ = write!(text, "\ncertified or converged, percent of the cases from rest, by {by}\nelement method ");
+    let at_rounding = entries.iter().filter(|e| e.residual_floor.is_some()).count();
+    let _ = writeln!(
+        text,
+        "\n{at_rounding} of what converged did so to working precision: above the tolerance, within the bound of rounding"
+    );
+    let kinds: [(Kind, &str); 4] = [
+        (|c| c.is_plain() && !c.moved, "of the cases from rest, by load α = P L²/EI"),
+        (
+            |c| c.is_plain() && c.moved,
+            "of the cases from rest, by way of the tip that is moved, α/3 of the length, at most 0.8",
+        ),
+        (|c| c.distortion > 0.0, "of the cases with distorted cells, by load α = P L²/EI"),
+        (|c| c.body != Body::Beam, "of the mesh files, by their scenes' load times"),
+    ];
+    for (is_of, by) in kinds {
+        let _ = write!(text, "\ncertified or converged, percent {by}\nelement method ");
         let alphas = alphas(entries);
         for alpha in &alphas {
             let _ = write!(text, " {:>6}", number(*alpha));
         }
         text.push('\n');
         for (element, method) in ElementKind::all().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
+            let row = alphas.iter().map(|&alpha| percent_well(entries, (element, method), alpha, is_of));
+            let row: Vec<Option<f64>> = row.collect();
+            if row.iter().all(Option::is_none) {
+                continue;
+            }
             let _ = write!(text, "{:<7} {:<7}", element.id(), method.id());
-            for &alpha in &alphas {
-                let _ = write!(text, " {:>6.0}", percent_well(entries, element, method, (alpha, moved)));
+            for percent in row {
+                let _ =
+                    write!(text, " {:>6}", percent.map_or_else(|| "–".to_owned(), |percent| format!("{percent:.0}")));
             }
             text.push('\n');
         }

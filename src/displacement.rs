@@ -1,0 +1,123 @@
+//! Displacements that keep more digits than one number has.
+//!
+//! On a slender body neighbours move by nearly the same, and a strain is a difference of their displacements over the size
+//! of a cell: what rounding takes from a large displacement is a large part of a small strain. So every component is kept
+//! as an unevaluated sum of two numbers (Dekker 1971, *A floating-point technique for extending the available
+//! precision*): corrections are added without losing what they are smaller than, and elements form their differences
+//! from both parts. Everything else is done with the first part alone, which is the sum, rounded.
+
+use nalgebra::Vector2;
+
+/// The displacement of every node, m. It reads as its rounded values.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Displacement {
+    rounded: Vec<Vector2<f64>>,
+    /// What rounding has left out, at most half of the last digit.
+    remainder: Vec<Vector2<f64>>,
+}
+
+impl Displacement {
+    /// That of so many nodes at rest.
+    pub fn zeros(nodes: usize) -> Self {
+        Self { rounded: vec![Vector2::zeros(); nodes], remainder: vec![Vector2::zeros(); nodes] }
+    }
+
+    /// These values exactly.
+    pub fn from_rounded(rounded: Vec<Vector2<f64>>) -> Self {
+        Self { remainder: vec![Vector2::zeros(); rounded.len()], rounded }
+    }
+
+    /// Both parts, for elements.
+    pub fn view(&self) -> Compensated<'_> {
+        Compensated { rounded: &self.rounded, remainder: &self.remainder }
+    }
+
+    /// Back to rest.
+    pub fn reset(&mut self) {
+        self.overwrite().fill(Vector2::zeros());
+    }
+
+    /// Becomes another one of as many nodes, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.rounded.clone_from(&other.rounded);
+        self.remainder.clone_from(&other.remainder);
+    }
+
+    /// The rounded values, to be written anew: nothing is left out of what is written.
+    pub fn overwrite(&mut self) -> &mut [Vector2<f64>] {
+        self.remainder.fill(Vector2::zeros());
+        &mut self.rounded
+    }
+
+    /// Puts one component of a node, m.
+    pub fn put(&mut self, node: u32, axis: usize, value: f64) {
+        self.rounded[node as usize][axis] = value;
+        self.remainder[node as usize][axis] = 0.0;
+    }
+
+    /// Moves one component of a node, m.
+    #[inline]
+    pub fn advance(&mut self, node: usize, axis: usize, by: f64) {
+        let (rounded, remainder) = (&mut self.rounded[node][axis], &mut self.remainder[node][axis]);
+        let (sum, lost) = two_sum(*rounded, by);
+        (*rounded, *remainder) = two_sum(sum, *remainder + lost);
+    }
+}
+
+impl std::ops::Deref for Displacement {
+    type Target = [Vector2<f64>];
+
+    fn deref(&self) -> &[Vector2<f64>] {
+        &self.rounded
+    }
+}
+
+impl<'a> IntoIterator for &'a Displacement {
+    type Item = &'a Vector2<f64>;
+    type IntoIter = std::slice::Iter<'a, Vector2<f64>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.rounded.iter()
+    }
+}
+
+/// The rounded sum of two numbers, and what rounding has left out of it, exactly (Knuth).
+#[inline]
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
+/// Displacements of nodes as unevaluated sums of two numbers, m; see [`crate::State::compensated`].
+#[derive(Clone, Copy, Debug)]
+pub struct Compensated<'a> {
+    rounded: &'a [Vector2<f64>],
+    remainder: &'a [Vector2<f64>],
+}
+
+impl<'a> Compensated<'a> {
+    /// The sums, rounded.
+    #[must_use]
+    pub fn rounded(&self) -> &'a [Vector2<f64>] {
+        self.rounded
+    }
+
+    /// What rounding has left out of them.
+    #[must_use]
+    pub fn remainder(&self) -> &'a [Vector2<f64>] {
+        self.remainder
+    }
+
+    /// The displacements of an element's nodes relative to its first one.
+    #[inline(always)]
+    pub(crate) fn relative<const N: usize>(&self, nodes: &[u32; N]) -> [Vector2<f64>; N] {
+        let first = nodes[0] as usize;
+        let (rounded, remainder) = (self.rounded[first], self.remainder[first]);
+        let mut own = [Vector2::zeros(); N];
+        for (own, &node) in own.iter_mut().zip(nodes).skip(1) {
+            *own = (self.rounded[node as usize] - rounded) + (self.remainder[node as usize] - remainder);
+        }
+        own
+    }
+}
