@@ -37,7 +37,7 @@ const SENTENCES: &[&str] = &[
     "reaction of %{place} along it, %{unit}",
     "reaction of %{place}, %{unit}",
     "displacement of %{probe}, %{unit}",
-    "support %{n}",
+    "support.%{n}",
     // What is refused.
     "expected a whole number, got %{got}",
     "expected one of %{known}, got %{got}",
