@@ -278,9 +278,10 @@ fn double_click(harness: &mut Harness<'_, Lab>, at: Pos2) {
 #[test]
 fn values_go_back_to_those_of_the_scene() {
     let mut harness = harness("cantilever");
-    for label in ["Force", "Direction", "Young E", "Density ρ", "Cells along"] {
+    for (label, text) in
+        [("Force", "77"), ("Direction", "-60"), ("Young E", "2e6"), ("Density ρ", "77"), ("Cells along", "40")]
+    {
         unfold(&mut harness, label);
-        let text = if label == "Direction" { "-60" } else { "77" };
         for by in ["slider", "number", "key"] {
             type_into(&mut harness, label, text);
             let edited = harness.state().scene().clone();

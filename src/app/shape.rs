@@ -30,7 +30,7 @@ pub(super) struct Shape {
     /// At quadrature points or nodes.
     pub known: Vec<Option<f64>>,
     /// At the corners of what is drawn.
-    values: Vec<[Option<f64>; 3]>,
+    pub values: Vec<[Option<f64>; 3]>,
     /// The field's values at the two ends of the colour map.
     pub range: [f64; 2],
     /// What the range is of.
@@ -125,11 +125,6 @@ impl Shape {
             Some(nodal) if view.is_smooth() => view.field.smooth_at(mesh, nodal, point),
             _ => Field::raw_at(mesh, &self.known, point),
         }
-    }
-
-    /// Where the drawn points are, m, the values at the corners of what is drawn, and their range.
-    pub(super) fn into_parts(self) -> (Vec<Vector2<f64>>, Vec<[Option<f64>; 3]>, [f64; 2]) {
-        (self.points, self.values, self.range)
     }
 
     /// What the body's pass draws.
