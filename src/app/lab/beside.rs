@@ -55,6 +55,8 @@ impl Default for Beside {
 struct Before {
     since: Instant,
     snapshot: Snapshot,
+    /// Steps that could be undone.
+    depth: usize,
     /// The control that was edited.
     label: Option<&'static str>,
     /// Whether the scene comes from somewhere else, and is not shown yet.
@@ -131,6 +133,7 @@ impl Lab {
             self.beside.before = Some(Before {
                 since: Instant::now(),
                 snapshot: self.snapshot(),
+                depth: self.edits.depth(),
                 label: None,
                 adopts: false,
                 shown: None,
@@ -323,8 +326,8 @@ impl Lab {
 
     fn go_back(&mut self) {
         (self.beside.start, self.beside.steps) = (Start::There, None);
-        let Some(Before { snapshot, shown, quality, .. }) = self.beside.before.take() else { return };
-        self.edits.take_back(&snapshot);
+        let Some(Before { snapshot, depth, shown, quality, .. }) = self.beside.before.take() else { return };
+        self.edits.take_back(depth);
         Snapshot { document: self.document, scene: self.scene, iterations: self.iterations } = snapshot;
         if let Some(Picture { bodies, drawing, residuals }) = shown {
             let scene = self.simulation.scene().clone();
