@@ -15,7 +15,7 @@ use crate::app::errand::{Bodies, Done, Ended, Errand, News, Order, Picture, Refu
 use crate::app::job::Heard;
 use crate::app::palette::Palette;
 use crate::app::quality::Quality;
-use crate::app::size::{MOST_UNKNOWNS, unknowns};
+use crate::app::size::{MOST_ALONE, unknowns};
 use crate::scene::{Analysis, Scene};
 use crate::simulation::Status;
 
@@ -39,7 +39,7 @@ pub(super) struct Beside {
 impl Default for Beside {
     fn default() -> Self {
         Self {
-            most_unknowns: MOST_UNKNOWNS,
+            most_unknowns: MOST_ALONE,
             errand: None,
             back: None,
             start: Start::There,
