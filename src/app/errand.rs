@@ -214,8 +214,8 @@ fn work(order: Order, line: &Line<News, Ended>) -> Ended {
     }
     solve(&mut bodies, &mut drawing, (iterations, &mut residuals), line);
     let mut quality = None;
-    if bodies.simulation.motion().is_none() && *bodies.simulation.status() != Status::Running {
-        let _ = line.say(News::Doing(Doing::Certifies));
+    let ended = bodies.simulation.motion().is_none() && *bodies.simulation.status() != Status::Running;
+    if ended && line.say(News::Doing(Doing::Certifies)).is_continue() {
         bodies.simulation.certify();
         let mut own = Quality::default();
         own.follow(&bodies.simulation);

@@ -721,8 +721,11 @@ impl Lab {
         if self.iterates() || self.is_working() {
             return;
         }
-        self.simulation.certify();
-        self.quality.follow(&self.simulation);
+        // The errand has found it of a large body.
+        if !self.is_beside() {
+            self.simulation.certify();
+            self.quality.follow(&self.simulation);
+        }
         self.truth.ask(&self.scene, ctx);
         self.jump.ask(&self.scene, ctx);
         if self.view.drawer == Some(Drawer::Curve) {

@@ -2,8 +2,10 @@
 
 use crate::scene::{ElementKind, Scene};
 
-/// More unknowns than this are not solved between two frames.
+/// More unknowns than this are not solved between two frames in a pane, which is one of several.
 pub(super) const MOST_UNKNOWNS: f64 = 4000.0;
+/// More are not meshed and solved between two frames where one body is all there is.
+pub(super) const MOST_ALONE: f64 = 16_000.0;
 
 /// About so many unknowns.
 pub(super) fn unknowns(scene: &Scene) -> f64 {

@@ -16,7 +16,7 @@ use crate::app::job::Heard;
 use crate::app::language::{fill, tr, translated};
 use crate::app::palette::Palette;
 use crate::app::quality::Quality;
-use crate::app::size::{MOST_UNKNOWNS, unknowns};
+use crate::app::size::{MOST_ALONE, unknowns};
 use crate::scene::{Analysis, Scene};
 use crate::simulation::Status;
 
@@ -40,7 +40,7 @@ pub(super) struct Beside {
 impl Default for Beside {
     fn default() -> Self {
         Self {
-            most_unknowns: MOST_UNKNOWNS,
+            most_unknowns: MOST_ALONE,
             errand: None,
             back: None,
             start: Start::There,
@@ -56,6 +56,8 @@ impl Default for Beside {
 struct Before {
     since: Instant,
     snapshot: Snapshot,
+    /// Steps that could be undone.
+    depth: usize,
     /// The control that was edited.
     label: Option<&'static str>,
     /// Whether the scene comes from somewhere else, and is not shown yet.
@@ -132,6 +134,7 @@ impl Lab {
             self.beside.before = Some(Before {
                 since: Instant::now(),
                 snapshot: self.snapshot(),
+                depth: self.edits.depth(),
                 label: None,
                 adopts: false,
                 shown: None,
@@ -324,8 +327,8 @@ impl Lab {
 
     fn go_back(&mut self) {
         (self.beside.start, self.beside.steps) = (Start::There, None);
-        let Some(Before { snapshot, shown, quality, .. }) = self.beside.before.take() else { return };
-        self.edits.take_back(&snapshot);
+        let Some(Before { snapshot, depth, shown, quality, .. }) = self.beside.before.take() else { return };
+        self.edits.take_back(depth);
         Snapshot { document: self.document, scene: self.scene, iterations: self.iterations } = snapshot;
         if let Some(Picture { bodies, drawing, residuals }) = shown {
             let scene = self.simulation.scene().clone();

@@ -37,7 +37,7 @@ const SENTENCES: &[&str] = &[
     "reaction of %{place} along it, %{unit}",
     "reaction of %{place}, %{unit}",
     "displacement of %{probe}, %{unit}",
-    "support %{n}",
+    "support.%{n}",
     // What is refused.
     "expected a whole number, got %{got}",
     "expected one of %{known}, got %{got}",
@@ -105,7 +105,7 @@ fn places<'a>(sentence: &'static str, text: &'a str) -> Option<Vec<(&'static str
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Language, speak};
+    use super::super::{CHINESE, Language, speak};
     use super::*;
     use crate::dynamics::{StepError, StopReason};
     use crate::method::{Decision, IterationError, Reason, rho_words};
@@ -142,7 +142,7 @@ mod tests {
             format!("beam.cells: {} cells in all", CELLS.check(0.0).unwrap_err()),
         ];
         texts.extend([0.5, 2.0, 1e4].map(rho_words));
-        texts.extend(["0,5", "3 kgg", "3 kg", "?"].map(|text| units::parse(text, "N").unwrap_err().to_string()));
+        texts.extend(["0,5", "3 qq", "3 kg", "?"].map(|text| units::parse(text, "N").unwrap_err().to_string()));
         for id in ["article", "cantilever", "cook", "bracket"] {
             texts.push(Reference::of(&open(id)).unwrap().to_string());
             texts.push(Setting::of(&open(id), 4).to_string());
@@ -165,7 +165,7 @@ mod tests {
     fn every_sentence_is_in_the_catalogue_and_fits_itself() {
         speak(Language::Chinese);
         for sentence in SENTENCES {
-            assert_ne!(tr(sentence), *sentence);
+            assert!(CHINESE.contains_key(*sentence), "{sentence}");
             let text = sentence.replace("%{", "").replace('}', "");
             assert!(places(sentence, &text).is_some(), "{sentence}");
         }

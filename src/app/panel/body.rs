@@ -41,6 +41,10 @@ pub(super) fn mesh_summary(input: &PanelInput<'_>) -> String {
         .beam
         .as_ref()
         .map_or_else(|| tr("from a file").to_owned(), |beam| format!("{} × {}", beam.cells[0], beam.cells[1]));
+    let made = input.simulation.scene();
+    if (&made.beam, &made.mesh) != (&input.scene.beam, &input.scene.mesh) {
+        return cells;
+    }
     joined([cells, count(input.simulation.system().dofs() as u64, "unknown")])
 }
 
