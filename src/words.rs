@@ -130,12 +130,6 @@ pub fn percent(value: f64) -> String {
     format!("{} %", significant(value, 2))
 }
 
-/// A number rounded to two digits.
-#[must_use]
-pub fn two_digits(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
-}
-
 /// The nearest number of three significant digits: as much as a slider, a pointer or a clock is good for.
 #[must_use]
 pub fn three_digits(value: f64) -> f64 {

@@ -395,7 +395,7 @@ impl Elements for IncompatibleQuads {
             let k = symmetric(k) * moduli.mu;
             let q = Rounded::sum(&own, &quad.gamma);
             let twisted = Twisted::new(&k, back(r, q.value));
-            let inverse_trace = following(r, &h);
+            let inverse_trace = inverse_trace(r, &h);
             // Turned back, |R| is its own transpose.
             let size = seen.turn * q.value.abs();
             let dq = seen.turn * q.error + size * (8.0 * UNIT) + seen.turned * q.value.abs() * seen.angle;

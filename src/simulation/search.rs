@@ -60,10 +60,11 @@ impl Search {
     pub fn copy(&self) -> Self {
         Self {
             method: self.method.copy(),
-            previous: (Vec::new(), Vec::new()),
+            previous: (Displacement::zeros(0), Vec::new()),
             forces: self.forces.clone(),
             workspace: None,
             residual: self.residual,
+            floor: self.floor,
             iterations: self.iterations,
             status: self.status.clone(),
             certificate: self.certificate,

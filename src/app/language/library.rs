@@ -7,7 +7,8 @@ use super::{filled, tr};
 const SENTENCES: &[&str] = &[
     // How an iteration ended.
     "the limit of %{count} is reached; more may do",
-    "the residual has not fallen for %{n} iterations: rounding allows no smaller one",
+    "the residual has not fallen for %{n} iterations, and is more than rounding explains",
+    "no digits are left: rounding may change the residual by %{floor}, so %{tolerance} cannot be asked for here",
     "the residual has not fallen for %{n} iterations: this load is too large for the iteration; lower it",
     "the body has gone more than %{n} times its size away; lower the load",
     "the body has gone more than %{n} times its size away",
@@ -68,7 +69,7 @@ pub(in crate::app) fn translated(english: &str) -> String {
         return known.to_owned();
     }
     let fitting = |sentence: &&'static str| Some((*sentence, places(sentence, english)?));
-    let Some((sentence, places)) = SENTENCES.iter().find_map(|sentence| fitting(&sentence)) else {
+    let Some((sentence, places)) = SENTENCES.iter().find_map(|sentence| fitting(sentence)) else {
         return english.to_owned();
     };
     let names: Vec<&str> = places.iter().map(|place| place.0).collect();
@@ -108,7 +109,7 @@ mod tests {
     use super::super::{CHINESE, Language, speak};
     use super::*;
     use crate::dynamics::{StepError, StopReason};
-    use crate::method::{Decision, IterationError, Reason, rho_words};
+    use crate::method::{Decision, IterationError, Reason, floor_words, rho_words};
     use crate::scene::limits::{CELLS, FORCE};
     use crate::scene::{self, Source, units};
     use crate::study::{Jump, LoadPath, Reference, Setting, path_chart};
@@ -123,7 +124,7 @@ mod tests {
         speak(Language::Chinese);
         let mut texts = vec![
             Reason::IterationLimit(500).to_string(),
-            Reason::RoundingFloor(30).to_string(),
+            Reason::Stuck(30).to_string(),
             Reason::Stalled(30).to_string(),
             Reason::RanAway(1e6).to_string(),
             Reason::NoDescent.to_string(),
@@ -141,6 +142,7 @@ mod tests {
             CELLS.expected("\u{201c}0\u{201d}").to_string(),
             format!("beam.cells: {} cells in all", CELLS.check(0.0).unwrap_err()),
         ];
+        texts.push(floor_words(3e-8, 1e-8));
         texts.extend([0.5, 2.0, 1e4].map(rho_words));
         texts.extend(["0,5", "3 qq", "3 kg", "?"].map(|text| units::parse(text, "N").unwrap_err().to_string()));
         for id in ["article", "cantilever", "cook", "bracket"] {

@@ -94,7 +94,7 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
         (view.ghost && !moves, "linear"),
         (view.trail && moves, "trail"),
     ];
-    let shown = shown.into_iter().filter_map(|(on, word)| on.then(|| tr(word)));
+    let shown = shown.into_iter().filter(|(on, _)| *on).map(|(_, word)| tr(word));
     joined(std::iter::once(field).chain(shown))
 }
 
