@@ -89,8 +89,8 @@ fn shown(harness: &Harness<'_, Lab>) -> BTreeSet<String> {
 
 /// What is the same in every language: units, formats, keys, and names of programs.
 const SAME: &[&str] = &[
-    "rad", "RTR", "RkT", "Delete", "GIF", "PNG", "TOML", "Gmsh", "Shift", "Ctrl", "Space", "Enter", "Esc", "Escape",
-    "BDF", "bdf", "det", "max", "int", "warpbeam",
+    "rad", "RTR", "RkT", "fint", "Delete", "GIF", "PNG", "TOML", "Gmsh", "Shift", "Ctrl", "Space", "Enter", "Esc",
+    "Escape", "BDF", "bdf", "det", "max", "int", "warpbeam",
 ];
 
 /// Words of three or more Latin letters that are no names: scenes are opened by theirs, and what stands between backticks is
@@ -109,7 +109,8 @@ fn english(text: &str) -> Vec<String> {
 }
 
 fn assert_chinese(harness: &Harness<'_, Lab>, what: &str) {
-    for text in shown(harness) {
+    // egui names the cross of its windows itself.
+    for text in shown(harness).into_iter().filter(|text| text != "Close window") {
         assert_eq!(english(&text), [""; 0], "{what}: {text:?}");
     }
 }
@@ -248,7 +249,8 @@ fn every_text_of_the_sources_is_in_the_catalogue() {
             }
             words.push_str(rest);
             let is_id = words.chars().all(|c| c.is_ascii_lowercase() || "-_./".contains(c));
-            let needs = !is_id && !english(&words).is_empty();
+            let is_counted = known.contains_key(&format!("%{{n}} {literal}"));
+            let needs = !is_id && !is_counted && !english(&words).is_empty();
             found.insert(literal.clone());
             assert!(
                 !needs
