@@ -91,12 +91,15 @@ fn agrees_with_solve(lab: &Lab) {
     assert!(lab.simulation().certificate().is_some(), "it is not certified");
 }
 
+/// What a user does.
+type Edit = &'static dyn Fn(&mut Harness<'_, Lab>);
+
 /// Every way to change a scene ends where a solve of it ends.
 #[test]
 fn every_edit_goes_through_the_worker_and_ends_where_solve_ends() {
     let mut harness = harness("cantilever");
     agrees_with_solve(harness.state());
-    let edits: [(&str, &dyn Fn(&mut Harness<'_, Lab>)); 9] = [
+    let edits: [(&str, Edit); 9] = [
         ("a load", &|h| type_into(h, "Force", "700")),
         ("a direction", &|h| type_into(h, "Direction", "-60")),
         ("a method", &|h| pick(h, "Method", "newton")),

@@ -69,7 +69,7 @@ pub(in crate::app) fn translated(english: &str) -> String {
         return known.to_owned();
     }
     let fitting = |sentence: &&'static str| Some((*sentence, places(sentence, english)?));
-    let Some((sentence, places)) = SENTENCES.iter().find_map(|sentence| fitting(sentence)) else {
+    let Some((sentence, places)) = SENTENCES.iter().find_map(fitting) else {
         return english.to_owned();
     };
     let names: Vec<&str> = places.iter().map(|place| place.0).collect();
