@@ -75,6 +75,14 @@ fn a_swing_goes_on() {
     }
 }
 
+/// Where a node is in the window, points: at this part of all of them.
+fn on_the_body(lab: &Lab, part: f64) -> egui::Pos2 {
+    let (nodes, u) = (lab.simulation().system().mesh().nodes(), lab.simulation().displacement());
+    let node = ((part * nodes.len() as f64) as usize).min(nodes.len() - 1);
+    let [x, y] = lab.camera().to_view(nodes[node] + u[node]);
+    lab.view_rect().center() + egui::vec2(x as f32, y as f32)
+}
+
 /// A window whose body is pulled about at random: it lives on, and shows what is finite.
 #[test]
 fn a_window_is_played_with() {
@@ -94,7 +102,10 @@ fn a_window_is_played_with() {
             let reach = 0.45 * rect.size();
             let place = rect.center() + egui::vec2(random.next() as f32 * reach.x, random.next() as f32 * reach.y);
             match frame % 12 {
-                0 => harness.drag_at(rect.center() + egui::vec2(random.next() as f32 * 30.0, -40.0)),
+                0 => {
+                    let node = on_the_body(harness.state(), 0.5 + 0.5 * random.next());
+                    harness.drag_at(node + egui::vec2(random.next() as f32 * 20.0, random.next() as f32 * 20.0));
+                }
                 8 => harness.drop_at(place),
                 _ => harness.hover_at(place),
             }
