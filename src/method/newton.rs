@@ -8,7 +8,7 @@
 //! Supports that move are put on with the load: the body is turned as a whole with them, and what is left of their way
 //! enters the first step of a load step as a force.
 
-use super::status::{FALLS, LONGEST_STEP, ROUNDING, farthest};
+use super::status::{LONGEST_STEP, ROUNDING, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
@@ -214,9 +214,10 @@ impl Method for Newton {
             return if residual <= tolerance && is_there { Verdict::Converged } else { Verdict::Continue };
         }
         let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
-        let falls = residual <= FALLS * self.last_residual;
+        let gets_on = residual < self.last_residual;
         self.last_residual = residual;
-        let floor = if residual <= enough || falls || self.target < 1.0 { None } else { it.floor() };
+        // A step from what rounding leaves would be rounding too: soft bodies go far on it.
+        let floor = if residual <= enough || self.target < 1.0 { None } else { it.floor() };
         if residual <= enough || floor.is_some() {
             it.assemble(Tangent::EXACT, self.target);
             let stable = it.factorize().is_ok();
@@ -247,13 +248,14 @@ impl Method for Newton {
         } else {
             self.worse += 1;
         }
-        if self.worse >= PATIENCE && residual < ROUNDING && self.target == 1.0 {
+        let near = residual < ROUNDING && self.target == 1.0;
+        if self.worse >= PATIENCE && near && !gets_on {
             return Verdict::Stop(Reason::Stuck(self.worse));
         }
         let nodes = (it.workspace.free.len() as f64 * 0.5).sqrt();
         let too_long = self.last_step / nodes > LONGEST_STEP * it.system().size();
-        let hopeless =
-            self.steps > 1 && (too_long || self.worse >= PATIENCE || farthest(it.system(), it.state) > LONGEST_STEP);
+        let hopeless = self.steps > 1
+            && (too_long || self.worse >= PATIENCE && !near || farthest(it.system(), it.state) > LONGEST_STEP);
         let late = self.steps >= MAX_STEPS + if residual < CLOSE { LAST_STEPS } else { 0 };
         if late || hopeless { self.give_up_load_step(it.state) } else { Verdict::Continue }
     }

@@ -73,7 +73,7 @@ pub(super) const ROUNDING: f64 = 1e-6;
 /// A bound of rounding above this says too little of a residual for its solve to be called done.
 pub(super) const LOOSEST_FLOOR: f64 = 1e-5;
 /// A residual that is more than this part of the one before no longer falls as an iteration makes it.
-pub(super) const FALLS: f64 = 0.5;
+const FALLS: f64 = 0.5;
 /// Displacement over the size of the body beyond which nothing useful is to be expected. The linear solution of a
 /// slender beam under a large load is absurdly long, and still what was asked for: so not too small.
 const FARTHEST: f64 = 1e6;
