@@ -20,8 +20,7 @@ use egui_kittest::kittest::Queryable;
 use warpbeam::app::Lab;
 use warpbeam::scene::{Load, Source};
 use warpbeam::simulation::Simulation;
-use x11rb::connection::Connection;
-use x11rb::protocol::xproto::{AtomEnum, ConnectionExt, ImageFormat, MapState};
+use x11rb::protocol::xproto::{ConnectionExt, ImageFormat, MapState};
 
 /// How long a condition may take: a fresh machine that does other things too compiles shaders for half a minute.
 const PATIENCE: Duration = Duration::from_secs(240);
@@ -73,20 +72,19 @@ impl Desktop {
         let mut number = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let name = format!(":{}", number.trim());
-        let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
         let config = tempfile::tempdir().unwrap();
+        // openbox announces itself before it has read its files, and loses windows that are mapped meanwhile; it runs this
+        // command when it is ready.
+        let ready = config.path().join("ready");
+        let manager = Command::new("openbox")
+            .args(["--startup", &format!("touch '{}'", ready.display())])
+            .env("DISPLAY", &name)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
         let desktop = Self { _turn: turn, server, manager, name, config };
-        // A window that is mapped before there is a manager may never be managed.
-        wait_for("the window manager", || desktop.is_managed().then_some(()));
+        wait_for("the window manager", || ready.exists().then_some(()));
         Some(desktop)
-    }
-
-    fn is_managed(&self) -> bool {
-        let (connection, screen) = x11rb::connect(Some(&self.name)).unwrap();
-        let root = connection.setup().roots[screen].root;
-        let atom = connection.intern_atom(false, b"_NET_SUPPORTING_WM_CHECK").unwrap().reply().unwrap().atom;
-        let property = connection.get_property(false, root, atom, AtomEnum::WINDOW, 0, 1).unwrap().reply().unwrap();
-        property.value_len == 1
     }
 
     fn command(&self, program: &str) -> Command {
