@@ -1,16 +1,13 @@
-//! The mode Compare, driven as a person would, and its pictures.
-//!
-//! `UPDATE_GOLDEN=1 cargo test --test compare -- golden` draws the golden pictures anew; look at them before committing.
+//! The mode Compare, driven as a person would.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use common::lab::pick;
-use common::pictures::{difference, distance, pixel, read_png};
-use common::{scene, scene_with, stderr, warpbeam};
+use common::pictures::{distance, pixel};
+use common::{scene, scene_with};
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -384,28 +381,4 @@ fn motions_are_not_compared() {
     harness.step();
     assert!(harness.state().panes().iter().all(|pane| pane.place().is_none()));
     assert!(harness.get_by_label("Compare").accesskit_node().is_disabled());
-}
-
-fn golden(name: &str, theme: &str, args: &[&str]) {
-    const TOLERANCE: f64 = 2e-3;
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("shot.png");
-    let to = path.to_str().unwrap();
-    let output = warpbeam(&[&["shot", "article", "-o", to, "--no-panel", "--theme", theme], args].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let golden = PathBuf::from(format!("tests/golden/compare-{name}-{theme}.png"));
-    if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        std::fs::copy(&path, &golden).unwrap();
-    }
-    let difference = difference(&read_png(&path), &read_png(&golden));
-    assert!(difference < TOLERANCE, "{name}: {:.2} % of the pixels differ", 100.0 * difference);
-}
-
-#[test]
-fn golden_pictures() {
-    for theme in ["dark", "light"] {
-        golden("methods", theme, &["--compare", "linear,warped,newton", "--size", "960x600"]);
-        let elements = ["--compare", "warped:t3,warped:t6,newton:q4,newton:t3:20x4", "--size", "800x700"];
-        golden("elements", theme, &elements);
-    }
 }

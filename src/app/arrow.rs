@@ -11,8 +11,12 @@ use crate::words::{engineering, three_digits};
 
 /// Length of an arrow without force, points: something to take hold of.
 const STUB: f64 = 22.0;
-/// Length of a decade of forces, points.
-const DECADE: f64 = 26.0;
+/// Length of a decade of forces, points, where there is room for it, and in the smallest of views.
+const DECADE: [f64; 2] = [26.0, 5.0];
+/// The part of a view's shorter side that the arrow of the largest force may take.
+const SHARE: f64 = 0.3;
+/// Decades between the smallest force and the largest.
+const DECADES: f64 = 5.0;
 /// The smallest force over the largest that slider and arrow tell from zero.
 pub(super) const SMALLEST: f64 = 1e-5;
 /// So near to a tip, points, a press takes hold of it.
@@ -63,22 +67,26 @@ pub(super) fn power_of_ten_above(value: f64) -> f64 {
 pub(super) struct Scale {
     /// The force, N, from which on lengths are logarithmic.
     smallest: f64,
+    /// Length of ten times the force, points.
+    decade: f64,
 }
 
 impl Scale {
-    /// The scale of forces up to `largest`, N; those beyond have longer arrows still.
-    pub(super) fn up_to(largest: f64) -> Self {
-        Self { smallest: SMALLEST * largest }
+    /// The scale of forces up to `largest`, N, in a view of this size, points; those beyond have longer arrows still.
+    pub(super) fn up_to(largest: f64, view: Vec2) -> Self {
+        let room = SHARE * f64::from(view.min_elem());
+        let [widest, narrowest] = DECADE;
+        Self { smallest: SMALLEST * largest, decade: ((room - STUB) / DECADES).clamp(narrowest, widest) }
     }
 
     /// Length, points, of the arrow of a force, N.
     pub(super) fn length(self, magnitude: f64) -> f64 {
-        STUB + DECADE * (magnitude / self.smallest).ln_1p() / std::f64::consts::LN_10
+        STUB + self.decade * (magnitude / self.smallest).ln_1p() / std::f64::consts::LN_10
     }
 
     /// The force, N, of an arrow that is so long, points.
     pub(super) fn magnitude(self, length: f64) -> f64 {
-        self.smallest * ((length - STUB).max(0.0) * std::f64::consts::LN_10 / DECADE).exp_m1()
+        self.smallest * ((length - STUB).max(0.0) * std::f64::consts::LN_10 / self.decade).exp_m1()
     }
 }
 
@@ -123,7 +131,7 @@ impl Forces<'_> {
     /// The arrows of all forces that pull at the present time.
     pub(super) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
         let mesh = self.system.mesh();
-        let scale = Scale::up_to(largest_force(&self.scene.material, self.system));
+        let scale = Scale::up_to(largest_force(&self.scene.material, self.system), projection.rect.size());
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let arrows = shown.filter_map(|(load, of)| {
             let Load::Force { place, force, .. } = of else { return None };
@@ -221,6 +229,8 @@ pub(super) fn paint_arrow(painter: &Painter, from: Pos2, way: Vec2, color: Color
 mod tests {
     use super::*;
 
+    const LARGE: Vec2 = vec2(1000.0, 700.0);
+
     #[test]
     fn vectors_go_to_polar_form_and_back() {
         for v in [[3.0, -4.0], [0.0, -40_000.0], [-2.0, 0.0], [1e-3, 1e3]] {
@@ -235,19 +245,30 @@ mod tests {
     /// One mapping, both ways: every force has a length of its own, and ten times the force is a fixed piece longer.
     #[test]
     fn lengths_tell_forces_logarithmically() {
-        let scale = Scale::up_to(1e6);
+        let scale = Scale::up_to(1e6, LARGE);
         for magnitude in [0.0, 1e-3, 1.0, 12.0, 500.0, 3e4, 1e6, 1e9, 1e15] {
             let back = scale.magnitude(scale.length(magnitude));
             assert!((back - magnitude).abs() <= 1e-10 * (magnitude + 1.0), "{magnitude} {back}");
         }
         let decade = scale.length(1e5) - scale.length(1e4);
-        assert!((decade - DECADE).abs() < 0.1, "{decade}");
+        assert!((decade - DECADE[0]).abs() < 0.1, "{decade}");
         assert_eq!((scale.length(0.0), scale.magnitude(STUB), scale.magnitude(0.0)), (STUB, 0.0, 0.0));
         assert!(
             (1..150).all(
                 |i| scale.length(10f64.powf(f64::from(i) * 0.1)) > scale.length(10f64.powf(f64::from(i - 1) * 0.1))
             )
         );
+    }
+
+    /// The largest force has an arrow that leaves room for the body, and differences that a pointer can make.
+    #[test]
+    fn small_views_have_short_arrows() {
+        let largest = 1e6;
+        for (side, most) in [(700.0, 155.0), (400.0, 121.0), (200.0, 61.0), (60.0, 50.0)] {
+            let scale = Scale::up_to(largest, vec2(2.0 * side, side));
+            assert!(scale.length(largest) < most, "{side}: {}", scale.length(largest));
+            assert!(scale.length(largest) - scale.length(0.1 * largest) > 4.0, "{side}");
+        }
     }
 
     /// Whatever its direction and length, the words are beside the arrow.
@@ -269,11 +290,11 @@ mod tests {
 
     #[test]
     fn a_dragged_tip_gives_round_numbers_and_shift_snaps() {
-        let scale = Scale::up_to(1e6);
+        let scale = Scale::up_to(1e6, LARGE);
         let arrow =
             Arrow { load: 0, from: Pos2::ZERO, way: vec2(0.0, scale.length(1e3) as f32), scale, magnitude: 1e3 };
         assert_eq!(arrow.dragged(Vec2::ZERO, false), (1e3, DOWN));
-        let (more, direction) = arrow.dragged(vec2(0.0, DECADE as f32), false);
+        let (more, direction) = arrow.dragged(vec2(0.0, DECADE[0] as f32), false);
         assert!((more / 1e4 - 1.0).abs() < 0.02 && direction == DOWN, "{more} {direction}");
         let (_, direction) = arrow.dragged(vec2(20.0, 0.0), true);
         assert_eq!(direction, -75.0);

@@ -1,7 +1,7 @@
 //! The budget: error against time of everything measured on this machine, and what of it is within limits.
 
 use egui::{Button, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
-use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
+use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
 
 use super::action::Action;
 use super::background::{Background, BackgroundError, News};
@@ -128,9 +128,10 @@ impl Budget {
         };
         let (limits, messages) = (&mut self.limits, &mut self.messages);
         ui.add_space(4.0);
+        let width = ui.available_width();
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
-                ui.set_width(LIST_WIDTH);
+                ui.set_width(LIST_WIDTH.min(LIST_SHARE * width));
                 settings(ui, &budget, limits, messages, actions);
             });
             ui.vertical(|ui| {
@@ -158,7 +159,9 @@ struct BudgetView<'a> {
     iterations: u32,
 }
 
+/// Width of the list, points, and the largest part of the width that it takes from the plot.
 const LIST_WIDTH: f32 = 384.0;
+const LIST_SHARE: f32 = 0.5;
 
 fn settings(
     ui: &mut Ui,
@@ -295,7 +298,8 @@ fn legend(ui: &mut Ui) {
             ui.label(RichText::new(tr(method.id)).small().strong().color(palette.method(method.kind)));
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
-        ui.label(RichText::new(fill!("%{shapes}; nothing beats the line", shapes = shapes)).small());
+        let words = RichText::new(fill!("%{shapes}; nothing beats the line", shapes = shapes)).small();
+        ui.add(egui::Label::new(words).truncate());
     });
 }
 
@@ -320,11 +324,16 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         measured.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
     };
     Plot::new("budget")
-        .x_axis_label(tr("time of a solve, ms"))
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label(tr("time of a solve, ms"))
+                .formatter(|mark, _| decade_words(mark))
+                // Powers of ten are short: a narrow plot has room for them.
+                .label_spacing(egui::Rangef::new(36.0, 60.0)),
+        ])
         .y_axis_label(tr("error, %"))
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
-        .x_axis_formatter(|mark, _| decade_words(mark))
         .y_axis_formatter(|mark, _| decade_words(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)

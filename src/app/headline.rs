@@ -81,7 +81,7 @@ fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [Head
     let simulation = input.simulation;
     let times = simulation.timings();
     let seconds = (times.total() - times.certify).as_secs_f64();
-    let rho = rho(simulation);
+    let rho = rho(input);
     let truth = truth_words(input.truth);
     let level = |decades: f64| decades.floor().clamp(0.0, 4.0) as u32;
     let error = errors.own.map_or(0.0, |error| error.max(1e-9).log10() + 2.0);

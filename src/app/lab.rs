@@ -64,7 +64,9 @@ const HEADLINE_HEIGHT: f32 = 42.0;
 /// Points kept free around the body when the view is fitted: room for the load's arrow, the key above, the legend below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 /// The same over a card, which leaves less of the view.
-const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 48.0, bottom: 44.0 };
+const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
+/// The same over anything else that leaves less of the view: the status stands in it.
+const LOW_MARGINS: Margins = Margins { bottom: 84.0, ..CARD_MARGINS };
 
 /// Height of what is shown under the body, points; at most a part of the window's.
 const DRAWER_HEIGHT: f32 = 270.0;
@@ -568,6 +570,7 @@ impl Lab {
         PanelInput {
             truth: self.truth.get(),
             jump: self.jump.get(),
+            equilibrium_rho: self.learn.as_ref().and_then(|learn| learn.rho()),
             quality: &self.quality,
             scene: &self.scene,
             original: &self.document.original,
@@ -1002,8 +1005,8 @@ impl Lab {
                     }
                 });
             }
-            // A card has its own way on.
-            let remedy = verdict::remedy(&input, errors).filter(|_| self.learn.is_none());
+            // The other modes have their own way on.
+            let remedy = verdict::remedy(&input, errors).filter(|_| self.view.mode == Mode::Explore);
             if let Some(remedy) = remedy {
                 chip(palette.error_chip).show(ui, |ui| {
                     ui.horizontal_wrapped(|ui| {
@@ -1154,7 +1157,7 @@ impl Lab {
             include(&mut self.exact().iter().flatten().copied());
             self.swept = Some([low, high]).filter(|_| self.moves());
             self.eye.follow([low, high]);
-            self.margins = self.with_room_for_arrows(Camera::fit(low, high, size, self.least_margins()), size);
+            self.margins = self.with_room_for_arrows(Camera::fit(low, high, size, self.least_margins(size)), size);
         }
         let [low, high] = self.eye.whole();
         let fitted = self.fit(low, high, size);
@@ -1181,8 +1184,12 @@ impl Lab {
     }
 
     /// What is kept free around the body, whatever its loads.
-    fn least_margins(&self) -> Margins {
-        if self.learn.is_some() { CARD_MARGINS } else { FIT_MARGINS }
+    fn least_margins(&self, [_, height]: [f64; 2]) -> Margins {
+        match (self.learn.is_some(), overlay::has_legend_on_top(height as f32)) {
+            (true, _) => CARD_MARGINS,
+            (false, true) => LOW_MARGINS,
+            (false, false) => FIT_MARGINS,
+        }
     }
 
     /// What is kept free around the body: also what the loads' arrows need beyond the view of this camera.
@@ -1191,7 +1198,7 @@ impl Lab {
         const BEYOND: f32 = 36.0;
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
-        let least = self.least_margins();
+        let least = self.least_margins(view);
         if self.is_apart() {
             return least;
         }

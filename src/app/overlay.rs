@@ -388,10 +388,15 @@ pub(super) fn boxed_text(
     painter.galley(rect.min, galley, color);
 }
 
-/// Room that the colour bar takes at the bottom of the view, points.
+/// Room that the colour bar takes at the bottom or the top of the view, points.
 pub(super) const LEGEND_HEIGHT: f32 = 66.0;
 
-/// The colour bar with its title and round values, at the bottom of the view.
+/// Whether a view is so low, points, that the colour bar is at its top: at the bottom it would be in the arrows' way.
+pub(super) fn has_legend_on_top(height: f32) -> bool {
+    height < 400.0
+}
+
+/// The colour bar with its title and round values, in a corner on the right.
 fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     const BAR: Vec2 = vec2(240.0, 10.0);
     const MOST_TICKS: u32 = 5;
@@ -405,7 +410,14 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
     let unit = if field.unit().is_empty() { String::new() } else { format!(", {symbol}{}", field.unit()) };
     let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
     let title = painter.layout_no_wrap(format!("{}{unit}{range}", tr(field.name())), font.clone(), palette.text);
-    let corner = rect.right_bottom() - vec2(BAR.x + 32.0, LEGEND_HEIGHT - 6.0);
+    // Beside the solutions' names, or under them where there is no room.
+    const NAMES: f32 = 380.0;
+    let top = if rect.width() < NAMES + BAR.x + 40.0 { 34.0 } else { 12.0 };
+    let corner = if has_legend_on_top(rect.height()) {
+        rect.right_top() + vec2(-(BAR.x + 32.0), top)
+    } else {
+        rect.right_bottom() - vec2(BAR.x + 32.0, LEGEND_HEIGHT - 6.0)
+    };
     let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(BAR.x + 34.0, 56.0));
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     painter.galley(corner, title, palette.text);

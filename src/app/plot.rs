@@ -43,7 +43,11 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
         .y_axis_label(y_name.to_owned())
         .x_grid_spacer(|input| round_marks(input, APART[0]))
         .y_grid_spacer(|input| round_marks(input, APART[1]))
-        .x_axis_formatter(move |mark, _| engineering(mark.value, x_unit))
+        .x_axis_formatter(move |mark, range| {
+            // In the corner stands the number of the other axis.
+            let in_corner = mark.value - range.start() < CORNER * (range.end() - range.start());
+            if in_corner { String::new() } else { engineering(mark.value, x_unit) }
+        })
         .y_axis_formatter(move |mark, _| engineering(mark.value, y_unit))
         .label_formatter(move |at| match at {
             HoverPosition::NearDataPoint { plot_name, position, .. } => {
@@ -63,6 +67,9 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
 const NEAREST: f32 = 8.0;
 /// Numbers so far apart, points, have room: beside each other, and over each other.
 const APART: [f32; 2] = [40.0, 26.0];
+
+/// The part of an axis, from its beginning, over which its numbers would touch those of the other axis.
+const CORNER: f64 = 0.02;
 
 /// Marks 1, 2 or 5 · 10ⁿ apart, as many as have room for their numbers.
 fn round_marks(input: GridInput, apart: f32) -> Vec<GridMark> {

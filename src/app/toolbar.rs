@@ -14,10 +14,10 @@ use super::palette::{BODY, Palette, SMALL};
 use super::panel::PanelInput;
 
 /// Below this width, points, buttons show no words.
-const WORDS: f32 = 900.0;
+const WORDS: f32 = 1050.0;
 
 /// Below this width, points, modes have a row of their own.
-const ONE_ROW: f32 = 860.0;
+const ONE_ROW: f32 = 890.0;
 
 /// The height of the bar in a window of this width, points.
 pub(super) fn height(width: f32) -> f32 {
@@ -34,7 +34,7 @@ pub(super) fn show(
 ) {
     let wide = ui.available_width() >= WORDS;
     let one_row = height(ui.ctx().content_rect().width()) < 40.0;
-    let mut tools = |ui: &mut Ui| {
+    let mut first = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         gallery.show(ui, input, wide, actions);
         divide(ui);
@@ -44,18 +44,19 @@ pub(super) fn show(
         if one_row {
             divide(ui);
             modes(ui, input, view, actions);
+            window_tools(ui, view, input.language, actions);
         }
-        window_tools(ui, view, input.language, actions);
     };
     if one_row {
-        ui.horizontal_centered(tools);
+        ui.horizontal_centered(first);
         return;
     }
     ui.add_space(6.0);
-    ui.horizontal(&mut tools);
+    ui.horizontal(&mut first);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         modes(ui, input, view, actions);
+        window_tools(ui, view, input.language, actions);
     });
 }
 

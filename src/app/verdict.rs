@@ -134,9 +134,9 @@ pub(super) fn stability(simulation: &Simulation) -> Option<bool> {
     certificate.stable.filter(|_| *simulation.status() == Status::Converged)
 }
 
-/// ρ of the warped iteration where the body is.
-pub(super) fn rho(simulation: &Simulation) -> Option<f64> {
-    simulation.certificate().and_then(|c| c.fixed_point_rho)
+/// ρ of the warped iteration: at the equilibrium where that is known, else where the body is.
+pub(super) fn rho(input: &PanelInput<'_>) -> Option<f64> {
+    input.equilibrium_rho.or_else(|| input.simulation.certificate()?.fixed_point_rho)
 }
 
 /// Why the status is what it is, sentence by sentence.
@@ -178,7 +178,7 @@ pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
         false => "Unstable: pushed a little, the body leaves (the exact tangent is not positive definite).",
     });
     lines.extend(stable.map(|words| tr(words).to_owned()));
-    if let Some(rho) = rho(simulation) {
+    if let Some(rho) = rho(input) {
         lines.push(sentence(&translated(&rho_words(rho))));
         let converged = *simulation.status() == Status::Converged;
         if rho > 1.0 && converged {
@@ -223,7 +223,7 @@ pub(super) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> 
         Remedy { words, offer: tr("Use newton").to_owned(), edits: "Method", scene }
     };
     if !simulation.status().is_success() {
-        let words = rho(simulation).filter(|&rho| rho > 1.0).map_or_else(
+        let words = rho(input).filter(|&rho| rho > 1.0).map_or_else(
             || fill!("The %{method} iteration does not get there.", method = tr(scene.solver.method.id())),
             |rho| fill!("Cannot converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
         );

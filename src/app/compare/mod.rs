@@ -390,15 +390,12 @@ impl Compare {
     }
 
     /// Points kept free around the bodies when the view is fitted: room for supports, the loads' arrows and their words.
-    fn margins(&self, input: &CompareInput<'_>, [_, height]: [f64; 2]) -> Margins {
-        /// Of the height so much may go to arrows; in panes lower than this, points, the bodies need it.
-        const SHARE: f64 = 0.25;
-        const LOW: f64 = 160.0;
+    fn margins(&self, input: &CompareInput<'_>, [width, height]: [f64; 2]) -> Margins {
+        let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
         let forces = self.panes.first().and_then(|pane| pane.forces(input.direction));
-        let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: Rect::ZERO }));
+        let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
         let longest = |along: fn(egui::Vec2) -> f32| {
-            let ways = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.way)));
-            ways.fold(0.0, f64::max).min(if height < LOW { 0.0 } else { SHARE * height })
+            arrows.iter().flatten().map(|arrow| f64::from(along(arrow.way))).fold(0.0, f64::max)
         };
         let (top, bottom) = ((0.08 * height).min(30.0), (0.16 * height).min(44.0));
         Margins { sides: 40.0, top: top + longest(|way| -way.y), bottom: bottom + longest(|way| way.y) }

@@ -194,7 +194,8 @@ impl Learn {
         self.card().apart && self.turned > 0.0
     }
 
-    fn rho(&self) -> Option<f64> {
+    /// ρ at the equilibrium, once it is known.
+    pub(super) fn rho(&self) -> Option<f64> {
         self.rho.finder.get().copied()
     }
 

@@ -56,6 +56,8 @@ pub(super) struct PanelInput<'a> {
     pub truth: Option<&'a Reference>,
     /// Where the body jumps on its way from rest, once it is known.
     pub jump: Option<&'a Jump>,
+    /// ρ of the warped iteration at the equilibrium, where it has been looked for, whatever the body's state.
+    pub equilibrium_rho: Option<f64>,
     /// How far the result is to be trusted.
     pub quality: &'a Quality,
     pub adapter: &'a str,

@@ -72,7 +72,7 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
     row("Load steps", words, "Parts in which the load is put on");
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
     row("Equilibrium", tr(word).to_owned(), "Certified: whether the exact tangent A + G is positive definite");
-    let words = rho(simulation).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&translated(&rho_words(rho))));
+    let words = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&translated(&rho_words(rho))));
     let tip =
         "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended";
     row("ρ", words, tip);

@@ -1,0 +1,92 @@
+//! Golden pictures of the whole window: Explore, each card of Learn, Compare and Budget, in both themes and both languages.
+//! What the pictures show is checked in numbers by the tests of each mode.
+//!
+//! `UPDATE_GOLDEN=1 cargo test --test golden` draws them anew; look at them before committing.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use std::path::PathBuf;
+
+use common::pictures::{difference, lab, read_png};
+use egui::{Key, Theme};
+use egui_kittest::Harness;
+use warpbeam::app::{Lab, Language, parse_panes, picture};
+use warpbeam::render::Gpu;
+
+/// The panel is in a window of this width.
+const SIZE: [u32; 2] = [960, 600];
+
+/// The share of pixels that may differ: the digits of measured times do, from run to run.
+const TOLERANCE: f64 = 2e-3;
+
+/// Draws the window in both themes and both languages, and compares with the golden pictures of this name.
+fn golden(name: &str, lab: &mut Lab) {
+    let gpu = Gpu::headless().unwrap();
+    lab.set_adapter(gpu.describe());
+    let folder = tempfile::tempdir().unwrap();
+    let mut wrong = Vec::new();
+    for (language, mark) in [(Language::English, ""), (Language::Chinese, "-zh")] {
+        lab.set_language(language);
+        for (theme, shade) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
+            let file = format!("{name}-{shade}{mark}.png");
+            let path = folder.path().join(&file);
+            picture(&gpu, lab, SIZE, 1.0, theme).unwrap().write_png(&path).unwrap();
+            let golden = PathBuf::from("tests/golden/window").join(&file);
+            if std::env::var_os("UPDATE_GOLDEN").is_some() {
+                std::fs::create_dir_all("tests/golden/window").unwrap();
+                std::fs::copy(&path, &golden).unwrap();
+            }
+            let difference = difference(&read_png(&path), &read_png(&golden));
+            if difference >= TOLERANCE {
+                wrong.push(format!("{file}: {:.2} % of the pixels differ", 100.0 * difference));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn explore() {
+    let mut lab = lab("article");
+    lab.solve();
+    golden("explore", &mut lab);
+}
+
+#[test]
+fn every_card_of_learn() {
+    for card in 1..=8 {
+        let mut lab = lab("article");
+        lab.show_card(card);
+        lab.solve();
+        golden(&format!("learn-{card}"), &mut lab);
+    }
+}
+
+#[test]
+fn compare() {
+    for (name, panes) in
+        [("methods", "linear,warped,newton"), ("elements", "warped:t3,warped:t6,newton:q4,newton:t3:20x4")]
+    {
+        let mut lab = lab("article");
+        lab.show_comparison(&parse_panes(panes).unwrap());
+        lab.solve();
+        golden(&format!("compare-{name}"), &mut lab);
+    }
+}
+
+/// Before anything is measured: what has been would differ from run to run.
+#[test]
+fn budget() {
+    let mut solved = lab("article");
+    solved.solve();
+    let mut harness = Harness::builder().with_size(egui::vec2(960.0, 600.0)).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.ui(ui);
+        },
+        solved,
+    );
+    harness.key_press(Key::B);
+    harness.run_steps(3);
+    golden("budget", harness.state_mut());
+}
