@@ -1,11 +1,15 @@
-//! What a frame of the window costs to draw, offscreen at 1280×800: with the panel, without it, and of a fine mesh.
+//! What a frame of the window costs to draw, offscreen at 1280×800, and each of its stages: with the panel, without it, and of a
+//! fine mesh.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a bench may fail")]
+
+use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use warpbeam::Simulation;
-use warpbeam::app::{Canvas, Lab};
+use warpbeam::app::{Canvas, FrameTimes, Lab};
 use warpbeam::render::Gpu;
 use warpbeam::scene::{Source, open};
+use warpbeam::words::{engineering, two_digits};
 
 fn frames(c: &mut Criterion) {
     let Ok(gpu) = Gpu::headless() else {
@@ -29,7 +33,27 @@ fn frames(c: &mut Criterion) {
         let triangles = lab.simulation().system().mesh().element_count();
         let name = format!("paint/{triangles} triangles{}", if panel { ", with the panel" } else { "" });
         c.bench_function(&name, |b| b.iter(|| canvas.paint(&mut lab).unwrap()));
+        print_stages(|| canvas.paint(&mut lab).unwrap());
     }
+}
+
+/// Prints the medians of the stages over some frames.
+fn print_stages(mut frame: impl FnMut() -> FrameTimes) {
+    const FRAMES: usize = 41;
+    let frames: Vec<FrameTimes> = (0..FRAMES).map(|_| frame()).collect();
+    let median = |of: fn(&FrameTimes) -> Duration| {
+        let mut times: Vec<Duration> = frames.iter().map(of).collect();
+        times.sort_unstable();
+        engineering(two_digits(times[FRAMES / 2].as_secs_f64()), "s")
+    };
+    println!(
+        "  a frame {}: layout {}, tessellation {}, uploads and commands {}, drawing {}",
+        median(FrameTimes::total),
+        median(|t| t.layout),
+        median(|t| t.tessellate),
+        median(|t| t.record),
+        median(|t| t.draw)
+    );
 }
 
 criterion_group! {

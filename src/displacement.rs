@@ -112,12 +112,8 @@ impl<'a> Compensated<'a> {
     /// The displacements of an element's nodes relative to its first one.
     #[inline(always)]
     pub(crate) fn relative<const N: usize>(&self, nodes: &[u32; N]) -> [Vector2<f64>; N] {
-        let first = nodes[0] as usize;
-        let (rounded, remainder) = (self.rounded[first], self.remainder[first]);
-        let mut own = [Vector2::zeros(); N];
-        for (own, &node) in own.iter_mut().zip(nodes).skip(1) {
-            *own = (self.rounded[node as usize] - rounded) + (self.remainder[node as usize] - remainder);
-        }
-        own
+        let part = |of: &[Vector2<f64>]| nodes.map(|node| of[node as usize]);
+        let (rounded, remainder) = (part(self.rounded), part(self.remainder));
+        std::array::from_fn(|a| (rounded[a] - rounded[0]) + (remainder[a] - remainder[0]))
     }
 }

@@ -195,7 +195,10 @@ impl ViewOptions {
             Toggle::Panel => self.panel ^= true,
             Toggle::Help => self.help ^= true,
             Toggle::Why => self.why ^= true,
-            Toggle::Mode(mode) => self.mode = if self.mode == mode { Mode::Explore } else { mode },
+            Toggle::Mode(mode) => {
+                self.mode = if self.mode == mode { Mode::Explore } else { mode };
+                self.why = false;
+            }
             // Plots are for exploring: asked for in another mode they are shown there.
             Toggle::Drawer(drawer) => {
                 let open = self.plots() == Some(drawer);

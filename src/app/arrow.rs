@@ -165,7 +165,9 @@ impl Arrow {
         let step = if snap { SNAP } else { 1.0 };
         // −0 and −180 are 0 and 180.
         let degrees = (degrees / step).round() * step + 0.0;
-        let magnitude = three_digits(self.scale.magnitude(f64::from(way.length())));
+        // As far as the slider goes; a force beyond it, which was typed, can be made smaller only.
+        let most = self.magnitude.max(self.scale.smallest / SMALLEST);
+        let magnitude = three_digits(self.scale.magnitude(f64::from(way.length()))).min(most);
         (magnitude, if degrees == -180.0 { 180.0 } else { degrees })
     }
 
@@ -299,6 +301,8 @@ mod tests {
         let (_, direction) = arrow.dragged(vec2(20.0, 0.0), true);
         assert_eq!(direction, -75.0);
         assert_eq!(arrow.dragged(-arrow.way, false).0, 0.0);
+        // As the slider, it ends at the largest force.
+        assert!((arrow.dragged(vec2(0.0, 500.0), false).0 / 1e6 - 1.0).abs() < 1e-9);
         // Straight to the left is +180, whichever side of it the tip is.
         let left = arrow.dragged(-arrow.way + vec2(-60.0, 1e-4), false);
         assert_eq!(left.1, 180.0);

@@ -20,6 +20,8 @@ use crate::words::{engineering, number, three_digits};
 #[derive(Debug, Default)]
 pub(super) struct Budget {
     background: Option<Background>,
+    /// Whether the last study was cancelled.
+    is_partial: bool,
     study: Option<Study>,
     /// What was measured, but for what is varied.
     of: Option<Scene>,
@@ -73,7 +75,7 @@ impl Budget {
 
     /// Calls the study off; what has been measured stays.
     pub(super) fn cancel(&mut self) {
-        self.background = None;
+        self.is_partial = self.background.take().is_some();
     }
 
     /// Fraction that is done and what is measured now, while a study runs.
@@ -122,6 +124,7 @@ impl Budget {
             demand,
             meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
             current: self.of.as_ref() == Some(&question(scene)),
+            is_partial: self.is_partial,
             progress: self.background.as_ref().map(Background::progress),
             error: self.error.as_ref().map(ToString::to_string),
             iterations,
@@ -151,6 +154,8 @@ struct BudgetView<'a> {
     meeting: Vec<&'a Measurement>,
     /// Whether the study is of the body and loads that the lab shows.
     current: bool,
+    /// Whether the study was cancelled.
+    is_partial: bool,
     /// Fraction that is done and what is measured now, while a study runs.
     progress: Option<(f32, &'a str)>,
     /// Why there is no study.
@@ -188,6 +193,10 @@ fn settings(
                 (None, Some(_)) if !budget.current => {
                     let color = ui.visuals().warn_fg_color;
                     RichText::new(tr("The body or its load has changed since.")).small().color(color)
+                }
+                (None, Some(_)) if budget.is_partial => {
+                    let color = ui.visuals().warn_fg_color;
+                    RichText::new(tr("Cancelled: not everything has been measured.")).small().color(color)
                 }
                 (None, Some(study)) => {
                     let truth = translated(&study.reference.to_string());

@@ -1299,6 +1299,8 @@ impl Lab {
             Action::Toggle(Toggle::Mode(mode)) if !(mode.entry().serves)(&self.scene) => {
                 self.say(ctx, tr(mode.entry().unless).to_owned());
             }
+            // The other kind has nothing to plot.
+            Action::Toggle(Toggle::Drawer(drawer)) if drawer != Drawer::of(&self.scene) => {}
             Action::Toggle(what) => {
                 self.view.toggle(what);
                 self.enter_or_leave();
@@ -1467,6 +1469,7 @@ impl Lab {
         self.iterations = 1;
         self.eye = Eye::new(self.simulation.system().mesh().bounds().into());
         self.probe = None;
+        self.view.why = false;
         self.view.fixed_range = None;
     }
 

@@ -61,7 +61,7 @@ pub use lab::{Lab, PANEL_WIDTH};
 pub use language::Language;
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use settings::Settings;
-pub use shot::{Canvas, MAX_SHOT_SIDE, ShotOptions, picture, shot};
+pub use shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
 pub use window::{Display, NoDisplay, opens_beside, run};
 
 /// No number is free for a file's name.

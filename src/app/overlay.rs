@@ -408,8 +408,9 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
     let font = FontId::proportional(SMALL);
     let (power, symbol) = prefix(&[low, high], field.unit());
     let unit = if field.unit().is_empty() { String::new() } else { format!(", {symbol}{}", field.unit()) };
+    let raw = if overlay.options.raw && !field.is_of_elements() { tr(", raw") } else { "" };
     let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
-    let title = painter.layout_no_wrap(format!("{}{unit}{range}", tr(field.name())), font.clone(), palette.text);
+    let title = painter.layout_no_wrap(format!("{}{unit}{raw}{range}", tr(field.name())), font.clone(), palette.text);
     // Beside the solutions' names, or under them where there is no room.
     const NAMES: f32 = 380.0;
     let top = if rect.width() < NAMES + BAR.x + 40.0 { 34.0 } else { 12.0 };

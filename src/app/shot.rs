@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use egui_wgpu::ScreenDescriptor;
 
@@ -114,6 +115,27 @@ pub fn picture(
     Canvas::new(gpu, size, pixels_per_point, theme)?.draw(lab, &mut |_| {})
 }
 
+/// What the stages of a frame took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameTimes {
+    /// The lab's part: controls, plots, and the shape of the body.
+    pub layout: Duration,
+    /// egui's shapes to triangles.
+    pub tessellate: Duration,
+    /// Uploads, and commands for the graphics device.
+    pub record: Duration,
+    /// What the device took after that: all of the drawing, where it is a processor.
+    pub draw: Duration,
+}
+
+impl FrameTimes {
+    /// All of the frame.
+    #[must_use]
+    pub fn total(&self) -> Duration {
+        self.layout + self.tessellate + self.record + self.draw
+    }
+}
+
 /// What pictures of one size are drawn with, one after the other.
 pub struct Canvas<'a> {
     gpu: &'a Gpu,
@@ -155,18 +177,24 @@ impl<'a> Canvas<'a> {
     ///
     /// # Errors
     /// [`RenderError::ReadBack`].
-    pub fn paint(&mut self, lab: &mut Lab) -> Result<(), RenderError> {
-        self.submit(lab, &mut |_| {});
+    pub fn paint(&mut self, lab: &mut Lab) -> Result<FrameTimes, RenderError> {
+        let times = self.submit(lab, &mut |_| {});
+        let start = Instant::now();
         let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        done.map(|_| ()).map_err(|error| RenderError::ReadBack(error.to_string()))
+        done.map_err(|error| RenderError::ReadBack(error.to_string()))?;
+        Ok(FrameTimes { draw: start.elapsed(), ..times })
     }
 
-    fn submit(&mut self, lab: &mut Lab, over: &mut dyn FnMut(&egui::Context)) {
+    /// Hands a frame to the device; says what that took.
+    fn submit(&mut self, lab: &mut Lab, over: &mut dyn FnMut(&egui::Context)) -> FrameTimes {
         /// egui needs a pass to learn sizes, another to use them, and one more to come to rest.
         const FIRST_PASSES: u32 = 3;
         let Self { gpu, ctx, stage, target, screen, passes } = self;
         let ScreenDescriptor { size_in_pixels: size, pixels_per_point } = *screen;
         let mut unused = Vec::new();
+        let mut times = FrameTimes::default();
+        let mut stage_start = Instant::now();
+        let mut lap = || std::mem::replace(&mut stage_start, Instant::now()).elapsed();
         let primitives = loop {
             let mut input = egui::RawInput {
                 screen_rect: Some(egui::Rect::from_min_size(
@@ -183,16 +211,21 @@ impl<'a> Canvas<'a> {
                 lab.ui(ui);
                 over(ui.ctx());
             });
+            times.layout += lap();
             stage.set_textures(gpu, &mut output.textures_delta);
             unused.push(output.textures_delta);
             *passes = passes.saturating_add(1);
+            times.record += lap();
             if *passes >= FIRST_PASSES {
                 break ctx.tessellate(output.shapes, pixels_per_point);
             }
         };
+        times.tessellate = lap();
         stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), screen, &primitives, lab);
         for mut textures in unused {
             stage.free_textures(&mut textures);
         }
+        times.record += lap();
+        times
     }
 }

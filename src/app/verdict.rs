@@ -239,7 +239,14 @@ pub(super) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> 
         let mut scene = Box::new(scene.clone());
         scene.set_element(better);
         let words = fill!("%{error} off: three-node triangles lock in bending.", error = off);
-        return Some(Remedy { words, offer: fill!("Try %{element}", element = better.id()), edits: "Element", scene });
+        // What bends turns further, and the article's iteration may not follow it there.
+        let offer = if scene.solver.method == MethodKind::Warped {
+            scene.solver.method = MethodKind::Newton;
+            fill!("Try %{element} with newton", element = better.id())
+        } else {
+            fill!("Try %{element}", element = better.id())
+        };
+        return Some(Remedy { words, offer, edits: "Element", scene });
     }
     let mut scene = Box::new(scene.clone());
     let beam = scene.beam.as_mut()?;

@@ -235,6 +235,7 @@ impl Compare {
         let join = |words: Vec<&str>| words.join(" | ");
         let methods = join(METHODS_PRESET.iter().map(|method| tr(method.id())).collect());
         let meshed = join(elements.iter().map(|element| element.id()).collect());
+        let method = (input.scene.solver.method == MethodKind::Warped).then_some(MethodKind::Newton);
         let chosen = [PaneSetting::default(), input.chosen.map(PaneSetting::from).unwrap_or_default()];
         let presets = [
             (
@@ -246,9 +247,10 @@ impl Compare {
             ),
             (
                 meshed,
-                elements.iter().map(|&element| PaneSetting::of_element(element)).collect(),
+                elements.iter().map(|&element| PaneSetting { method, ..PaneSetting::of_element(element) }).collect(),
                 elements.len() > 1,
-                "The elements that the mesh can have, by the panel's method",
+                "The elements that the mesh can have, by the panel's method; by newton in the place of warped, which cannot \
+                 follow all of them",
                 "The mesh of this file can have one element only",
             ),
             (
