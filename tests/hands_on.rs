@@ -195,6 +195,24 @@ fn key(harness: &mut Harness<'_, Lab>, modifiers: Modifiers, key: Key) {
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
+/// What was paused is the motion, not the scene that comes back in its place.
+#[test]
+fn a_scene_that_comes_back_is_solved() {
+    let mut harness = harness("article");
+    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "swing").scroll_to_me();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "swing").click();
+    harness.run_steps(4);
+    assert!(harness.state().simulation().motion().is_some());
+    harness.key_press(Key::Space);
+    harness.run();
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.state().scene().name, "The article's beam");
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+}
+
 /// A drag is one step, whatever it passed through; steps are undone and done again in order.
 #[test]
 fn edits_are_undone_and_done_again() {

@@ -1459,8 +1459,9 @@ impl Lab {
         Ok(())
     }
 
-    /// Forgets what belonged to a scene from somewhere else.
+    /// Forgets what belonged to the scene before, also that it was paused.
     fn start_fresh(&mut self) {
+        self.running = true;
         self.playback = Playback::default();
         self.panel.clear();
         self.budget = Budget::default();
@@ -1527,8 +1528,9 @@ impl Lab {
         if !self.is_outdated {
             return;
         }
-        let area =
-            egui::Area::new(egui::Id::unique("outdated")).anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 12.0));
+        let below_the_toolbar = toolbar::height(ctx.content_rect().width()) + 8.0;
+        let area = egui::Area::new(egui::Id::unique("outdated"))
+            .anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, below_the_toolbar));
         area.show(ctx, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.horizontal(|ui| {
