@@ -181,8 +181,11 @@ fn the_trace_keeps_its_dots_while_panes_iterate() {
     let mut harness = compared("article", "linear,warped,newton");
     let before = harness.state().traced();
     assert_eq!(before.len(), 3, "{before:?}");
+    // From here on the pointer moves.
+    harness.hover_at(egui::pos2(1100.0, 600.0));
+    harness.run();
     for (i, newtons) in [26e3, 24e3, 22e3].into_iter().enumerate() {
-        harness.hover_at(egui::pos2(1100.0, 600.0 + 5.0 * i as f32));
+        harness.hover_at(egui::pos2(1100.0, 605.0 + 5.0 * i as f32));
         let dragged = scene_with("article", &[&format!("load.0.force=[0,-{newtons}]")]);
         harness.state_mut().set_scene(dragged).unwrap();
         harness.step();

@@ -153,6 +153,61 @@ fn values_out_of_range_are_refused_with_a_message() {
     }
 }
 
+/// What was refused stays in its field and can be mended there; Escape brings the value back.
+#[test]
+fn a_refused_text_stays_to_be_mended() {
+    let mut harness = harness("cantilever");
+    let before = force(harness.state());
+    for refused in ["12 kg", "-5"] {
+        type_into(&mut harness, "Force", refused);
+        let field = harness.get_by_role_and_label(Role::SpinButton, "Force").accesskit_node().value();
+        assert_eq!(field.as_deref(), Some(refused));
+        assert!(harness.query_by_label_contains("expected").is_some());
+        // A space belongs to the text: it is no shortcut.
+        harness.event(egui::Event::Text(" ".to_owned()));
+        harness.key_press(Key::Space);
+        harness.run();
+        let field = harness.get_by_role_and_label(Role::SpinButton, "Force").accesskit_node().value();
+        assert_eq!(field.as_deref(), Some(format!("{refused} ").as_str()));
+        harness.key_press(Key::Escape);
+        harness.run();
+        assert!(harness.query_by_label_contains("expected").is_none(), "{refused}: the message stays");
+        assert_eq!(force(harness.state()), before);
+    }
+    // Escape takes a good value back as well.
+    harness.get_by_role_and_label(Role::SpinButton, "Force").click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.event(egui::Event::Text("7 kN".to_owned()));
+    harness.key_press(Key::Escape);
+    harness.run();
+    assert_eq!(force(harness.state()), before);
+    type_into(&mut harness, "Force", "12");
+    type_into(&mut harness, "Force", "12 kg");
+    harness.key_press(Key::Backspace);
+    harness.key_press(Key::Backspace);
+    harness.event(egui::Event::Text("kN".to_owned()));
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert!((force(harness.state())[1] + 12e3).abs() < 1e-6, "{:?}", force(harness.state()));
+}
+
+/// A body that is turned inside out is not called well, whatever its equations say.
+#[test]
+fn inside_out_is_said() {
+    let mut harness = harness("cantilever");
+    let words = "turned inside out";
+    assert!(harness.query_by_label_contains(words).is_none());
+    pick(&mut harness, "Method", "linear");
+    type_into(&mut harness, "Force", "1e13");
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    assert!(harness.query_by_label_contains(words).is_some(), "{:?}", texts(&harness));
+    harness.get_by_label("why?").click();
+    harness.run();
+    assert!(harness.query_by_label_contains("no body can do that").is_some());
+}
+
 #[test]
 fn every_number_has_a_unit_and_a_tooltip() {
     for (label, unit, tip) in [
@@ -286,6 +341,8 @@ fn a_fixed_range_of_colours_is_set() {
     assert!(harness.query_by_label_contains("expected").is_none(), "{:?}", texts(&harness));
     let (low, high) = (shown(&harness, "Lowest"), shown(&harness, "Highest"));
     type_into(&mut harness, "Highest", "-100 MPa");
+    harness.key_press(Key::Escape);
+    harness.run();
     assert_eq!((shown(&harness, "Lowest"), shown(&harness, "Highest")), (low, high), "a refused value is shown");
     let slider = harness.get_by_role_and_label(Role::Slider, "Highest").rect();
     let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use egui::{Align, DragValue, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
+use egui::{Align, DragValue, Id, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
 use thiserror::Error;
 
 use super::language::{fill, tr, translated};
@@ -62,6 +62,9 @@ impl NumberField {
         let tip = self.tip(original);
         let refused = RefCell::new(None);
         let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
+        // egui reads what was typed once more in the frame after Escape.
+        let escape_id = Id::unique((self.label, "escape"));
+        let has_escaped = ui.data_mut(|data| data.remove_temp::<bool>(escape_id)).is_some();
         let label = ui
             .horizontal(|ui| {
                 let label = ui.label(tr(self.label)).on_hover_text(tr(self.tooltip));
@@ -73,11 +76,17 @@ impl NumberField {
                         .custom_formatter(|v, _| editable(v, unit))
                         .custom_parser(|text| {
                             // Left as it was: all the digits that are not shown stay.
-                            if text.trim() == shown {
+                            if has_escaped || text.trim() == shown {
                                 return Some(value);
                             }
                             match parse(text, unit) {
-                                Ok(number) if number.is_finite() => Some(number),
+                                Ok(number) if number.is_finite() => match self.check(number) {
+                                    Ok(()) => Some(number),
+                                    Err(error) => {
+                                        refused.replace(Some(error.to_string()));
+                                        None
+                                    }
+                                },
                                 Ok(_) => {
                                     refused.replace(Some(self.expected(text)));
                                     None
@@ -94,6 +103,13 @@ impl NumberField {
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
                     if response.changed() {
                         edited = Some(if response.dragged() { three_digits(typed) } else { typed });
+                    }
+                    if ui.input(|i| i.key_pressed(Key::Escape)) {
+                        ui.data_mut(|data| data.insert_temp(escape_id, true));
+                        messages.remove(self.label);
+                    } else if refused.borrow().is_some() && ui.input(|i| i.key_pressed(Key::Enter)) {
+                        // What was typed stays to be mended, and the next keys belong to it.
+                        ui.memory_mut(|memory| memory.request_focus(response.id));
                     }
                     if response.double_clicked() && original.is_some() {
                         is_reset = true;

@@ -1025,7 +1025,7 @@ impl Lab {
                     if verdict::is_stale(&input) && ui.button(tr("Step now")).clicked() {
                         actions.push(Action::Step);
                     }
-                    let why = ui.selectable_label(self.view.why, egui::RichText::new(tr("why?")).color(palette.accent));
+                    let why = ui.link(tr("why?"));
                     if why.clicked() {
                         actions.push(Action::Toggle(Toggle::Why));
                     }

@@ -4,6 +4,7 @@ use egui::{Color32, Ui};
 use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, VLine};
 use realfft::RealFftPlanner;
 
+use super::choice::choice;
 use super::history::{History, Sample};
 use super::language::{fill, tr};
 use super::palette::Palette;
@@ -54,7 +55,7 @@ pub(super) fn show(
 ) {
     ui.horizontal(|ui| {
         for (plot, word, tip) in PLOTS {
-            if ui.selectable_label(*chosen == plot, tr(word)).on_hover_text(tr(tip)).clicked() {
+            if choice(ui, *chosen == plot, tr(word)).on_hover_text(tr(tip)).clicked() {
                 *chosen = plot;
             }
         }

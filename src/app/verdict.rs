@@ -114,9 +114,13 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
         words.push_str(" · ");
         words.push_str(&part);
     };
+    let inside_out = is_inside_out(simulation);
+    if inside_out {
+        add(tr("turned inside out").to_owned());
+    }
     if simulation.motion().is_some() {
         add(format!("{:.2} s", simulation.state().time()));
-        return (words, false);
+        return (words, inside_out);
     }
     if let Some(stable) = stability(simulation) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
@@ -125,7 +129,12 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
     if let Some(jump) = input.jump.filter(|_| simulation.status().is_success()) {
         add(translated(&jump.to_string()));
     }
-    (words, stability(simulation) == Some(false))
+    (words, inside_out || stability(simulation) == Some(false))
+}
+
+/// Whether an element is turned inside out, somewhere: no body does that.
+fn is_inside_out(simulation: &Simulation) -> bool {
+    simulation.system().elements().smallest_area_ratio(simulation.displacement()) <= 0.0
 }
 
 /// Whether a converged equilibrium is stable, where that is certified.
@@ -143,6 +152,11 @@ pub(super) fn rho(input: &PanelInput<'_>) -> Option<f64> {
 pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
+    if is_inside_out(simulation) {
+        let words = "Turned inside out: the area of an element is negative. The equations are solved, but no body can do \
+                     that: pull less, or make the cells smaller.";
+        lines.push(tr(words).to_owned());
+    }
     if let Some(motion) = simulation.motion() {
         let counts = motion.counts();
         let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "solve"));

@@ -5,6 +5,7 @@ use egui::{Button, Grid, ProgressBar, RichText, Ui};
 use super::{Learn, Shown};
 use crate::app::action::Action;
 use crate::app::budget::setting_words;
+use crate::app::choice::choice;
 use crate::app::language::{fill, percent, tr, translated};
 use crate::app::palette::{Palette, SMALL};
 use crate::method::METHODS;
@@ -45,7 +46,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             }
             ui.label(tr("error at most"));
             for asked in ASKED {
-                if ui.selectable_label(learn.asked == asked, percent(asked)).clicked() {
+                if choice(ui, learn.asked == asked, percent(asked)).clicked() {
                     learn.asked = asked;
                 }
             }

@@ -5,9 +5,10 @@ use egui::{ComboBox, Id, Ui};
 use super::{Action, PanelInput, PanelState};
 use crate::app::field::NumberField;
 use crate::app::language::{fill, joined, tr};
+use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
 use crate::simulation::Simulation;
-use crate::words::{engineering, engineering_pair};
+use crate::words::{editable, engineering, engineering_pair};
 
 /// Number of the support that the sliders move; `None` where none of this scene has been moved.
 pub(super) fn chosen(ui: &Ui, input: &PanelInput<'_>) -> Option<usize> {
@@ -29,7 +30,7 @@ pub(super) fn chosen(ui: &Ui, input: &PanelInput<'_>) -> Option<usize> {
 pub(super) fn summary(scene: &Scene, number: usize) -> String {
     scene.supports.get(number).map_or_else(String::new, |support| {
         let way = engineering_pair(support.displacement, "m");
-        if support.turn == 0.0 { way } else { joined([way, engineering(support.turn, "rad")]) }
+        if support.turn == 0.0 { way } else { joined([way, editable(support.turn.to_degrees(), "°")]) }
     })
 }
 
@@ -91,15 +92,15 @@ pub(super) fn show(
     if matches!(support.place, Place::Edge(_)) && support.fix.contains(&Axis::X) && support.fix.contains(&Axis::Y) {
         let field = NumberField {
             label: "Turn",
-            tooltip: "How far the support turns its edge about its middle, rad, counter-clockwise; 30° may be typed.",
-            limit: limits::TURN,
-            slider: -std::f64::consts::PI..=std::f64::consts::PI,
+            tooltip: "How far the support turns its edge about its middle, counter-clockwise: in degrees, or 0.5 rad.",
+            limit: Limit { unit: "°", min: limits::TURN.min.to_degrees(), max: limits::TURN.max.to_degrees() },
+            slider: -180.0..=180.0,
             logarithmic: None,
             whole: false,
         };
-        let original = original.map(|support| support.turn);
-        if let Some(new) = field.show_beside(ui, &mut state.messages, support.turn, original) {
-            actions.push(Action::Edit("Turn", edited(scene, number, |support| support.turn = new)));
+        let original = original.map(|support| support.turn.to_degrees());
+        if let Some(new) = field.show_beside(ui, &mut state.messages, support.turn.to_degrees(), original) {
+            actions.push(Action::Edit("Turn", edited(scene, number, |support| support.turn = new.to_radians())));
         }
     }
 }

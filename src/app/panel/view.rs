@@ -86,9 +86,10 @@ pub(super) fn options(
 /// What the picture shows, in a few words.
 pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     let moves = scene.analysis == Analysis::Dynamic;
-    let field = tr(view.field.name());
+    let name = tr(view.field.name());
+    // What stands in brackets or behind a comma says more about it.
+    let field = name.split([',', '(', '，', '（']).next().unwrap_or(name).trim_end();
     let shown = [
-        (view.wireframe, "wires"),
         (view.rest_outline, "rest"),
         (view.exact && !moves, "exact"),
         (view.ghost && !moves, "linear"),
