@@ -13,6 +13,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
+use common::drop::drop_file;
 use common::{scene, solve_json, warpbeam};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -412,6 +413,40 @@ fn s_saves_a_screenshot() {
     let different = changed(&bgrx, &shown);
     assert!(different < 1_000, "{different} pixels differ from the window");
     assert_eq!(window.close().0, Some(0));
+}
+
+/// A file that is dropped on the window is opened, and a click changes the language of all that is there: the picture is that
+/// of `shot`, and the language stays for the next time.
+#[test]
+fn a_dropped_file_is_opened_and_shown_in_chinese() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dropped.toml");
+    std::fs::write(&path, scene("bracket").to_toml().unwrap()).unwrap();
+    let window = Window::open(&desktop, &["run", "article"]);
+    let switch = laid_out().get_by_label("Language").rect().center();
+    drop_file(&desktop.name, window.id.parse().unwrap(), &path, PATIENCE);
+    let title = || desktop.xdotool(&["getwindowname", &window.id]);
+    wait_for("the dropped scene", || title().starts_with("Bracket").then_some(()));
+    let english = window.settle();
+    window.point(switch.x, switch.y);
+    let settings = desktop.config.path().join("warpbeam").join("settings.toml");
+    desktop.xdotool(&["click", "1"]);
+    wait_for("another language", || (changed(&english, &window.image()) > 5_000).then_some(()));
+    // Where there is nothing that a pointer lights up.
+    window.point(420.0, 735.0);
+    let chinese = window.settle();
+    let picture = folder.path().join("chinese.png");
+    let options = ["--size", "1280x800", "--language", "zh", "-o", picture.to_str().unwrap()];
+    let shot = warpbeam(&[&["shot", path.to_str().unwrap()][..], &options].concat());
+    assert_eq!(shot.status.code(), Some(0));
+    let different = changed(&read_bgrx(&picture).unwrap(), &chinese);
+    assert!(different < 5_000, "{different} pixels differ from what `shot` makes in Chinese");
+    let (code, said) = window.close();
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+    let kept = std::fs::read_to_string(&settings).unwrap();
+    assert!(kept.contains("language = \"zh\""), "{kept}");
 }
 
 /// The tip of the arrow is dragged: the force goes where the pointer went, Ctrl+S saves it, `solve` converges to what is

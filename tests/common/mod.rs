@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test uses its part")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+#[cfg(all(feature = "app", target_os = "linux"))]
+pub mod drop;
 #[cfg(feature = "app")]
 pub mod lab;
 pub mod motion;

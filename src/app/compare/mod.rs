@@ -265,7 +265,8 @@ impl Compare {
             ui.spacing_mut().item_spacing.x = 6.0;
             for (name, settings, enabled, tip, unless) in presets {
                 let is_chosen = enabled && self.settings() == settings;
-                let button = ui.add_enabled(enabled, egui::Button::selectable(is_chosen, name).frame_when_inactive(true));
+                let button =
+                    ui.add_enabled(enabled, egui::Button::selectable(is_chosen, name).frame_when_inactive(true));
                 if button.on_hover_text(tr(tip)).on_disabled_hover_text(tr(unless)).clicked() {
                     self.set(&settings);
                 }
