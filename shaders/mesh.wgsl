@@ -31,7 +31,12 @@ fn vertex(v: Vertex) -> Fragment {
 
 // Colours are in gamma space, as egui blends them; the target is not sRGB.
 @fragment
-fn fragment(f: Fragment) -> @location(0) vec4<f32> {
+fn flat_fragment(f: Fragment) -> @location(0) vec4<f32> {
+    return f.color;
+}
+
+@fragment
+fn mapped_fragment(f: Fragment) -> @location(0) vec4<f32> {
     if f.value < 0.0 {
         return f.color;
     }

@@ -909,8 +909,8 @@ impl Lab {
         let wish = self.pointer.follow(ui, &response, &reach, body);
         self.take_wish(ui.ctx(), &wish, requests);
         self.update_shape(ui.visuals());
-        if let Some(learn) = &self.learn {
-            learn.place(&self.simulation, &self.drawing, &mut self.shape.points);
+        if let Some(learn) = self.learn.as_ref().filter(|learn| learn.is_apart()) {
+            self.shape.displace(|points| learn.place(&self.simulation, &self.drawing, points));
         }
         match wish.look {
             Look::Same => {}
@@ -956,7 +956,7 @@ impl Lab {
             let view = learn::View {
                 simulation: &self.simulation,
                 drawing: &self.drawing,
-                points: &self.shape.points,
+                points: self.shape.points(),
                 camera: self.eye.camera(),
                 rect,
                 palette: Palette::new(ui.visuals()),
@@ -1146,7 +1146,7 @@ impl Lab {
                     (low, high) = (low.inf(&p), high.sup(&p));
                 }
             };
-            include(&mut self.shape.points.iter().copied());
+            include(&mut self.shape.points().iter().copied());
             if self.intro.is_some() {
                 // Where it is going to be.
                 let rest = self.simulation.system().mesh().nodes();

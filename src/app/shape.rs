@@ -1,6 +1,7 @@
 //! What is drawn of a body in a state: where its points are, and the colours of its field. Kept between frames.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use egui::{Color32, Visuals};
 use nalgebra::Vector2;
@@ -23,7 +24,9 @@ pub(super) struct Shape {
     /// Where the nodes are, m.
     pub nodes: Vec<Vector2<f64>>,
     /// Where the drawn points are, m.
-    pub points: Vec<Vector2<f64>>,
+    points: Vec<Vector2<f64>>,
+    /// The number of the last change of points and values.
+    stamp: u64,
     /// Of fields that are recovered at the nodes.
     pub nodal: Option<NodalStress>,
     scratch: RecoveryScratch,
@@ -72,6 +75,12 @@ impl Values {
     }
 }
 
+/// A number that no shape has had.
+fn stamp() -> u64 {
+    static LAST: AtomicU64 = AtomicU64::new(0);
+    LAST.fetch_add(1, Ordering::Relaxed) + 1
+}
+
 impl Shape {
     /// Takes the state of a body on. A range that `grows` keeps what it has spanned of the field.
     pub(super) fn update(&mut self, simulation: &Simulation, drawing: &Drawing, view: &ViewOptions, grows: bool) {
@@ -84,17 +93,16 @@ impl Shape {
         if !is_known {
             self.nodes.clear();
             self.nodes.extend(places);
-        }
-        let nodes = &self.nodes;
-        drawing.points(&|n| nodes[n as usize], &mut self.points);
-        if is_known {
-            // As they are.
-        } else if view.is_smooth() {
-            simulation.smooth_field(view.field, (&mut self.nodal, &mut self.scratch), &mut self.known);
-            drawing.nodal_values(&self.known, view.field.period(), &mut self.values);
-        } else {
-            simulation.field(view.field, &mut self.known);
-            drawing.values(&self.known, &mut self.values);
+            let nodes = &self.nodes;
+            drawing.points(&|n| nodes[n as usize], &mut self.points);
+            if view.is_smooth() {
+                simulation.smooth_field(view.field, (&mut self.nodal, &mut self.scratch), &mut self.known);
+                drawing.nodal_values(&self.known, view.field.period(), &mut self.values);
+            } else {
+                simulation.field(view.field, &mut self.known);
+                drawing.values(&self.known, &mut self.values);
+            }
+            self.stamp = stamp();
         }
         let [mut low, mut high] = panel::range_of(&self.known);
         if palette::has_sign(view.field) {
@@ -105,6 +113,18 @@ impl Shape {
         let grown = before.map_or([low, high], |range| [low.min(range[0]), high.max(range[1])]);
         self.field = Some(view.field);
         self.range = view.fixed_range.unwrap_or(grown);
+    }
+
+    /// Where the drawn points are, m.
+    pub(super) fn points(&self) -> &[Vector2<f64>] {
+        &self.points
+    }
+
+    /// Draws the points elsewhere, until the next [`Self::update`].
+    pub(super) fn displace(&mut self, place: impl FnOnce(&mut [Vector2<f64>])) {
+        place(&mut self.points);
+        self.stamp = stamp();
+        self.of = None;
     }
 
     /// Takes the colours of a theme on.
@@ -130,6 +150,7 @@ impl Shape {
     /// What the body's pass draws.
     pub(super) fn frame<'a>(&'a self, drawing: &'a Drawing, wireframe: bool) -> Frame<'a> {
         Frame {
+            stamp: self.stamp,
             positions: &self.points,
             triangles: &drawing.triangles,
             values: &self.values,

@@ -9,6 +9,9 @@ use super::{Camera, Gpu};
 /// What is drawn of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
+    /// Another number wherever positions, triangles, values or lines are others: what has been uploaded is drawn again where
+    /// it is the same.
+    pub stamp: u64,
     /// Node positions, m.
     pub positions: &'a [Vector2<f64>],
     /// Corners of the triangles.
@@ -72,6 +75,22 @@ struct Vertex {
     value: f32,
 }
 
+/// What decides the vertices of a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Uploaded {
+    stamp: u64,
+    camera: Camera,
+    pixels_per_point: f64,
+    /// Pixels.
+    size: [u32; 2],
+    range: [f64; 2],
+    lines: usize,
+    colors: [[u8; 3]; 2],
+    line_color: [u8; 4],
+    /// Where its triangles begin, its lines, and the next view.
+    parts: [u32; 3],
+}
+
 /// The value of a vertex that has a colour of its own.
 const COLORED: f32 = -1.0;
 /// Colours that the shader has of the colour map.
@@ -114,6 +133,7 @@ impl Eye {
 /// Draws bodies into targets of one format.
 #[derive(Debug)]
 pub struct BodyRenderer {
+    backgrounds: wgpu::RenderPipeline,
     triangles: wgpu::RenderPipeline,
     lines: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
@@ -124,6 +144,8 @@ pub struct BodyRenderer {
     eyes: Vec<Eye>,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
+    /// What is in the vertex buffer.
+    uploaded: Vec<Uploaded>,
     format: wgpu::TextureFormat,
     /// Where pixels have several samples; resolved into the target.
     multisampled: Option<wgpu::TextureView>,
@@ -165,7 +187,7 @@ impl BodyRenderer {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let pipeline = |topology| {
+        let pipeline = |topology, fragment, blend| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("body"),
                 layout: Some(&pipeline_layout),
@@ -184,27 +206,26 @@ impl BodyRenderer {
                 multisample: wgpu::MultisampleState { count: gpu.samples(), ..Default::default() },
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
-                    entry_point: Some("fragment"),
+                    entry_point: Some(fragment),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format,
-                        blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
+                    targets: &[Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })],
                 }),
                 multiview_mask: None,
                 cache: None,
             })
         };
         Self {
-            triangles: pipeline(wgpu::PrimitiveTopology::TriangleList),
-            lines: pipeline(wgpu::PrimitiveTopology::LineList),
+            // A processor that draws takes each for its own: what is opaque is not blended, and a flat colour is not looked up.
+            backgrounds: pipeline(wgpu::PrimitiveTopology::TriangleList, "flat_fragment", None),
+            triangles: pipeline(wgpu::PrimitiveTopology::TriangleList, "mapped_fragment", None),
+            lines: pipeline(wgpu::PrimitiveTopology::LineList, "flat_fragment", Some(wgpu::BlendState::ALPHA_BLENDING)),
             layout,
             map,
             uploaded_map: None,
             eyes: Vec::new(),
             vertices: Self::vertex_buffer(gpu, 1024),
             scratch: Vec::new(),
+            uploaded: Vec::new(),
             format,
             multisampled: Self::multisampled(gpu, format, [1, 1]),
             size: [1, 1],
@@ -240,30 +261,10 @@ impl BodyRenderer {
             self.multisampled = Self::multisampled(gpu, self.format, size);
             self.size = size;
         }
-        self.scratch.clear();
-        // Of every view that has an extent: its place, and its vertices.
-        let mut drawn = Vec::with_capacity(views.len());
-        for View { viewport, frame, camera } in views {
-            let viewport = viewport.within(size);
-            if viewport.size.contains(&0) {
-                continue;
-            }
-            let pixels_per_metre = camera.scale * pixels_per_point;
-            let first = self.scratch.len() as u32;
-            let lines = self.add_vertices(frame, camera, viewport.size.map(|s| f64::from(s) / pixels_per_metre));
-            let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side)) as f32);
-            let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
-            if self.eyes.len() == drawn.len() {
-                self.eyes.push(Eye::new(gpu, &self.layout, &self.map));
-            }
-            gpu.queue.write_buffer(&self.eyes[drawn.len()].uniform, 0, bytemuck::bytes_of(&uniform));
-            drawn.push((viewport, first..lines, lines..self.scratch.len() as u32));
-        }
-        let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
-        if self.vertices.size() < bytes.len() as u64 {
-            self.vertices = Self::vertex_buffer(gpu, (bytes.len() as u64).next_power_of_two());
-        }
-        gpu.queue.write_buffer(&self.vertices, 0, bytes);
+        let surround = views.first().map_or([0; 3], |view| view.frame.surround);
+        let views = views.iter().map(|view| View { viewport: view.viewport.within(size), ..*view });
+        let views: Vec<View<'_>> = views.filter(|view| !view.viewport.size.contains(&0)).collect();
+        self.upload(gpu, &views, pixels_per_point);
 
         // All views have the same colours.
         if let Some(map) = views.first().map(|view| view.frame.map).filter(|map| self.uploaded_map != Some(*map)) {
@@ -276,7 +277,6 @@ impl BodyRenderer {
             self.uploaded_map = Some(map);
         }
 
-        let surround = views.first().map_or([0; 3], |view| view.frame.surround);
         let [r, g, b] = surround.map(|c| f64::from(c) / 255.0);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("body"),
@@ -292,21 +292,66 @@ impl BodyRenderer {
             ..Default::default()
         });
         pass.set_vertex_buffer(0, self.vertices.slice(..));
-        for ((viewport, triangles, lines), eye) in drawn.into_iter().zip(&self.eyes) {
-            let Viewport { corner: [x, y], size: [width, height] } = viewport;
+        let mut first = 0;
+        for ((view, uploaded), eye) in views.iter().zip(&self.uploaded).zip(&self.eyes) {
+            let Viewport { corner: [x, y], size: [width, height] } = view.viewport;
+            let [triangles, lines, end] = uploaded.parts;
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, width, height);
             pass.set_bind_group(0, &eye.bind_group, &[]);
-            pass.set_pipeline(&self.triangles);
-            pass.draw(triangles, 0..1);
-            pass.set_pipeline(&self.lines);
-            pass.draw(lines, 0..1);
+            for (pipeline, vertices) in
+                [(&self.backgrounds, first..triangles), (&self.triangles, triangles..lines), (&self.lines, lines..end)]
+            {
+                pass.set_pipeline(pipeline);
+                pass.draw(vertices, 0..1);
+            }
+            first = end;
         }
     }
 
-    /// Adds triangle vertices, the background's before the body's, then line vertices; returns where these begin.
-    /// `view` is what is seen, m.
-    fn add_vertices(&mut self, frame: &Frame<'_>, camera: &Camera, view: [f64; 2]) -> u32 {
+    /// Uploads the vertices of all views, unless those are there, and what each looks at.
+    fn upload(&mut self, gpu: &Gpu, views: &[View<'_>], pixels_per_point: f64) {
+        let wanted = |view: &View<'_>, parts| Uploaded {
+            stamp: view.frame.stamp,
+            camera: view.camera,
+            pixels_per_point,
+            size: view.viewport.size,
+            range: view.frame.range,
+            lines: view.frame.lines.len(),
+            colors: [view.frame.background, view.frame.absent_color],
+            line_color: view.frame.line_color,
+            parts,
+        };
+        let is_there = views.len() == self.uploaded.len()
+            && views.iter().zip(&self.uploaded).all(|(view, uploaded)| wanted(view, uploaded.parts) == *uploaded);
+        if is_there {
+            return;
+        }
+        self.scratch.clear();
+        self.uploaded.clear();
+        for (i, view) in views.iter().enumerate() {
+            let View { viewport, frame, camera } = view;
+            let pixels_per_metre = camera.scale * pixels_per_point;
+            let seen = viewport.size.map(|side| f64::from(side) / pixels_per_metre);
+            let parts = self.add_vertices(frame, camera, seen);
+            self.uploaded.push(wanted(view, parts));
+            let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side)) as f32);
+            let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
+            if self.eyes.len() == i {
+                self.eyes.push(Eye::new(gpu, &self.layout, &self.map));
+            }
+            gpu.queue.write_buffer(&self.eyes[i].uniform, 0, bytemuck::bytes_of(&uniform));
+        }
+        let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
+        if self.vertices.size() < bytes.len() as u64 {
+            self.vertices = Self::vertex_buffer(gpu, (bytes.len() as u64).next_power_of_two());
+        }
+        gpu.queue.write_buffer(&self.vertices, 0, bytes);
+    }
+
+    /// Adds vertices of triangles, the background's before the body's, then of lines; returns where the body's begin,
+    /// where the lines begin, and the end. `view` is what is seen, m.
+    fn add_vertices(&mut self, frame: &Frame<'_>, camera: &Camera, view: [f64; 2]) -> [u32; 3] {
         // Relative to the camera before it becomes f32: zoomed in far from the origin, digits matter.
         let position = |node: u32| {
             let d = frame.positions.get(node as usize).copied().unwrap_or_default() - camera.center;
@@ -316,6 +361,7 @@ impl BodyRenderer {
         let [x, y] = view.map(|side| (0.5 * side) as f32);
         let corners = [[-x, -y], [x, -y], [x, y], [-x, -y], [x, y], [-x, y]];
         self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255], value: COLORED }));
+        let triangles = self.scratch.len() as u32;
         let [r, g, b] = frame.absent_color;
         for (triangle, values) in frame.triangles.iter().zip(frame.values) {
             // A triangle without a value at one of its corners has none.
@@ -339,7 +385,7 @@ impl BodyRenderer {
                 self.scratch.extend(line.map(|node| Vertex { position: position(node), color, value: COLORED }));
             }
         }
-        lines
+        [triangles, lines, self.scratch.len() as u32]
     }
 }
 

@@ -371,11 +371,11 @@ impl Compare {
             let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
             let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
                 self.panes.iter().filter(|pane| pane.is_sound()).partition(|pane| is_linear(pane));
-            bounds = others.iter().flat_map(|pane| &pane.shape.points).fold(bounds, grow);
+            bounds = others.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
             // Linear theory may be far off: it must not shrink the others to dots.
             const LARGEST: f64 = 1.5;
             let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
-            let with = linear.iter().flat_map(|pane| &pane.shape.points).fold(bounds, grow);
+            let with = linear.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
             let known = !others.is_empty() || truth.is_some();
             if !known || size_of(with) < LARGEST * size_of(bounds) {
                 bounds = with;

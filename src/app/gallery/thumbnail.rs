@@ -59,7 +59,8 @@ impl Thumbnail {
         let (mut rest, mut shape) = (Vec::new(), Shape::default());
         drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
         shape.update(&simulation, &drawing, &view, false);
-        let Shape { points: moved, values, range, .. } = shape;
+        let moved = shape.points().to_vec();
+        let Shape { values, range, .. } = shape;
         let Drawing { outline, triangles, .. } = drawing;
         Some(Self { scene: scene.clone(), field: view.field, range, rest, moved, outline, triangles, values })
     }

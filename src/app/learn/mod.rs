@@ -237,14 +237,12 @@ impl Learn {
         }
     }
 
-    /// Moves the drawn points to where the card draws the elements.
+    /// Moves the drawn points to where a card that draws the elements apart has them.
     pub(super) fn place(&self, simulation: &Simulation, drawing: &Drawing, points: &mut [Vector2<f64>]) {
-        if self.is_apart() {
-            let mesh = simulation.system().mesh();
-            let mut rest = Vec::new();
-            drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
-            exploded::place(simulation, self.turned, &rest, points);
-        }
+        let mesh = simulation.system().mesh();
+        let mut rest = Vec::new();
+        drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
+        exploded::place(simulation, self.turned, &rest, points);
     }
 
     /// Takes the element that is drawn at a place in the window.
