@@ -401,6 +401,69 @@ fn line_strength(spacing: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::Picture;
+    use crate::render::{FORMAT, read_texture};
+
+    fn drawn(gpu: &Gpu, renderer: &mut BodyRenderer, views: &[View<'_>]) -> Picture {
+        let size = [120, 80];
+        let texture = gpu.target("test", FORMAT, size, 1, wgpu::TextureUsages::COPY_SRC);
+        let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        renderer.draw(gpu, &mut encoder, (&target, size), views, 1.0);
+        gpu.queue.submit([encoder.finish()]);
+        read_texture(gpu, &texture).unwrap()
+    }
+
+    /// What has been uploaded is drawn again only where nothing that is seen has changed.
+    #[test]
+    fn a_used_renderer_draws_what_a_new_one_does() {
+        let gpu = Gpu::headless().unwrap();
+        let mut used = BodyRenderer::new(&gpu, FORMAT);
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from);
+        let sheared = square.map(|x| Vector2::new(x.x + 0.5 * x.y, x.y));
+        let frame = Frame {
+            stamp: 1,
+            positions: &square,
+            triangles: &[[0, 1, 2], [0, 2, 3]],
+            values: &[[Some(0.0), Some(0.2), Some(1.0)], [None; 3]],
+            absent_color: [90, 90, 90],
+            range: [0.0, 1.0],
+            map: ColorMap::SequentialOnDark,
+            lines: &[[0, 2], [1, 2]],
+            beside: &[0, 0],
+            pieces: 1,
+            line_color: [255, 255, 255, 200],
+            background: [20, 20, 30],
+            surround: [60, 60, 60],
+        };
+        let viewport = Viewport { corner: [10, 0], size: [100, 80] };
+        let view = View { viewport, frame, camera: Camera { center: Vector2::new(0.5, 0.5), scale: 50.0 } };
+        let other_place = Viewport { corner: [0, 0], size: [50, 40] };
+        let others: [Vec<View<'_>>; 11] = [
+            vec![View { frame: Frame { stamp: 2, positions: &sheared, ..frame }, ..view }],
+            vec![View { camera: Camera { scale: 30.0, ..view.camera }, ..view }],
+            vec![View { frame: Frame { range: [0.0, 2.0], ..frame }, ..view }],
+            vec![View { frame: Frame { lines: &[], beside: &[], ..frame }, ..view }],
+            vec![View { frame: Frame { absent_color: [200, 0, 0], ..frame }, ..view }],
+            vec![View { frame: Frame { background: [0, 90, 0], ..frame }, ..view }],
+            vec![View { frame: Frame { line_color: [0, 0, 0, 255], ..frame }, ..view }],
+            vec![View { frame: Frame { map: ColorMap::SequentialOnLight, ..frame }, ..view }],
+            vec![View { viewport: other_place, ..view }],
+            vec![
+                View { viewport: other_place, ..view },
+                View { viewport: Viewport { corner: [50, 30], size: [70, 50] }, ..view },
+            ],
+            vec![],
+        ];
+        let shown = drawn(&gpu, &mut used, &[view]);
+        for (i, views) in others.iter().enumerate() {
+            let other = drawn(&gpu, &mut used, views);
+            assert!(other.rgba != shown.rgba, "change {i} is not seen");
+            let fresh = drawn(&gpu, &mut BodyRenderer::new(&gpu, FORMAT), views);
+            assert!(other.rgba == fresh.rgba, "change {i}: something from before is drawn");
+            assert!(drawn(&gpu, &mut used, &[view]).rgba == shown.rgba, "change {i} stays");
+        }
+    }
 
     #[test]
     fn dense_lines_fade() {
