@@ -989,6 +989,8 @@ impl Lab {
         let input = self.input();
         let palette = Palette::new(ui.visuals());
         let narrow = rect.width() < 640.0;
+        // Where two lines would lie over the body there is one.
+        let is_low = rect.height() < 220.0;
         let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
         let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
         let area = egui::Area::new(egui::Id::unique("status"))
@@ -1007,13 +1009,15 @@ impl Lab {
             }
             // The other modes have their own way on.
             let remedy = verdict::remedy(&input, errors).filter(|_| self.view.mode == Mode::Explore);
-            if let Some(remedy) = remedy {
+            let help = |ui: &mut Ui, remedy: &verdict::Remedy| {
+                let pressed = ui.button(&remedy.offer).on_hover_text(&remedy.words).clicked();
+                pressed.then(|| Action::Edit(remedy.edits, remedy.scene.clone()))
+            };
+            if let Some(remedy) = remedy.as_ref().filter(|_| !is_low) {
                 chip(palette.error_chip).show(ui, |ui| {
                     ui.horizontal_wrapped(|ui| {
                         ui.colored_label(palette.error, &remedy.words);
-                        if ui.button(&remedy.offer).clicked() {
-                            actions.push(Action::Edit(remedy.edits, remedy.scene.clone()));
-                        }
+                        actions.extend(help(ui, remedy));
                     });
                 });
             }
@@ -1022,6 +1026,9 @@ impl Lab {
             chip(tint).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.colored_label(if bad { palette.error } else { palette.text }, words);
+                    if let Some(remedy) = remedy.as_ref().filter(|_| is_low) {
+                        actions.extend(help(ui, remedy));
+                    }
                     if verdict::is_stale(&input) && ui.button(tr("Step now")).clicked() {
                         actions.push(Action::Step);
                     }

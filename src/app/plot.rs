@@ -1,18 +1,19 @@
 //! The load–deflection plot. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory
 //! leaves. Of any other scene: its load path, what is unstable dashed.
 
-use egui::{Align2, Ui};
+use egui::{Align2, Color32, RichText, Ui};
 use egui_plot::{
-    Corner, GridInput, GridMark, HoverPosition, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine,
+    Corner, GridInput, GridMark, HoverPosition, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints,
+    Points, Text, VLine,
 };
 
 use super::language::{fill, tr, translated};
 use super::overlay::boxed_text;
-use super::palette::Palette;
+use super::palette::{Palette, SMALL};
 use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
 use crate::study::path_chart::{Ordinate, Piece, drawn};
-use crate::study::{LoadCurve, LoadPath};
+use crate::study::{Departure, LoadCurve, LoadPath, MethodPoint};
 use crate::words::{engineering, three_digits, ticks};
 
 /// What is known of a scene's load and deflection.
@@ -134,47 +135,117 @@ fn path(ui: &mut Ui, path: &LoadPath, scene: &Scene) {
         });
 }
 
+/// What is drawn says beside it what it is: a legend would lie over the points.
 fn beam(ui: &mut Ui, curve: &LoadCurve) {
+    /// Linear theory leaves the picture above so many times the largest true deflection, instead of stretching it.
+    const LEAVES: f64 = 1.35;
     let palette = Palette::new(ui.visuals());
     let linear = palette.method(MethodKind::Linear);
     let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {
         curve.samples.iter().map(|s| [100.0 * s.factor, value(s)]).collect()
     };
-    still(&palette, "load curve", (tr("load, of the scene's"), "%"), (tr("tip displacement"), "m"))
-        .legend(Legend::default().position(Corner::RightBottom).follow_insertion_order(true))
-        .show(ui, |plot| {
-            let exact = samples(|s| s.truth.norm());
-            let top = exact.iter().map(|p| p[1]).fold(0.0, f64::max);
-            // Linear theory leaves the picture instead of stretching it.
-            let straight: Vec<[f64; 2]> = samples(|s| s.linear.norm())
-                .into_iter()
-                .take_while(|p| p[1] <= 1.35 * top.max(f64::MIN_POSITIVE))
-                .collect();
-            plot.line(Line::new(tr("linear theory"), PlotPoints::from(straight)).color(linear).width(1.5));
-            plot.line(Line::new(tr("exact beam"), PlotPoints::from(exact)).color(palette.exact).width(2.0));
-            for departure in &curve.departures {
-                let name = fill!(
-                    "linear off by %{percent} %: %{angle}",
-                    percent = departure.percent,
-                    angle = format!("{:.1}°", departure.at.rotation.to_degrees().abs())
-                );
-                plot.vline(
-                    VLine::new(name, 100.0 * departure.at.factor)
-                        .color(linear.gamma_multiply(0.7))
-                        .style(LineStyle::dashed_dense()),
-                );
+    let exact = samples(|s| s.truth.norm());
+    let top = exact.iter().map(|p| p[1]).fold(f64::MIN_POSITIVE, f64::max);
+    let straight: Vec<[f64; 2]> =
+        samples(|s| s.linear.norm()).into_iter().take_while(|p| p[1] <= LEAVES * top).collect();
+    let plot = still(&palette, "load curve", (tr("load, of the scene's"), "%"), (tr("tip displacement"), "m"));
+    plot.show(ui, |plot| {
+        let lines = [
+            ("linear theory", straight, linear, 1.5, Align2::LEFT_TOP),
+            ("exact beam", exact, palette.exact, 2.0, Align2::RIGHT_BOTTOM),
+        ];
+        for (name, line, color, width, anchor) in lines {
+            if let Some(&end) = line.last() {
+                plot.text(label(end, tr(name), color, anchor));
             }
-            for point in &curve.methods {
-                let off = point.tip.norm() > 1.35 * top;
-                let word = match point.status {
-                    Status::Converged if off => tr(", off the picture"),
-                    Status::Converged => "",
-                    _ => tr(", not converged"),
-                };
-                let at = if off { Vec::new() } else { vec![[100.0, point.tip.norm()]] };
+            plot.line(Line::new(tr(name), PlotPoints::from(line)).color(color).width(width));
+        }
+        for departure in &curve.departures {
+            let at = VLine::new(departure_words(std::slice::from_ref(departure)), 100.0 * departure.at.factor);
+            plot.vline(at.color(linear.gamma_multiply(0.7)).style(LineStyle::dashed_dense()));
+        }
+        if let Some(last) = curve.departures.last() {
+            let beside = [100.0 * last.at.factor, 0.0];
+            plot.text(label(beside, &departure_words(&curve.departures), linear, Align2::LEFT_BOTTOM));
+        }
+        for point in &curve.methods {
+            let at = [100.0, point.tip.norm()];
+            if at[1] <= LEAVES * top {
                 let shape = if point.status == Status::Converged { MarkerShape::Circle } else { MarkerShape::Cross };
-                let points = Points::new(format!("{}{word}", tr(point.method.id())), at);
+                let points = Points::new(tr(point.method.id()), vec![at]);
                 plot.points(points.color(palette.method(point.method)).radius(5.0).shape(shape));
             }
-        });
+        }
+        for (height, words) in method_labels(&curve.methods, top, LEAVES * top) {
+            plot.text(label([100.0, height], &words, palette.text, Align2::LEFT_TOP));
+        }
+    });
+}
+
+/// Words beside a place in a plot.
+fn label(at: [f64; 2], words: &str, color: Color32, anchor: Align2) -> Text {
+    let lines: Vec<String> = words.lines().map(|line| format!("  {line}  ")).collect();
+    let words = RichText::new(lines.join("\n")).size(SMALL).color(color);
+    Text::new("", PlotPoint::from(at), words).anchor(anchor).allow_hover(false)
+}
+
+/// Where linear theory leaves the truth, by how much and after which rotation.
+fn departure_words(departures: &[Departure]) -> String {
+    let each = |value: &dyn Fn(&Departure) -> String| departures.iter().map(value).collect::<Vec<_>>().join(", ");
+    let percent = each(&|departure| departure.percent.to_string());
+    let angles = each(&|departure| format!("{:.1}°", departure.at.rotation.to_degrees().abs()));
+    fill!("linear off by %{percent} %: at %{angles}", percent = percent, angles = angles)
+}
+
+/// What stands beside the points of the methods, and how high: one text for those that are as good as one. Those that are
+/// higher than `highest` are named there.
+fn method_labels(methods: &[MethodPoint], top: f64, highest: f64) -> Vec<(f64, String)> {
+    /// Points nearer to each other than this part of the picture share a text.
+    const NEAR: f64 = 0.08;
+    let mut named: Vec<(f64, String)> = methods
+        .iter()
+        .map(|point| {
+            let height = point.tip.norm();
+            let word = match point.status {
+                Status::Converged if height > highest => tr(", off the picture"),
+                Status::Converged => "",
+                _ => tr(", not converged"),
+            };
+            (height.min(highest), format!("{}{word}", tr(point.method.id())))
+        })
+        .collect();
+    named.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let groups = named.chunk_by(|a, b| b.0 - a.0 < NEAR * top);
+    let texts = groups.map(|group| {
+        let words: Vec<&str> = group.iter().map(|(_, words)| words.as_str()).collect();
+        // What is more than a name has a line of its own.
+        let separator = if group.iter().any(|(height, _)| *height == highest) { "\n" } else { ", " };
+        (group[group.len() / 2].0, words.join(separator))
+    });
+    texts.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::*;
+
+    #[test]
+    fn points_that_lie_together_share_a_text() {
+        let point = |method, deflection: f64| MethodPoint {
+            method,
+            tip: Vector2::new(0.0, -deflection),
+            status: Status::Converged,
+        };
+        let methods = [
+            point(MethodKind::Linear, 90.0),
+            point(MethodKind::Warped, 2.0),
+            point(MethodKind::Newton, 2.01),
+            point(MethodKind::Auto, 1.0),
+            MethodPoint { status: Status::Running, ..point(MethodKind::Warped, 500.0) },
+        ];
+        let texts: Vec<String> = method_labels(&methods, 3.0, 4.0).into_iter().map(|(_, words)| words).collect();
+        assert_eq!(texts, ["auto", "warped, newton", "linear, off the picture\nwarped, not converged"]);
+    }
 }
