@@ -142,7 +142,7 @@ mod tests {
             }
         };
         assert_eq!(done, last);
-        assert!(matches!(job.hear(), Heard::Died), "there is more after the end");
+        assert!(matches!(job.wait(), Heard::Died), "there is more after the end");
     }
 
     #[test]
