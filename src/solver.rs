@@ -6,11 +6,11 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
-use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, IntranodeLbltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
+use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
 use thiserror::Error;
@@ -71,13 +71,28 @@ impl Symbolic {
     /// # Errors
     /// [`SolverError::TooLarge`].
     pub fn new(column_starts: &[usize], row_indices: &[usize]) -> Result<Self, SolverError> {
+        Self::analyse(column_starts, row_indices, SymmetricOrdering::Amd)
+    }
+
+    /// [`Self::new`] with the order of elimination given: every row once, the first to go first.
+    pub(crate) fn in_order(
+        column_starts: &[usize],
+        row_indices: &[usize],
+        order: &[usize],
+    ) -> Result<Self, SolverError> {
+        let inverse = inverse(order);
+        let order = PermRef::new_checked(order, &inverse, order.len());
+        Self::analyse(column_starts, row_indices, SymmetricOrdering::Custom(order))
+    }
+
+    fn analyse(
+        column_starts: &[usize],
+        row_indices: &[usize],
+        ordering: SymmetricOrdering<'_, usize>,
+    ) -> Result<Self, SolverError> {
         let n = column_starts.len().saturating_sub(1);
         let structure = SymbolicSparseColMat::new_checked(n, n, column_starts.to_vec(), None, row_indices.to_vec());
-        let analyse = |threshold| {
-            let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() };
-            factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, SymmetricOrdering::Amd, params)
-                .map_err(|_| SolverError::TooLarge)
-        };
+        let analyse = |threshold| analyse(&structure, ordering, threshold);
         let supernodal = analyse(SupernodalThreshold::FORCE_SUPERNODAL)?;
         let (definite, indefinite) = if n <= MOST_SIMPLICIAL {
             let simplicial = analyse(SupernodalThreshold::FORCE_SIMPLICIAL)?;
@@ -103,20 +118,83 @@ const SPARSE: usize = 14;
 /// Larger systems have more: it is not looked for.
 const MOST_SIMPLICIAL: usize = 2500;
 
-/// See [`Factor::price`]: from the operations that the sparsity says, not from a clock.
-fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
+fn analyse(
+    structure: &SymbolicSparseColMat<usize>,
+    ordering: SymmetricOrdering<'_, usize>,
+    threshold: SupernodalThreshold,
+) -> Result<SymbolicCholesky<usize>, SolverError> {
+    let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() };
+    factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, ordering, params).map_err(|_| SolverError::TooLarge)
+}
+
+/// The place of every row in an order.
+fn inverse(order: &[usize]) -> Vec<usize> {
+    let mut inverse = vec![0; order.len()];
+    for (place, &row) in order.iter().enumerate() {
+        inverse[row] = place;
+    }
+    inverse
+}
+
+/// What is coupled with what: the sparsity of a symmetric matrix, without its diagonal.
+pub(crate) struct Graph(SymbolicSparseColMat<usize>);
+
+impl Graph {
+    /// A graph of the neighbours of every vertex, in ascending order: their start for each vertex and the end of the
+    /// last, and the neighbours. Every vertex is a neighbour of its neighbours.
+    pub(crate) fn new(starts: Vec<usize>, neighbours: Vec<usize>) -> Self {
+        let n = starts.len().saturating_sub(1);
+        Self(SymbolicSparseColMat::new_checked(n, n, starts, None, neighbours))
+    }
+
+    /// Number of vertices.
+    pub(crate) fn size(&self) -> usize {
+        self.0.ncols()
+    }
+
+    /// The neighbours of a vertex.
+    pub(crate) fn neighbours(&self, vertex: usize) -> &[usize] {
+        self.0.row_idx_of_col_raw(vertex)
+    }
+
+    /// An order of elimination by approximate minimum degree (Amestoy, Davis and Duff 1996, *An approximate minimum degree
+    /// ordering algorithm*). Of vertices of one degree, the numbers decide.
+    ///
+    /// # Errors
+    /// [`SolverError::TooLarge`].
+    pub(crate) fn minimum_degree(&self) -> Result<Vec<usize>, SolverError> {
+        let n = self.size();
+        let scratch = amd::order_maybe_unsorted_scratch::<usize>(n, self.0.compute_nnz());
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| SolverError::TooLarge)?;
+        let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
+        let control = amd::Control::default();
+        amd::order_maybe_unsorted(&mut order, &mut inverse, self.0.as_ref(), control, MemStack::new(&mut memory))
+            .map_err(|_| SolverError::TooLarge)?;
+        Ok(order)
+    }
+
+    /// The operations of a factorization in an order of elimination, for one unknown a vertex.
+    ///
+    /// # Errors
+    /// [`SolverError::TooLarge`].
+    pub(crate) fn operations(&self, order: &[usize]) -> Result<f64, SolverError> {
+        let inverse = inverse(order);
+        let ordering = SymmetricOrdering::Custom(PermRef::new_checked(order, &inverse, order.len()));
+        let symbolic = analyse(&self.0, ordering, SupernodalThreshold::FORCE_SUPERNODAL)?;
+        Ok(operations(&symbolic)[0])
+    }
+}
+
+/// The operations of a factorization and of a back substitution.
+fn operations(symbolic: &SymbolicCholesky<usize>) -> [f64; 2] {
     let (mut factorization, mut substitution) = (0.0, 0.0);
-    // What small columns and fronts take, and the price of an operation of a factorization over that of a back
-    // substitution, which waits for memory: fitted to beams, simplicial of 100 to 1 200 unknowns, supernodal of 40 to
-    // 33 000.
-    let (least, operation) = match symbolic.raw() {
+    match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(simplicial) => {
             for column in simplicial.col_ptr().windows(2) {
                 let entries = (column[1] - column[0]) as f64;
                 factorization += entries * entries;
                 substitution += 4.0 * entries;
             }
-            (4.2, 0.9)
         }
         SymbolicCholeskyRaw::Supernodal(supernodal) => {
             let columns = supernodal.supernode_begin().iter().zip(supernodal.supernode_end());
@@ -125,9 +203,21 @@ fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
                 factorization += width * (width * width / 3.0 + width * below + below * below);
                 substitution += 4.0 * width * (0.5 * width + below);
             }
-            (1.5, 0.25)
         }
+    }
+    [factorization, substitution]
+}
+
+/// See [`Factor::price`]: from the operations that the sparsity says, not from a clock.
+fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
+    // What small columns and fronts take, and the price of an operation of a factorization over that of a back
+    // substitution, which waits for memory: fitted to beams, simplicial of 100 to 1 200 unknowns, supernodal of 40 to
+    // 33 000.
+    let (least, operation) = match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(_) => (4.2, 0.9),
+        SymbolicCholeskyRaw::Supernodal(_) => (1.5, 0.25),
     };
+    let [factorization, substitution] = operations(symbolic);
     if substitution > 0.0 { least + operation * factorization / substitution } else { least }
 }
 
