@@ -228,6 +228,13 @@ impl<'a> Window<'a> {
         });
         (status.code(), self.said())
     }
+
+    /// Closes the window of a program that has nothing to complain about.
+    fn close_well(self) {
+        let (code, said) = self.close();
+        assert_eq!(code, Some(0), "{said}");
+        assert!(!said.contains("panicked"), "{said}");
+    }
 }
 
 impl Drop for Window<'_> {
@@ -303,9 +310,7 @@ fn a_slider_is_dragged_the_picture_changes_and_close_exits_0() {
     // Of 1 024 000 pixels, the beam and its ghost cover tens of thousands.
     let moved = changed(&before, &after);
     assert!(moved > 20_000, "only {moved} pixels changed");
-    let (code, said) = window.close();
-    assert_eq!(code, Some(0), "{said}");
-    assert!(!said.contains("panicked"), "{said}");
+    window.close_well();
 }
 
 #[test]
@@ -338,9 +343,7 @@ fn the_window_survives_what_windows_go_through() {
         window.key(key);
     }
     window.settle();
-    let (code, said) = window.close();
-    assert_eq!(code, Some(0), "{said}");
-    assert!(!said.contains("panicked"), "{said}");
+    window.close_well();
 }
 
 /// At rest nothing is redrawn: some two seconds within the next thirty use no processor time.
@@ -387,9 +390,7 @@ fn a_body_in_motion_is_pulled_let_go_and_reset() {
         let image = window.image();
         (image.len() == before.len() && changed(&image, &before) < 100_000).then_some(())
     });
-    let (code, said) = window.close();
-    assert_eq!(code, Some(0), "{said}");
-    assert!(!said.contains("panicked"), "{said}");
+    window.close_well();
 }
 
 /// S writes the picture that the window shows.
@@ -442,9 +443,7 @@ fn a_dropped_file_is_opened_and_shown_in_chinese() {
     assert_eq!(shot.status.code(), Some(0));
     let different = changed(&read_bgrx(&picture).unwrap(), &chinese);
     assert!(different < 5_000, "{different} pixels differ from what `shot` makes in Chinese");
-    let (code, said) = window.close();
-    assert_eq!(code, Some(0), "{said}");
-    assert!(!said.contains("panicked"), "{said}");
+    window.close_well();
     let kept = std::fs::read_to_string(&settings).unwrap();
     assert!(kept.contains("language = \"zh\""), "{kept}");
 }
@@ -500,7 +499,5 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     let different = changed(&read_bgrx(&picture).unwrap(), &after);
     assert!(different < 5_000, "{different} pixels differ from what `shot` makes of the saved scene");
     until("the scene as it was", "ctrl+z", &|| changed(&before, &window.image()) < 2_000);
-    let (code, said) = window.close();
-    assert_eq!(code, Some(0), "{said}");
-    assert!(!said.contains("panicked"), "{said}");
+    window.close_well();
 }

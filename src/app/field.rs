@@ -79,25 +79,7 @@ impl NumberField {
                             if has_escaped || text.trim() == shown {
                                 return Some(value);
                             }
-                            match parse(text, unit) {
-                                Ok(number) if number.is_finite() => match self.check(number) {
-                                    Ok(()) => Some(number),
-                                    Err(error) => {
-                                        refused.replace(Some(error.to_string()));
-                                        None
-                                    }
-                                },
-                                Ok(_) => {
-                                    refused.replace(Some(self.expected(text)));
-                                    None
-                                }
-                                Err(error) => {
-                                    let says_enough = !matches!(error, UnitError::NoNumber { .. });
-                                    let reason = if says_enough { error.to_string() } else { self.expected(text) };
-                                    refused.replace(Some(reason));
-                                    None
-                                }
-                            }
+                            self.read(text).map_err(|reason| refused.replace(Some(reason))).ok()
                         });
                     let size = egui::vec2(VALUE_WIDTH, ui.spacing().interact_size.y);
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
@@ -188,6 +170,15 @@ impl NumberField {
         };
         let stepped = (value + steps * step).clamp(low.min(value), high.max(value));
         Some(if self.whole { stepped } else { three_digits(stepped) })
+    }
+
+    /// The number that a text says, or why it is refused.
+    fn read(&self, text: &str) -> Result<f64, String> {
+        match parse(text, self.limit.unit) {
+            Ok(number) if number.is_finite() => self.check(number).map(|()| number).map_err(|error| error.to_string()),
+            Ok(_) | Err(UnitError::NoNumber { .. }) => Err(self.expected(text)),
+            Err(error) => Err(error.to_string()),
+        }
     }
 
     fn expected(&self, text: &str) -> String {

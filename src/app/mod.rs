@@ -11,7 +11,6 @@ mod action;
 mod arrow;
 mod background;
 mod budget;
-mod choice;
 mod clipboard;
 mod compare;
 mod document;

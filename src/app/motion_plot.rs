@@ -4,12 +4,12 @@ use egui::{Color32, Ui};
 use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, VLine};
 use realfft::RealFftPlanner;
 
-use super::choice::choice;
 use super::history::{History, Sample};
 use super::language::{fill, tr};
 use super::palette::Palette;
 use super::playback::Playback;
 use super::plot::still;
+use super::toolbar::option_button;
 use crate::scene::IntegratorKind;
 use crate::words::engineering;
 
@@ -55,7 +55,7 @@ pub(super) fn show(
 ) {
     ui.horizontal(|ui| {
         for (plot, word, tip) in PLOTS {
-            if choice(ui, *chosen == plot, tr(word)).on_hover_text(tr(tip)).clicked() {
+            if ui.add(option_button(*chosen == plot, tr(word))).on_hover_text(tr(tip)).clicked() {
                 *chosen = plot;
             }
         }

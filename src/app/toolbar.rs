@@ -2,8 +2,8 @@
 
 use egui::text::LayoutJob;
 use egui::{
-    Align, Align2, Button, FontId, Layout, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind,
-    TextFormat, Ui, WidgetInfo, pos2, vec2,
+    Align, Align2, Button, FontId, IntoAtoms, Layout, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
+    StrokeKind, TextFormat, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::action::{Action, Toggle, ViewOptions};
@@ -232,4 +232,9 @@ pub(super) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, a
     let response = ui.add(Button::selectable(selected, job).wrap());
     response.widget_info(|| WidgetInfo::selected(Role::Button, response.enabled(), selected, id));
     response
+}
+
+/// A button that is chosen or not: of several one, or on and off. It looks like a button also where it is not chosen.
+pub(super) fn option_button<'a>(chosen: bool, words: impl IntoAtoms<'a>) -> Button<'a> {
+    Button::selectable(chosen, words).frame_when_inactive(true)
 }

@@ -24,7 +24,7 @@ use super::palette::{BODY, HEADLINE, Palette, SMALL};
 use super::playback::Playback;
 use super::pointer::{Body, Look, Reach, Wish};
 use super::stage::viewport;
-use super::toolbar::{Icon, choice, icon_button};
+use super::toolbar::{Icon, choice, icon_button, option_button};
 use super::verdict::{Errors, error_color};
 use crate::assembly::System;
 use crate::method::METHODS;
@@ -265,8 +265,7 @@ impl Compare {
             ui.spacing_mut().item_spacing.x = 6.0;
             for (name, settings, enabled, tip, unless) in presets {
                 let is_chosen = enabled && self.settings() == settings;
-                let button =
-                    ui.add_enabled(enabled, egui::Button::selectable(is_chosen, name).frame_when_inactive(true));
+                let button = ui.add_enabled(enabled, option_button(is_chosen, name));
                 if button.on_hover_text(tr(tip)).on_disabled_hover_text(tr(unless)).clicked() {
                     self.set(&settings);
                 }

@@ -4,9 +4,9 @@ use egui::{Align2, FontId, Painter, Rect, RichText, Role, Sense, Stroke, Ui, Wid
 
 use super::{Learn, Shown};
 use crate::app::action::Action;
-use crate::app::choice::choice;
 use crate::app::language::{count, fill, tr};
 use crate::app::palette::{Palette, SMALL};
+use crate::app::toolbar::option_button;
 use crate::app::verdict::rho_number;
 use crate::method::METHODS;
 use crate::scene::MethodKind;
@@ -38,7 +38,7 @@ pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions
         for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
             let chosen = shown.input.scene.solver.method == method.kind;
             let words = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
-            if choice(ui, chosen, tr(words)).on_hover_text(tr(method.about)).clicked() && !chosen {
+            if ui.add(option_button(chosen, tr(words))).on_hover_text(tr(method.about)).clicked() && !chosen {
                 let mut scene = Box::new(shown.input.scene.clone());
                 scene.solver.method = method.kind;
                 actions.push(Action::Edit("Method", scene));

@@ -5,9 +5,9 @@ use egui::{Button, Grid, ProgressBar, RichText, Ui};
 use super::{Learn, Shown};
 use crate::app::action::Action;
 use crate::app::budget::setting_words;
-use crate::app::choice::choice;
 use crate::app::language::{fill, percent, tr, translated};
 use crate::app::palette::{Palette, SMALL};
+use crate::app::toolbar::option_button;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::{Measurement, Study};
@@ -46,7 +46,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             }
             ui.label(tr("error at most"));
             for asked in ASKED {
-                if choice(ui, learn.asked == asked, percent(asked)).clicked() {
+                if ui.add(option_button(learn.asked == asked, percent(asked))).clicked() {
                     learn.asked = asked;
                 }
             }

@@ -4,9 +4,9 @@ use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, number_row};
 use crate::app::action::MOST_ITERATIONS;
-use crate::app::choice::choice;
 use crate::app::field::{NumberField, show_message};
 use crate::app::language::{count, joined, tr};
+use crate::app::toolbar::option_button;
 use crate::scene::{Analysis, Material, Plane, Scene, limits};
 use crate::words::engineering;
 
@@ -57,7 +57,7 @@ pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelSta
             let preset = Material { young, poisson, density, ..scene.material };
             let tip = format!("E {}, ν {poisson}, {}", engineering(young, "Pa"), engineering(density, "kg/m³"));
             let chosen = preset == scene.material;
-            if choice(ui, chosen, tr(name)).on_hover_text(tip).clicked() && !chosen {
+            if ui.add(option_button(chosen, tr(name))).on_hover_text(tip).clicked() && !chosen {
                 actions.push(Action::Edit("Young E", Box::new(Scene { material: preset, ..scene.clone() })));
             }
         }

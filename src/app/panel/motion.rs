@@ -3,9 +3,9 @@
 use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, number_row, picker};
-use crate::app::choice::choice;
 use crate::app::field::{NumberField, show_message};
 use crate::app::language::{fill, joined, tr};
+use crate::app::toolbar::option_button;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::{Scene, limits};
 use crate::words::{engineering, three_digits};
@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
         for (speed, word) in SPEEDS {
             let chosen = (input.playback.pace.speed() - speed).abs() < 1e-9;
             let tip = "Simulated seconds a second: 1 is real time, less is slow motion";
-            if choice(ui, chosen, word).on_hover_text(tr(tip)).clicked() {
+            if ui.add(option_button(chosen, word)).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Speed(speed));
             }
         }
@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
     ui.horizontal(|ui| {
         let marked = input.playback.is_marked();
         let tip = "Reset goes to where the body is now, in place of the start; again: to the start (H)";
-        if choice(ui, marked, tr("Reset to here")).on_hover_text(tr(tip)).clicked() {
+        if ui.add(option_button(marked, tr("Reset to here"))).on_hover_text(tr(tip)).clicked() {
             actions.push(Action::Mark);
         }
     });
@@ -54,7 +54,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             let companion = input.playback.companions().iter().find(|c| c.integrator == entry.kind);
             let stopped = companion.is_some_and(|c| c.has_stopped());
             let tip = if stopped { "It has stopped: its step is too long" } else { entry.about };
-            if choice(ui, companion.is_some(), tr(entry.id)).on_hover_text(tr(tip)).clicked() {
+            if ui.add(option_button(companion.is_some(), tr(entry.id))).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Compare(entry.kind));
             }
         }
