@@ -8,6 +8,8 @@
 
 use nalgebra::Vector2;
 
+use crate::lanes::{LANES, Lanes, gather, zero_vector};
+
 /// The displacement of every node, m. It reads as its rounded values.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Displacement {
@@ -112,8 +114,20 @@ impl<'a> Compensated<'a> {
     /// The displacements of an element's nodes relative to its first one.
     #[inline(always)]
     pub(crate) fn relative<const N: usize>(&self, nodes: &[u32; N]) -> [Vector2<f64>; N] {
-        let part = |of: &[Vector2<f64>]| nodes.map(|node| of[node as usize]);
-        let (rounded, remainder) = (part(self.rounded), part(self.remainder));
-        std::array::from_fn(|a| (rounded[a] - rounded[0]) + (remainder[a] - remainder[0]))
+        let first = (self.rounded[nodes[0] as usize], self.remainder[nodes[0] as usize]);
+        nodes.map(|n| (self.rounded[n as usize] - first.0) + (self.remainder[n as usize] - first.1))
+    }
+
+    /// The same of several elements, side by side: `nodes` has those in all lanes, node by node.
+    #[inline(always)]
+    pub(crate) fn relative_side_by_side<const N: usize>(&self, nodes: &[[u32; LANES]; N]) -> [Vector2<Lanes>; N] {
+        let part = |n: [u32; LANES]| (gather(self.rounded, n), gather(self.remainder, n));
+        let first = part(nodes[0]);
+        let mut own = [zero_vector(); N];
+        for (own, &nodes) in own.iter_mut().zip(nodes).skip(1) {
+            let (rounded, remainder) = part(nodes);
+            *own = (rounded - first.0) + (remainder - first.1);
+        }
+        own
     }
 }

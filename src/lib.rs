@@ -38,7 +38,7 @@
 //!
 //! Data flows one way, and the modules say so; each imports only from its left:
 //!
-//! [`words`], [`timings`], [`scene`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
+//! [`words`], [`timings`], [`scene`], [`lanes`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
 //! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`study`] → the commands and the
 //! window. [`truth`] needs the scene only; [`article`] stands beside.
 //!
@@ -66,6 +66,7 @@ pub mod dynamics;
 pub mod element;
 pub mod export;
 mod lanczos;
+pub mod lanes;
 pub mod material;
 pub mod mesh;
 pub mod method;

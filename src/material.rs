@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix2, Matrix3};
 
+use crate::lanes::Number;
 use crate::scene::{Material, Plane};
 
 /// Lamé constants of the plane problem, Pa; times a thickness, N/m.
@@ -23,8 +24,14 @@ impl Lame {
     /// T = 2 μ ε + λ tr(ε) I, Pa, for a strain ε. With the Biot strain S − I this is the Biot stress.
     #[must_use]
     #[inline]
-    pub fn stress(self, strain: &Matrix2<f64>) -> Matrix2<f64> {
-        strain * (2.0 * self.mu) + Matrix2::identity() * (self.lambda * strain.trace())
+    pub fn stress<T: Number>(self, strain: &Matrix2<T>) -> Matrix2<T> {
+        let (double, pressure) = (T::splat(2.0 * self.mu), T::splat(self.lambda) * (strain.m11 + strain.m22));
+        Matrix2::new(
+            double * strain.m11 + pressure,
+            double * strain.m12,
+            double * strain.m21,
+            double * strain.m22 + pressure,
+        )
     }
 
     /// ψ = μ ‖ε‖² + λ/2 tr²(ε), J/m³.

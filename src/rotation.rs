@@ -2,15 +2,17 @@
 //!
 //! Article eqs. (37)–(39), with the reciprocal its eq. (38) lost.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, SimdBool, Vector2};
 
-/// A proper rotation of the plane, stored as cosine and sine.
+use crate::lanes::Number;
+
+/// A proper rotation of the plane, stored as cosine and sine; or several, side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rotation {
+pub struct Rotation<T = f64> {
     /// Cosine of the angle.
-    pub c: f64,
+    pub c: T,
     /// Sine of the angle.
-    pub s: f64,
+    pub s: T,
 }
 
 impl Rotation {
@@ -29,21 +31,47 @@ impl Rotation {
     pub fn angle(self) -> f64 {
         self.s.atan2(self.c)
     }
+}
 
+impl<T: Number> Rotation<T> {
     /// The matrix of article eq. (39).
     #[must_use]
     #[inline(always)]
-    pub fn matrix(self) -> Matrix2<f64> {
+    pub fn matrix(self) -> Matrix2<T> {
         Matrix2::new(self.c, -self.s, self.s, self.c)
     }
 
     /// R v.
     #[must_use]
     #[inline(always)]
-    pub fn apply(self, v: Vector2<f64>) -> Vector2<f64> {
+    pub fn apply(self, v: Vector2<T>) -> Vector2<T> {
         Vector2::new(self.c * v.x - self.s * v.y, self.s * v.x + self.c * v.y)
     }
+
+    /// Rᵀ v.
+    #[must_use]
+    #[inline(always)]
+    pub fn apply_inverse(self, v: Vector2<T>) -> Vector2<T> {
+        Vector2::new(self.c * v.x + self.s * v.y, self.c * v.y - self.s * v.x)
+    }
+
+    /// (a, b) normalised; `None` where squares leave the range of f64.
+    #[inline(always)]
+    fn towards(a: T, b: T) -> Option<Self> {
+        let squares = a * a + b * b;
+        let ordinary = squares.simd_gt(T::splat(SMALLEST_SQUARE)) & squares.simd_lt(T::splat(LARGEST_SQUARE));
+        if !ordinary.all() {
+            return None;
+        }
+        let length = squares.simd_sqrt();
+        Some(Self { c: a / length, s: b / length })
+    }
 }
+
+/// Sums of squares between these are right to the last digits: what underflows in them does not count.
+const SMALLEST_SQUARE: f64 = 1e-250;
+/// See [`SMALLEST_SQUARE`].
+const LARGEST_SQUARE: f64 = 1e300;
 
 /// The rotation R of the polar decomposition F = R S, S symmetric (article eqs. 37–39); `None` where it is undefined.
 ///
@@ -65,6 +93,9 @@ impl Rotation {
 pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
     let mut a = f.m11 + f.m22;
     let mut b = f.m21 - f.m12;
+    if let Some(rotation) = Rotation::towards(a, b) {
+        return Some(rotation);
+    }
     if !(a.is_finite() && b.is_finite()) {
         if !f.iter().all(|v| v.is_finite()) {
             return None;
@@ -79,14 +110,31 @@ pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
     if m == 0.0 {
         return None;
     }
-    let (a, b) = (a / m, b / m);
-    let h = (a * a + b * b).sqrt();
-    Some(Rotation { c: a / h, s: b / h })
+    Rotation::towards(a / m, b / m)
 }
 
 /// [`polar`], keeping `previous` where the rotation is undefined.
 #[must_use]
 #[inline(always)]
-pub fn polar_or(f: &Matrix2<f64>, previous: Rotation) -> Rotation {
-    polar(f).unwrap_or(previous)
+pub fn polar_or<T: Number>(f: &Matrix2<T>, previous: Rotation<T>) -> Rotation<T> {
+    polar_or_else(f, || previous)
+}
+
+/// [`polar_or`] with a rotation that is looked up where it is wanted.
+#[inline(always)]
+pub(crate) fn polar_or_else<T: Number>(f: &Matrix2<T>, previous: impl FnOnce() -> Rotation<T>) -> Rotation<T> {
+    Rotation::towards(f.m11 + f.m22, f.m21 - f.m12).unwrap_or_else(|| one_by_one(f, previous()))
+}
+
+/// [`polar_or`] where not all lanes are ordinary.
+#[cold]
+fn one_by_one<T: Number>(f: &Matrix2<T>, previous: Rotation<T>) -> Rotation<T> {
+    let mut result = previous;
+    for lane in 0..T::LANES {
+        if let Some(Rotation { c, s }) = polar(&f.map(|f| f.extract(lane))) {
+            result.c.replace(lane, c);
+            result.s.replace(lane, s);
+        }
+    }
+    result
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix2;
 use num_bigint::BigInt;
+use warpbeam::lanes::{LANES, Lanes};
 use warpbeam::rotation::{Rotation, polar, polar_or};
 
 /// A finite f64 as an integer times 2^−1074, exactly.
@@ -180,5 +181,32 @@ fn the_previous_rotation_is_kept_where_none_is_defined() {
     let previous = Rotation::from_angle(0.7);
     for f in [Matrix2::zeros(), Matrix2::new(2.0, 3.0, 3.0, -2.0), Matrix2::new(f64::NAN, 0.0, 0.0, 1.0)] {
         assert_eq!(polar_or(&f, previous), previous);
+    }
+}
+
+/// In every lane what one element alone would get, whatever the others are.
+#[test]
+fn elements_side_by_side_have_the_rotations_of_one_by_one() {
+    let ordinary = [Matrix2::new(0.3, -1.0, 2.0, 0.7), Matrix2::identity(), Matrix2::new(-1.0, 0.1, 0.0, -3.0)];
+    let others = [
+        Matrix2::new(1.0, 0.2, -0.2, 1.0),
+        Matrix2::zeros(),
+        Matrix2::new(f64::NAN, 0.0, 0.0, 1.0),
+        Matrix2::new(1e-300, 0.0, 2e-300, 1e-300),
+        Matrix2::new(1e308, -1e308, 1e308, 1e308),
+    ];
+    let previous = [0.1, 0.2, 0.3, 0.4].map(Rotation::from_angle);
+    for other in others {
+        for place in 0..LANES {
+            let mut all = [ordinary[0], ordinary[1], ordinary[2], ordinary[0]];
+            all[place] = other;
+            let beside = Matrix2::from_fn(|row, column| Lanes::from(all.map(|f| f[(row, column)])));
+            let before = Rotation { c: previous.map(|r| r.c).into(), s: previous.map(|r| r.s).into() };
+            let Rotation { c, s } = polar_or(&beside, before);
+            for (lane, (f, previous)) in all.iter().zip(previous).enumerate() {
+                let alone = polar_or(f, previous);
+                assert_eq!((c.into_arr()[lane], s.into_arr()[lane]), (alone.c, alone.s), "{f}");
+            }
+        }
     }
 }

@@ -2,55 +2,60 @@
 
 use nalgebra::Matrix2;
 
+use super::cosine_minus_1;
+use crate::lanes::{Number, one_plus};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
 /// What two deformation gradients F₀ = I + H₀ and F₁ = I + H₁ have between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DiscreteGradient {
+pub struct DiscreteGradient<T: Number = f64> {
     /// F̄ − R̄, F̄ = (F₀ + F₁)/2.
-    strain: Matrix2<f64>,
+    strain: Matrix2<T>,
     /// R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁), r = tr S: no rotation in general.
-    mean_rotation: Matrix2<f64>,
+    mean_rotation: Matrix2<T>,
     /// R̄/|R̄|.
-    pub rotation: Rotation,
+    pub rotation: Rotation<T>,
     /// t̄ = (r₀ + r₁)/2 − 2.
-    pub trace: f64,
+    pub trace: T,
 }
 
-impl DiscreteGradient {
+impl<T: Number> DiscreteGradient<T> {
     /// Between the displacement gradients H and rotations of two states. Linear theory's is the stress of the mean
     /// strain, and not this one with no rotation: the skew part of F̄ − R̄ vanishes only with the polar factors.
     #[must_use]
-    #[inline]
-    pub fn new([h0, h1]: [Matrix2<f64>; 2], [r0, r1]: [Rotation; 2]) -> Self {
+    #[inline(always)]
+    pub fn new([h0, h1]: [Matrix2<T>; 2], [r0, r1]: [Rotation<T>; 2]) -> Self {
+        let half = T::splat(0.5);
         // R − I and r − 2 = tr(RᵀF) − 2, written so that small strains keep their digits.
-        let turn = |r: Rotation| {
-            let c_minus_1 = if r.c > 0.0 { -r.s * r.s / (1.0 + r.c) } else { r.c - 1.0 };
+        let turn = |r: Rotation<T>| {
+            let c_minus_1 = cosine_minus_1(r);
             Matrix2::new(c_minus_1, -r.s, r.s, c_minus_1)
         };
         let (turn0, turn1) = (turn(r0), turn(r1));
-        let stretch = |h: &Matrix2<f64>, r: Rotation, turn: &Matrix2<f64>| {
-            turn.trace() + r.c * (h.m11 + h.m22) + r.s * (h.m21 - h.m12)
+        let stretch = |h: &Matrix2<T>, r: Rotation<T>, turn: &Matrix2<T>| {
+            turn.m11 + turn.m22 + r.c * (h.m11 + h.m22) + r.s * (h.m21 - h.m12)
         };
         let (t0, t1) = (stretch(&h0, r0, &turn0), stretch(&h1, r1, &turn1));
-        let sum = 4.0 + t0 + t1;
+        let two = T::splat(2.0);
+        let sum = two + two + t0 + t1;
         // Crushed to nothing in both states: no rotation is better than another.
-        let (w0, w1) = if sum.abs() > 0.0 { ((2.0 + t0) / sum, (2.0 + t1) / sum) } else { (0.5, 0.5) };
-        let mean_turn = turn0 * w0 + turn1 * w1;
-        let mean_rotation = Matrix2::identity() + mean_turn;
+        let stands = sum.simd_abs().simd_gt(T::zero());
+        let weight = |t: T| ((two + t) / sum).select(stands, half);
+        let mean_turn = turn0 * weight(t0) + turn1 * weight(t1);
+        let mean_rotation = one_plus(&mean_turn);
         Self {
-            strain: (h0 + h1) * 0.5 - mean_turn,
+            strain: (h0 + h1) * half - mean_turn,
             mean_rotation,
             rotation: polar_or(&mean_rotation, r1),
-            trace: 0.5 * (t0 + t1),
+            trace: half * (t0 + t1),
         }
     }
 
     /// P = 2μ (F̄ − R̄) + λ t̄ R̄, Pa.
     #[must_use]
-    #[inline]
-    pub fn stress(&self, lame: Lame) -> Matrix2<f64> {
-        self.strain * (2.0 * lame.mu) + self.mean_rotation * (lame.lambda * self.trace)
+    #[inline(always)]
+    pub fn stress(&self, lame: Lame) -> Matrix2<T> {
+        self.strain * T::splat(2.0 * lame.mu) + self.mean_rotation * (T::splat(lame.lambda) * self.trace)
     }
 }

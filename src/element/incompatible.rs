@@ -2,18 +2,20 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use nalgebra::{Matrix2, Matrix4, Matrix4x2, Vector2};
+use nalgebra::{Matrix2, Matrix4, Matrix4x2, SimdPartialOrd, SimdValue, Vector2};
 
-use super::isoparametric::{SMALLEST_STRETCH_TRACE, gather};
+use super::connectivity::Connectivity;
+use super::isoparametric::{SMALLEST_STRETCH_TRACE, add_forces, apply, gather, product};
 use super::matrix::ElementMatrix;
 use super::rounding::{Rounded, RoundedPoint, UNIT};
 use super::{
     DiscreteGradient, ElementType, Elements, MatrixSum, QuadraturePoint, Rotations, StrainRate, StrainVisitor, Tangent,
-    warped_strain,
+    rotations_at, warped_strain,
 };
 use crate::displacement::Compensated;
+use crate::lanes::{LANES, Lanes, Number, one_plus, zero_vector};
 use crate::material::Lame;
-use crate::rotation::{Rotation, polar, polar_or};
+use crate::rotation::{Rotation, polar_or};
 
 /// The values at the corners of ξη, the one bilinear function that is not linear.
 const TWIST: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
@@ -34,29 +36,30 @@ const TWIST: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
 /// θ_x = R J ∇Nₐ / tr S and θ_xx = −(θ_x R∇Nᵀ + R∇N θ_xᵀ) / tr S.
 #[derive(Debug)]
 pub struct IncompatibleQuads {
-    nodes: Vec<[u32; 4]>,
-    quads: Vec<Quad>,
+    nodes: Connectivity<4>,
+    /// Side by side.
+    quads: Vec<Quad<Lanes>>,
     /// At the points of the rule: the gradients of ξη and of the two modes.
     points: Vec<[QuadraturePoint<3>; 4]>,
     /// Condensed modes, for the ratios of moduli that were asked for last.
     condensed: Mutex<Vec<Arc<Condensed>>>,
 }
 
-/// An element at rest.
+/// An element at rest, or several side by side.
 #[derive(Clone, Copy, Debug)]
-struct Quad {
+struct Quad<T: Number = f64> {
     /// ∇Nₐ at the centre, 1/m, and the whole area, m².
-    centre: QuadraturePoint<4>,
+    centre: QuadraturePoint<4, T>,
     /// q = Σ γₐ uₐ.
-    gamma: [f64; 4],
+    gamma: [T; 4],
 }
 
 /// What depends on λ/μ.
 #[derive(Debug)]
 struct Condensed {
     ratio: f64,
-    /// K_xx, K_xy, K_yy over μ.
-    stiffness: Vec<[f64; 3]>,
+    /// K_xx, K_xy, K_yy over μ, side by side as the elements.
+    stiffness: Vec<[Lanes; 3]>,
     /// The modes' sizes over q̃: those of 1 − ξ² along x and y, of 1 − η² along x and y.
     modes: Vec<Matrix4x2<f64>>,
 }
@@ -66,26 +69,20 @@ struct Condensed {
 const REMEMBERED: usize = 4;
 
 /// J v: a quarter turn, counter-clockwise.
-#[inline]
-fn quarter(v: Vector2<f64>) -> Vector2<f64> {
+#[inline(always)]
+fn quarter<T: Number>(v: Vector2<T>) -> Vector2<T> {
     Vector2::new(-v.y, v.x)
 }
 
-/// Rᵀ v.
-#[inline]
-fn back(r: Rotation, v: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(r.c * v.x + r.s * v.y, r.c * v.y - r.s * v.x)
-}
-
 /// A symmetric matrix of its xx, xy and yy.
-#[inline]
-fn symmetric([xx, xy, yy]: [f64; 3]) -> Matrix2<f64> {
+#[inline(always)]
+fn symmetric<T: Number>([xx, xy, yy]: [T; 3]) -> Matrix2<T> {
     Matrix2::new(xx, xy, xy, yy)
 }
 
 /// Rows of a matrix, one after the other.
-#[inline]
-fn rows(m: &Matrix2<f64>) -> [f64; 4] {
+#[inline(always)]
+fn rows<T: Number>(m: &Matrix2<T>) -> [T; 4] {
     [m.m11, m.m12, m.m21, m.m22]
 }
 
@@ -97,11 +94,29 @@ impl Quad {
         gamma.iter_mut().zip(&centre.gradients).for_each(|(gamma, g)| *gamma = 0.25 * (*gamma - twisted.dot(g)));
         Self { centre, gamma }
     }
+}
 
-    /// q: the γₐ sum to zero, so that differences will do.
+impl Quad<Lanes> {
+    /// Several elements.
+    fn side_by_side(own: [Quad; LANES]) -> Self {
+        Self {
+            centre: QuadraturePoint::side_by_side(own.map(|quad| quad.centre)),
+            gamma: std::array::from_fn(|a| own.map(|quad| quad.gamma[a]).into()),
+        }
+    }
+
+    /// The element in this lane.
     #[inline]
-    fn twist(&self, u: &[Vector2<f64>; 4]) -> Vector2<f64> {
-        let mut q = Vector2::zeros();
+    fn lane(&self, of: usize) -> Quad {
+        Quad { centre: self.centre.lane(of), gamma: self.gamma.map(|gamma| gamma.extract(of)) }
+    }
+}
+
+impl<T: Number> Quad<T> {
+    /// q: the γₐ sum to zero, so that differences will do.
+    #[inline(always)]
+    fn twist(&self, u: &[Vector2<T>; 4]) -> Vector2<T> {
+        let mut q = zero_vector();
         for (own, gamma) in u.iter().zip(&self.gamma).skip(1) {
             q += (own - u[0]) * *gamma;
         }
@@ -109,18 +124,20 @@ impl Quad {
     }
 }
 
-/// tr S where R is the polar factor that belongs to H, bit for bit: R follows x then. `None` where it is another, and stays
+/// tr S; and where R is the polar factor that belongs to H, bit for bit: there R follows x. Elsewhere it is another, and stays
 /// what it is.
-#[inline]
-fn following(r: Rotation, h: &Matrix2<f64>) -> Option<f64> {
-    let f = Matrix2::identity() + h;
-    (polar(&f) == Some(r)).then(|| r.c * (f.m11 + f.m22) + r.s * (f.m21 - f.m12))
+#[inline(always)]
+fn following<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> (T, T::SimdBool) {
+    let f = one_plus(h);
+    let own = polar_or(&f, Rotation { c: T::zero(), s: T::zero() });
+    (r.c * (f.m11 + f.m22) + r.s * (f.m21 - f.m12), own.c.simd_eq(r.c) & own.s.simd_eq(r.s))
 }
 
 /// 1 / tr S, bounded where the element is crushed; zero where R does not follow x.
-#[inline]
-fn inverse_trace(r: Rotation, h: &Matrix2<f64>) -> f64 {
-    following(r, h).map_or(0.0, |trace| 1.0 / trace.max(SMALLEST_STRETCH_TRACE))
+#[inline(always)]
+fn inverse_trace<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> T {
+    let (trace, follows) = following(r, h);
+    (T::one() / trace.simd_max(T::splat(SMALLEST_STRETCH_TRACE))).select(follows, T::zero())
 }
 
 /// The gradients of ξη and of the modes at a point, 1/m.
@@ -169,28 +186,32 @@ impl Condensed {
             stiffness.push([k.m11, 0.5 * (k.m12 + k.m21), k.m22]);
             modes.push(size);
         }
-        Self { ratio, stiffness, modes }
+        let stiffness = stiffness.chunks(LANES).map(|own| {
+            let own: [[f64; 3]; LANES] = std::array::from_fn(|lane| own[lane.min(own.len() - 1)]);
+            std::array::from_fn(|i| own.map(|k| k[i]).into())
+        });
+        Self { ratio, stiffness: stiffness.collect(), modes }
     }
 }
 
 /// The part of an element in q, turned back, in one state.
 #[derive(Clone, Copy, Debug)]
-struct Twisted {
+struct Twisted<T> {
     /// K q̃, N.
-    force: Vector2<f64>,
+    force: Vector2<T>,
     /// ∂w/∂θ, J.
-    moment: f64,
+    moment: T,
     /// ∂²w/∂q̃∂θ, N.
-    cross: Vector2<f64>,
+    cross: Vector2<T>,
     /// ∂²w/∂θ², J.
-    second: f64,
+    second: T,
 }
 
-impl Twisted {
-    #[inline]
-    fn new(k: &Matrix2<f64>, q: Vector2<f64>) -> Self {
-        let (force, turned) = (k * q, quarter(q));
-        let of_turn = k * turned;
+impl<T: Number> Twisted<T> {
+    #[inline(always)]
+    fn new(k: &Matrix2<T>, q: Vector2<T>) -> Self {
+        let (force, turned) = (apply(k, &q), quarter(q));
+        let of_turn = apply(k, &turned);
         Self {
             force,
             moment: -force.dot(&turned),
@@ -204,52 +225,47 @@ impl Twisted {
 ///
 /// G is θ_x zᵀ + z θ_xᵀ, of eigenvalues θ_x·z ± |θ_x||z|. Its positive part is ½ v vᵀ with v = s θ_x + z/s and
 /// s² = |z|/|θ_x|.
-#[inline]
-fn add_twist(
-    sum: &mut ElementMatrix<4>,
-    quad: &Quad,
-    k: &Matrix2<f64>,
-    r: Rotation,
-    twisted: &Twisted,
-    inverse_trace: f64,
+#[inline(always)]
+fn add_twist<T: Number>(
+    sum: &mut ElementMatrix<4, T>,
+    quad: &Quad<T>,
+    k: &Matrix2<T>,
+    r: Rotation<T>,
+    twisted: &Twisted<T>,
+    inverse_trace: T,
     tangent: Tangent,
 ) {
     let turn = r.matrix();
-    let turned = rows(&(turn * k * turn.transpose() * tangent.warped));
+    let turned = product(&product(&turn, k), &turn.transpose());
+    let turned = rows(&turned).map(|k| T::splat(tangent.warped) * k);
     sum.add_blocks(|a, b| {
         let product = quad.gamma[a] * quad.gamma[b];
         turned.map(|k| product * k)
     });
-    if tangent.geometric == 0.0 || inverse_trace == 0.0 {
+    if tangent.geometric == 0.0 {
         return;
     }
-    let mut follow = [Vector2::zeros(); 4];
-    let mut other = [Vector2::zeros(); 4];
+    let half = T::splat(0.5);
+    let mut follow = [zero_vector(); 4];
+    let mut other = [zero_vector(); 4];
     for (a, g) in quad.centre.gradients.iter().enumerate() {
         let g = g * inverse_trace;
         follow[a] = r.apply(quarter(g));
-        other[a] = r.apply(twisted.cross * quad.gamma[a] + quarter(g) * (0.5 * twisted.second) - g * twisted.moment);
+        other[a] = r.apply(twisted.cross * quad.gamma[a] + quarter(g) * (half * twisted.second) - g * twisted.moment);
     }
     if tangent.definite {
-        let norm = |v: &[Vector2<f64>; 4]| v.iter().map(Vector2::norm_squared).sum::<f64>().sqrt();
-        let ratio = (norm(&other) / norm(&follow)).sqrt();
-        if !(ratio > 0.0 && ratio.is_finite()) {
-            return;
-        }
+        let norm = |v: &[Vector2<T>; 4]| v.iter().fold(T::zero(), |sum, v| sum + v.dot(v)).simd_sqrt();
+        let ratio = (norm(&other) / norm(&follow)).simd_sqrt();
+        let stands = ratio.simd_gt(T::zero()) & ratio.simd_lt(T::splat(f64::INFINITY));
         for (follow, other) in follow.iter_mut().zip(&mut other) {
-            *follow = *follow * ratio + *other / ratio;
-            *other = *follow * 0.25;
+            *follow = (*follow * ratio + *other / ratio).map(|v| v.select(stands, T::zero()));
+            *other = *follow * T::splat(0.25);
         }
     }
+    follow.iter_mut().for_each(|follow| *follow *= T::splat(tangent.geometric));
     sum.add_blocks(|a, b| {
         let (fa, fb, oa, ob) = (follow[a], follow[b], other[a], other[b]);
-        let k = [
-            fa.x * ob.x + oa.x * fb.x,
-            fa.x * ob.y + oa.x * fb.y,
-            fa.y * ob.x + oa.y * fb.x,
-            fa.y * ob.y + oa.y * fb.y,
-        ];
-        k.map(|k| tangent.geometric * k)
+        [fa.x * ob.x + oa.x * fb.x, fa.x * ob.y + oa.x * fb.y, fa.y * ob.x + oa.y * fb.x, fa.y * ob.y + oa.y * fb.y]
     });
 }
 
@@ -257,25 +273,20 @@ impl IncompatibleQuads {
     /// The elements with these rest nodes (m) and node numbers; `element` is the quadrilateral's own entry.
     #[must_use]
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], connectivity: &[u32]) -> Self {
-        let count = connectivity.len() / 4;
-        let mut result = Self {
-            nodes: Vec::with_capacity(count),
-            quads: Vec::with_capacity(count),
-            points: Vec::with_capacity(count),
-            condensed: Mutex::new(Vec::with_capacity(REMEMBERED)),
-        };
-        for own in connectivity.chunks_exact(4) {
-            let mut number = [0; 4];
-            number.copy_from_slice(own);
-            let rest = number.map(|n| nodes[n as usize]);
-            result.nodes.push(number);
-            result.quads.push(Quad::new(element, &rest));
-            result.points.push(std::array::from_fn(|i| {
+        let numbers = Connectivity::new(connectivity);
+        let points = numbers.iter().map(|own| {
+            let rest = own.map(|n| nodes[n as usize]);
+            std::array::from_fn(|i| {
                 let rule = element.points[i];
                 bending_point(element, &rest, rule.at, rule.weight)
-            }));
-        }
-        result
+            })
+        });
+        let quads = numbers.batches().map(|(_, own)| {
+            let quad = |lane: usize| Quad::new(element, &own.map(|node| nodes[node[lane] as usize]));
+            Quad::side_by_side(std::array::from_fn(quad))
+        });
+        let condensed = Mutex::new(Vec::with_capacity(REMEMBERED));
+        Self { points: points.collect(), quads: quads.collect(), nodes: numbers, condensed }
     }
 
     /// The modes for these moduli. Made anew only where their ratio is a new one.
@@ -294,45 +305,37 @@ impl IncompatibleQuads {
         new
     }
 
-    fn elements(&self) -> impl Iterator<Item = (&[u32; 4], &Quad)> {
-        self.nodes.iter().zip(&self.quads)
+    fn elements(&self) -> impl Iterator<Item = (&[u32; 4], Quad)> {
+        let quads = self.quads.iter().flat_map(|quad| (0..LANES).map(|lane| quad.lane(lane)));
+        self.nodes.iter().zip(quads)
     }
 
     /// Every element's nodes and rest state with K over μ.
-    fn with_twist<'a>(&'a self, condensed: &'a Condensed) -> impl Iterator<Item = (&'a [u32; 4], &'a Quad, [f64; 3])> {
-        self.elements().zip(&condensed.stiffness).map(|((nodes, quad), &k)| (nodes, quad, k))
-    }
-}
-
-/// Adds nodal forces and their absolute values.
-#[inline]
-fn add_forces(nodes: &[u32; 4], own: [Vector2<f64>; 4], force: &mut [Vector2<f64>], magnitude: &mut [Vector2<f64>]) {
-    for (&node, f) in nodes.iter().zip(own) {
-        force[node as usize] += f;
-        magnitude[node as usize] += f.abs();
+    fn with_twist<'a>(&'a self, condensed: &'a Condensed) -> impl Iterator<Item = (&'a [u32; 4], Quad, [f64; 3])> {
+        let stiffness = condensed.stiffness.iter().flat_map(|k| (0..LANES).map(|l| k.map(|k| k.extract(l))));
+        self.elements().zip(stiffness).map(|((nodes, quad), k)| (nodes, quad, k))
     }
 }
 
 /// Half the turn from one rotation to another, which is at most a half turn: its cosine and sine.
-fn half_turn([r0, r1]: [Rotation; 2]) -> Rotation {
+#[inline(always)]
+fn half_turn<T: Number>([r0, r1]: [Rotation<T>; 2]) -> Rotation<T> {
     let (c, s) = (r0.c * r1.c + r0.s * r1.s, r0.c * r1.s - r0.s * r1.c);
+    let half = T::splat(0.5);
     // The larger of the two first: the other keeps its digits.
-    if c >= 0.0 {
-        let half = (0.5 * (1.0 + c)).sqrt();
-        Rotation { c: half, s: 0.5 * s / half }
-    } else {
-        let half = (0.5 * (1.0 - c)).sqrt().copysign(s);
-        Rotation { c: 0.5 * s / half, s: half }
-    }
+    let larger = (half * (T::one() + c.simd_abs())).simd_sqrt();
+    let smaller = half * s / larger;
+    let ahead = c.simd_ge(T::zero());
+    Rotation { c: larger.select(ahead, smaller.simd_abs()), s: smaller.select(ahead, larger.simd_copysign(s)) }
 }
 
 impl Elements for IncompatibleQuads {
     fn rotation_count(&self) -> usize {
-        self.quads.len()
+        self.nodes.len()
     }
 
     fn point_count(&self) -> usize {
-        4 * self.quads.len()
+        4 * self.nodes.len()
     }
 
     fn points_per_element(&self) -> usize {
@@ -363,25 +366,27 @@ impl Elements for IncompatibleQuads {
         mut matrix: Option<MatrixSum<'_>>,
     ) {
         let condensed = self.condensed(moduli);
-        for (e, (nodes, quad, k)) in self.with_twist(&condensed).enumerate() {
-            let u = u.relative(nodes);
+        let mu = Lanes::splat(moduli.mu);
+        let batches = self.nodes.batches().zip(self.quads.iter().zip(&condensed.stiffness));
+        for ((numbers, nodes), (quad, k)) in batches {
+            let u = u.relative_side_by_side(nodes);
             let h = quad.centre.displacement_gradient(&u);
-            let r = rotations.see(e, &h);
+            let r = rotations.see(numbers.all(), &h);
             let (strain, inverse_trace) = (warped_strain(r, &h), inverse_trace(r, &h));
-            let k = symmetric(k) * moduli.mu;
-            let twisted = Twisted::new(&k, back(r, quad.twist(&u)));
-            let stress = r.matrix() * moduli.stress(&strain) * quad.centre.area;
+            let k = symmetric(*k) * mu;
+            let twisted = Twisted::new(&k, r.apply_inverse(quad.twist(&u)));
+            let stress = product(&r.matrix(), &moduli.stress(&strain)) * quad.centre.area;
             let (twist, turn) = (r.apply(twisted.force), twisted.moment * inverse_trace);
-            let mut own = [Vector2::zeros(); 4];
+            let mut own = [zero_vector(); 4];
             for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
-                *own = stress * g + twist * *gamma + r.apply(quarter(*g)) * turn;
+                *own = apply(&stress, g) + twist * *gamma + r.apply(quarter(*g)) * turn;
             }
-            add_forces(nodes, own, force, magnitude);
+            add_forces(numbers.count, nodes, &own, force, magnitude);
             if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
-                let mut sum = ElementMatrix::ZERO;
-                sum.add(&quad.centre, r, quad.centre.tangent(moduli, strain.trace(), *tangent));
+                let mut sum = ElementMatrix::zero();
+                sum.add(&quad.centre, r, quad.centre.tangent(moduli, strain.m11 + strain.m22, *tangent));
                 add_twist(&mut sum, quad, &k, r, &twisted, inverse_trace, *tangent);
-                sum.scatter(e, slots, values);
+                sum.scatter(numbers.first, numbers.count, slots, values);
             }
         }
     }
@@ -394,7 +399,7 @@ impl Elements for IncompatibleQuads {
             let h = quad.centre.displacement_gradient(&own.map(|own| own.value));
             let k = symmetric(k) * moduli.mu;
             let q = Rounded::sum(&own, &quad.gamma);
-            let twisted = Twisted::new(&k, back(r, q.value));
+            let twisted = Twisted::new(&k, r.apply_inverse(q.value));
             let inverse_trace = inverse_trace(r, &h);
             // Turned back, |R| is its own transpose.
             let size = seen.turn * q.value.abs();
@@ -433,34 +438,42 @@ impl Elements for IncompatibleQuads {
         mut matrix: Option<MatrixSum<'_>>,
     ) {
         let condensed = self.condensed(moduli);
-        for (e, ((nodes, quad, k), r)) in self.with_twist(&condensed).zip(r0.iter().zip(r1)).enumerate() {
-            let (u, r) = ([u0.relative(nodes), u1.relative(nodes)], [*r.0, *r.1]);
+        let (half, mu) = (Lanes::splat(0.5), Lanes::splat(moduli.mu));
+        let batches = self.nodes.batches().zip(self.quads.iter().zip(&condensed.stiffness));
+        for ((numbers, nodes), (quad, k)) in batches {
+            let u = [u0, u1].map(|u| u.relative_side_by_side(nodes));
+            let r = [r0, r1].map(|r| rotations_at(r, numbers.all()));
             let h = u.map(|u| quad.centre.displacement_gradient(&u));
             let q = u.map(|u| quad.twist(&u));
             let between = DiscreteGradient::new(h, r);
             let stress = between.stress(moduli) * quad.centre.area;
-            let k = symmetric(k) * moduli.mu;
-            let half = half_turn(r);
+            let k = symmetric(*k) * mu;
+            let half_turn = half_turn(r);
             // R̄ = R₁ turned back by half the turn.
-            let middle = Rotation { c: r[1].c * half.c + r[1].s * half.s, s: r[1].s * half.c - r[1].c * half.s };
-            let mean = k * ((back(r[0], q[0]) + back(r[1], q[1])) * 0.5);
-            let sum_of_q = back(middle, q[0] + q[1]);
+            let middle = Rotation {
+                c: r[1].c * half_turn.c + r[1].s * half_turn.s,
+                s: r[1].s * half_turn.c - r[1].c * half_turn.s,
+            };
+            let mean = apply(&k, &((r[0].apply_inverse(q[0]) + r[1].apply_inverse(q[1])) * half));
+            let sum_of_q = middle.apply_inverse(q[0] + q[1]);
             // Where a rotation is undefined, in a body crushed to nothing, nothing follows. A bound on 1 / tr S would cost
             // energy that nobody has.
-            let traces = following(r[0], &h[0]).zip(following(r[1], &h[1]));
-            let inverse_sum = traces.map_or(0.0, |(t0, t1)| 1.0 / (t0 + t1).max(f64::MIN_POSITIVE));
-            let (twist, turn) = (middle.apply(mean) * half.c, -mean.dot(&quarter(sum_of_q)) * inverse_sum);
-            let mut own = [Vector2::zeros(); 4];
+            let [(t0, follows0), (t1, follows1)] = [following(r[0], &h[0]), following(r[1], &h[1])];
+            let inverse_sum = Lanes::ONE / (t0 + t1).simd_max(Lanes::splat(f64::MIN_POSITIVE));
+            let inverse_sum = inverse_sum.select(follows0 & follows1, Lanes::ZERO);
+            let (twist, turn) = (middle.apply(mean) * half_turn.c, -mean.dot(&quarter(sum_of_q)) * inverse_sum);
+            let mut own = [zero_vector(); 4];
             for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
-                *own = stress * g + twist * *gamma + middle.apply(quarter(*g)) * turn;
+                *own = apply(&stress, g) + twist * *gamma + middle.apply(quarter(*g)) * turn;
             }
-            add_forces(nodes, own, force, magnitude);
+            add_forces(numbers.count, nodes, &own, force, magnitude);
             if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
-                let mut sum = ElementMatrix::ZERO;
+                let mut sum = ElementMatrix::zero();
                 sum.add(&quad.centre, between.rotation, quad.centre.tangent(moduli, between.trace, *tangent));
-                let twisted = Twisted::new(&k, sum_of_q * 0.5);
-                add_twist(&mut sum, quad, &k, middle, &twisted, 2.0 * inverse_sum, *tangent);
-                sum.scatter(e, slots, values);
+                let twisted = Twisted::new(&k, sum_of_q * half);
+                let twice = inverse_sum + inverse_sum;
+                add_twist(&mut sum, quad, &k, middle, &twisted, twice, *tangent);
+                sum.scatter(numbers.first, numbers.count, slots, values);
             }
         }
     }
@@ -515,14 +528,14 @@ impl Elements for IncompatibleQuads {
                 *twist = g * q.transpose() + f.transpose() * *gamma;
             }
             let stiff = twist.map(|twist| twist.transpose() * k);
-            let mut sum = ElementMatrix::<4>::ZERO;
+            let mut sum = ElementMatrix::<4, f64>::zero();
             sum.add_blocks(|a, b| {
                 let (g, h) = (turned[a], turned[b]);
                 let plane =
                     g * h.transpose() * lambda + h * g.transpose() * mu + left * gradients[a].dot(&gradients[b]);
                 rows(&(plane * quad.centre.area + stiff[a] * twist[b]))
             });
-            sum.scatter(e, slots, values);
+            sum.scatter(e, 1, slots, values);
         }
     }
 
@@ -532,7 +545,7 @@ impl Elements for IncompatibleQuads {
         for ((nodes, quad, k), &r) in self.with_twist(&condensed).zip(r) {
             let u = u.relative(nodes);
             let strain = warped_strain(r, &quad.centre.displacement_gradient(&u));
-            let q = back(r, quad.twist(&u));
+            let q = r.apply_inverse(quad.twist(&u));
             energy += quad.centre.area * moduli.energy_density(&strain) + 0.5 * moduli.mu * q.dot(&(symmetric(k) * q));
         }
         energy
@@ -559,7 +572,7 @@ impl Elements for IncompatibleQuads {
         for (((nodes, quad), (points, modes)), &r) in self.elements().zip(modes).zip(r) {
             let u = gather(nodes, u);
             let (h, q) = (quad.centre.displacement_gradient(&u), quad.twist(&u));
-            let size = modes * back(r, q);
+            let size = modes * r.apply_inverse(q);
             let (first, second) = (Vector2::new(size[0], size[1]), Vector2::new(size[2], size[3]));
             for point in points {
                 let [twist, a, b] = point.gradients;

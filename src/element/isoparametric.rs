@@ -1,24 +1,27 @@
 //! Elements whose displacement is Σ uₐ Nₐ and whose energy is a sum over quadrature points, each with a rotation of its
 //! own: Müller and Gross 2004, article eq. (2).
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, SimdValue, Vector2};
 
+use super::connectivity::Connectivity;
 use super::matrix::{ElementMatrix, PointTangent};
 use super::rounding::{Rounded, RoundedPoint};
 use super::{
-    DiscreteGradient, ElementType, Elements, MatrixSum, Rotations, StrainRate, StrainVisitor, Tangent, warped_strain,
+    DiscreteGradient, ElementType, Elements, MatrixSum, Rotations, StrainRate, StrainVisitor, Tangent, rotations_at,
+    warped_strain,
 };
 use crate::displacement::Compensated;
+use crate::lanes::{LANES, Lanes, Number, lane, side_by_side, zero_matrix, zero_vector};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
-/// One quadrature point of an element with `N` nodes, at rest.
+/// One quadrature point of an element with `N` nodes, at rest; or of several elements, side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QuadraturePoint<const N: usize> {
+pub struct QuadraturePoint<const N: usize, T: Number = f64> {
     /// ∇Nₐ with respect to the rest position, 1/m.
-    pub gradients: [Vector2<f64>; N],
+    pub gradients: [Vector2<T>; N],
     /// Quadrature weight times Jacobian, m².
-    pub area: f64,
+    pub area: T,
 }
 
 /// Floor of tr S in G: one percent of its value at rest. Where the body is crushed to nothing tr S vanishes and G has no
@@ -39,20 +42,6 @@ impl<const N: usize> QuadraturePoint<N> {
         Self { gradients, area: weight * jacobian.determinant() }
     }
 
-    /// The displacement gradient H = F − I = Σ uₐ ⊗ ∇Nₐ, which is Σ (uₐ − u₁) ⊗ ∇Nₐ.
-    ///
-    /// From displacements, not positions, and from differences of these: small strains keep their digits however large
-    /// the coordinates and however far the element is carried.
-    #[must_use]
-    #[inline(always)]
-    pub fn displacement_gradient(&self, u: &[Vector2<f64>; N]) -> Matrix2<f64> {
-        let mut h = Matrix2::zeros();
-        for (own, g) in u.iter().zip(&self.gradients).skip(1) {
-            h += (own - u[0]) * g.transpose();
-        }
-        h
-    }
-
     /// The warped element force R Ke (Rᵀ x − X), N, given the displacement gradient: the first Piola–Kirchhoff stress R T
     /// of the corotated energy times the point's area, applied to ∇Nₐ.
     #[must_use]
@@ -68,6 +57,38 @@ impl<const N: usize> QuadraturePoint<N> {
         let shear = Matrix2::identity() * g.dot(&h) + h * g.transpose();
         (g * h.transpose() * moduli.lambda + shear * moduli.mu) * self.area
     }
+}
+
+impl<const N: usize> QuadraturePoint<N, Lanes> {
+    /// Those of several elements.
+    pub(super) fn side_by_side(own: [QuadraturePoint<N>; LANES]) -> Self {
+        Self {
+            gradients: std::array::from_fn(|a| side_by_side(own.map(|point| point.gradients[a]))),
+            area: own.map(|point| point.area).into(),
+        }
+    }
+
+    /// That of the element in this lane.
+    #[inline]
+    pub(super) fn lane(&self, of: usize) -> QuadraturePoint<N> {
+        QuadraturePoint { gradients: self.gradients.map(|g| lane(&g, of)), area: self.area.extract(of) }
+    }
+}
+
+impl<const N: usize, T: Number> QuadraturePoint<N, T> {
+    /// The displacement gradient H = F − I = Σ uₐ ⊗ ∇Nₐ, which is Σ (uₐ − u₁) ⊗ ∇Nₐ.
+    ///
+    /// From displacements, not positions, and from differences of these: small strains keep their digits however large
+    /// the coordinates and however far the element is carried.
+    #[must_use]
+    #[inline(always)]
+    pub fn displacement_gradient(&self, u: &[Vector2<T>; N]) -> Matrix2<T> {
+        let mut h = zero_matrix();
+        for (own, g) in u.iter().zip(&self.gradients).skip(1) {
+            h += outer(&(own - u[0]), g);
+        }
+        h
+    }
 
     /// What this point's part of a tangent is made of; `trace` is that of the strain.
     ///
@@ -78,110 +99,135 @@ impl<const N: usize> QuadraturePoint<N> {
     /// turn, T the Biot stress: tension makes it positive, compression negative. In the plane a quarter turn exchanges
     /// the components of g, so that with s = ½ v tr T / tr S it turns μ into μ + s and μ − s, at no further cost.
     #[inline(always)]
-    pub(super) fn tangent(&self, moduli: Lame, trace: f64, tangent: Tangent) -> PointTangent {
+    pub(super) fn tangent(&self, moduli: Lame, trace: T, tangent: Tangent) -> PointTangent<T> {
         let Lame { lambda, mu } = moduli;
-        let ratio = (mu + lambda) * trace / (2.0 + trace).max(SMALLEST_STRETCH_TRACE);
-        let ratio = if tangent.definite { ratio.max(0.0) } else { ratio };
-        let (lambda, mu, s) = (tangent.warped * lambda, tangent.warped * mu, tangent.geometric * ratio);
-        let [axial, lambda, plus, minus] = [lambda + 2.0 * mu, lambda, mu + s, mu - s].map(|v| self.area * v);
+        let stretch = (T::splat(2.0) + trace).simd_max(T::splat(SMALLEST_STRETCH_TRACE));
+        let ratio = T::splat(mu + lambda) * trace / stretch;
+        let ratio = if tangent.definite { ratio.simd_max(T::zero()) } else { ratio };
+        let s = T::splat(tangent.geometric) * ratio;
+        let [axial, lambda, mu] = [lambda + 2.0 * mu, lambda, mu].map(|v| T::splat(tangent.warped * v));
+        let [axial, lambda, plus, minus] = [axial, lambda, mu + s, mu - s].map(|v| self.area * v);
         PointTangent { axial, lambda, plus, minus }
     }
+}
+
+/// v wᵀ.
+#[inline(always)]
+pub(super) fn outer<T: Number>(v: &Vector2<T>, w: &Vector2<T>) -> Matrix2<T> {
+    Matrix2::new(v.x * w.x, v.x * w.y, v.y * w.x, v.y * w.y)
+}
+
+/// M v.
+#[inline(always)]
+pub(super) fn apply<T: Number>(m: &Matrix2<T>, v: &Vector2<T>) -> Vector2<T> {
+    Vector2::new(m.m11 * v.x + m.m12 * v.y, m.m21 * v.x + m.m22 * v.y)
+}
+
+/// A B.
+#[inline(always)]
+pub(super) fn product<T: Number>(a: &Matrix2<T>, b: &Matrix2<T>) -> Matrix2<T> {
+    let columns = [Vector2::new(b.m11, b.m21), Vector2::new(b.m12, b.m22)].map(|column| apply(a, &column));
+    Matrix2::new(columns[0].x, columns[1].x, columns[0].y, columns[1].y)
 }
 
 /// Elements of `N` nodes with `Q` quadrature points.
 #[derive(Debug)]
 pub struct Isoparametric<const N: usize, const Q: usize> {
-    nodes: Vec<[u32; N]>,
-    points: Vec<[QuadraturePoint<N>; Q]>,
+    nodes: Connectivity<N>,
+    /// Side by side.
+    points: Vec<[QuadraturePoint<N, Lanes>; Q]>,
+}
+
+/// How a sweep sees a quadrature point.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    /// R.
+    rotation: Rotation<Lanes>,
+    /// Trace of the strain.
+    trace: Lanes,
+    /// First Piola–Kirchhoff stress, times the thickness, N/m.
+    stress: Matrix2<Lanes>,
 }
 
 impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
     /// The elements of this kind with these rest nodes and node numbers.
     #[must_use]
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], connectivity: &[u32]) -> Self {
-        let mut numbers = Vec::with_capacity(connectivity.len() / N);
-        let mut points = Vec::with_capacity(connectivity.len() / N);
-        for own in connectivity.chunks_exact(N) {
-            let mut number = [0; N];
-            number.copy_from_slice(own);
-            let rest = number.map(|n| nodes[n as usize]);
-            numbers.push(number);
-            points.push(std::array::from_fn(|q| {
+        let numbers = Connectivity::new(connectivity);
+        let points = numbers.batches().map(|(_, own)| {
+            std::array::from_fn(|q| {
                 let rule = element.points[q];
-                QuadraturePoint::new(element, &rest, rule.at, rule.weight)
-            }));
-        }
-        Self { nodes: numbers, points }
+                let point = |lane: usize| {
+                    let rest = own.map(|node| nodes[node[lane] as usize]);
+                    QuadraturePoint::new(element, &rest, rule.at, rule.weight)
+                };
+                QuadraturePoint::side_by_side(std::array::from_fn(point))
+            })
+        });
+        Self { points: points.collect(), nodes: numbers }
     }
 
     /// Every element's nodes and quadrature points.
-    fn elements(&self) -> impl Iterator<Item = (&[u32; N], &[QuadraturePoint<N>; Q])> {
-        self.nodes.iter().zip(&self.points)
+    fn elements(&self) -> impl Iterator<Item = (&[u32; N], [QuadraturePoint<N>; Q])> {
+        let points = self.points.iter().flat_map(|points| (0..LANES).map(|lane| points.map(|point| point.lane(lane))));
+        self.nodes.iter().zip(points)
     }
 
     /// Every element's nodes, points and rotations.
     fn turned<'a>(
         &'a self,
         r: &'a [Rotation],
-    ) -> impl Iterator<Item = (&'a [u32; N], &'a [QuadraturePoint<N>; Q], &'a [Rotation])> {
+    ) -> impl Iterator<Item = (&'a [u32; N], [QuadraturePoint<N>; Q], &'a [Rotation])> {
         self.elements().zip(r.chunks_exact(Q)).map(|((nodes, points), r)| (nodes, points, r))
     }
 
-    /// One sweep: `look` finds what is to be known of an element's points, and `seen` makes of it how a point is seen.
-    ///
-    /// A batch of elements is looked at before the first of them is worked on: the divisions and roots of one rotation
-    /// overlap with those of the next, instead of every element waiting for its own.
+    /// One sweep: `gather` takes from the nodes what `look` sees a quadrature point with.
     #[inline(always)]
-    fn sweep<L: Copy>(
+    fn sweep<D>(
         &self,
-        (mut look, none): (impl FnMut(usize, &[u32; N], &[QuadraturePoint<N>; Q]) -> [L; Q], L),
-        seen: impl Fn(&L) -> Seen,
+        gather: impl Fn(&[[u32; LANES]; N]) -> D,
+        mut look: impl FnMut(&D, [usize; LANES], &QuadraturePoint<N, Lanes>) -> Seen,
         moduli: Lame,
         force: &mut [Vector2<f64>],
         magnitude: &mut [Vector2<f64>],
         mut matrix: Option<MatrixSum<'_>>,
     ) {
-        let batches = self.nodes.chunks(BATCH).zip(self.points.chunks(BATCH));
-        for (first, (nodes, points)) in (0..).step_by(BATCH).zip(batches) {
-            let mut looks = [[none; Q]; BATCH];
-            for (i, (looks, (nodes, points))) in looks.iter_mut().zip(nodes.iter().zip(points)).enumerate() {
-                *looks = look(first + i, nodes, points);
+        for ((numbers, nodes), points) in self.nodes.batches().zip(&self.points) {
+            let gathered = gather(nodes);
+            let mut own = [zero_vector(); N];
+            let mut sum = ElementMatrix::zero();
+            for (q, point) in points.iter().enumerate() {
+                let Seen { rotation, trace, stress } = look(&gathered, numbers.points(Q, q), point);
+                let stress = stress * point.area;
+                own.iter_mut().zip(&point.gradients).for_each(|(own, g)| *own += apply(&stress, g));
+                if let Some(MatrixSum { tangent, .. }) = &matrix {
+                    sum.add(point, rotation, point.tangent(moduli, trace, *tangent));
+                }
             }
-            for (i, (looks, (nodes, points))) in looks.iter().zip(nodes.iter().zip(points)).enumerate() {
-                let mut own = [Vector2::zeros(); N];
-                let mut sum = ElementMatrix::ZERO;
-                for (point, look) in points.iter().zip(looks) {
-                    let Seen { rotation, trace, stress } = seen(look);
-                    let stress = stress * point.area;
-                    own.iter_mut().zip(&point.gradients).for_each(|(own, g)| *own += stress * g);
-                    if let Some(MatrixSum { tangent, .. }) = &matrix {
-                        sum.add(point, rotation, point.tangent(moduli, trace, *tangent));
-                    }
-                }
-                for (&node, f) in nodes.iter().zip(own) {
-                    force[node as usize] += f;
-                    magnitude[node as usize] += f.abs();
-                }
-                if let Some(MatrixSum { slots, values, .. }) = &mut matrix {
-                    sum.scatter(first + i, slots, values);
-                }
+            add_forces(numbers.count, nodes, &own, force, magnitude);
+            if let Some(MatrixSum { slots, values, .. }) = &mut matrix {
+                sum.scatter(numbers.first, numbers.count, slots, values);
             }
         }
     }
 }
 
-/// Elements of a batch; see [`Isoparametric::sweep`].
-const BATCH: usize = 8;
-
-/// How a sweep sees a quadrature point.
-#[derive(Clone, Copy, Debug)]
-struct Seen {
-    /// R.
-    rotation: Rotation,
-    /// Trace of the strain.
-    trace: f64,
-    /// First Piola–Kirchhoff stress, times the thickness, N/m.
-    stress: Matrix2<f64>,
+/// Adds the nodal forces of so many elements, and their absolute values.
+#[inline(always)]
+pub(super) fn add_forces<const N: usize>(
+    count: usize,
+    nodes: &[[u32; LANES]; N],
+    own: &[Vector2<Lanes>; N],
+    force: &mut [Vector2<f64>],
+    magnitude: &mut [Vector2<f64>],
+) {
+    for l in 0..count {
+        for (node, own) in nodes.iter().zip(own) {
+            let (node, f) = (node[l] as usize, lane(own, l));
+            force[node] += f;
+            magnitude[node] += f.abs();
+        }
+    }
 }
 
 #[inline(always)]
@@ -197,7 +243,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     }
 
     fn point_count(&self) -> usize {
-        Q * self.points.len()
+        Q * self.nodes.len()
     }
 
     fn points_per_element(&self) -> usize {
@@ -209,7 +255,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     }
 
     fn point_area(&self, point: usize) -> f64 {
-        self.points[point / Q][point % Q].area
+        self.points[point / Q / LANES][point % Q].area.extract(point / Q % LANES)
     }
 
     fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]) {
@@ -230,21 +276,15 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
     ) {
-        let none = (Rotation::IDENTITY, Matrix2::zeros());
-        let look = |e: usize, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
-            let u = u.relative(nodes);
-            let mut looks = [none; Q];
-            for (q, (look, point)) in looks.iter_mut().zip(points).enumerate() {
-                let h = point.displacement_gradient(&u);
-                *look = (rotations.see(e * Q + q, &h), h);
-            }
-            looks
-        };
-        let seen = |&(rotation, h): &(Rotation, Matrix2<f64>)| {
+        let gather = |nodes: &[[u32; LANES]; N]| u.relative_side_by_side(nodes);
+        let look = |u: &[Vector2<Lanes>; N], numbers, point: &QuadraturePoint<N, Lanes>| {
+            let h = point.displacement_gradient(u);
+            let rotation = rotations.see(numbers, &h);
             let strain = warped_strain(rotation, &h);
-            Seen { rotation, trace: strain.trace(), stress: rotation.matrix() * moduli.stress(&strain) }
+            let stress = product(&rotation.matrix(), &moduli.stress(&strain));
+            Seen { rotation, trace: strain.m11 + strain.m22, stress }
         };
-        self.sweep((look, none), seen, moduli, force, magnitude, matrix);
+        self.sweep(gather, look, moduli, force, magnitude, matrix);
     }
 
     fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]) {
@@ -271,28 +311,19 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         magnitude: &mut [Vector2<f64>],
         matrix: Option<MatrixSum<'_>>,
     ) {
-        let none = DiscreteGradient::new([Matrix2::zeros(); 2], [Rotation::IDENTITY; 2]);
-        let look = |e: usize, nodes: &[u32; N], points: &[QuadraturePoint<N>; Q]| {
-            let (u0, u1) = (u0.relative(nodes), u1.relative(nodes));
-            let mut looks = [none; Q];
-            for (q, (look, point)) in looks.iter_mut().zip(points).enumerate() {
-                let h = [point.displacement_gradient(&u0), point.displacement_gradient(&u1)];
-                *look = DiscreteGradient::new(h, [r0[e * Q + q], r1[e * Q + q]]);
-            }
-            looks
+        let gather = |nodes: &[[u32; LANES]; N]| [u0, u1].map(|u| u.relative_side_by_side(nodes));
+        let look = |u: &[[Vector2<Lanes>; N]; 2], numbers, point: &QuadraturePoint<N, Lanes>| {
+            let h = [point.displacement_gradient(&u[0]), point.displacement_gradient(&u[1])];
+            let between = DiscreteGradient::new(h, [rotations_at(r0, numbers), rotations_at(r1, numbers)]);
+            Seen { rotation: between.rotation, trace: between.trace, stress: between.stress(moduli) }
         };
-        let seen = |between: &DiscreteGradient| Seen {
-            rotation: between.rotation,
-            trace: between.trace,
-            stress: between.stress(moduli),
-        };
-        self.sweep((look, none), seen, moduli, force, magnitude, matrix);
+        self.sweep(gather, look, moduli, force, magnitude, matrix);
     }
 
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {
         for (nodes, points) in self.elements() {
             let own = gather(nodes, u);
-            for point in points {
+            for point in &points {
                 let f = Matrix2::identity() + point.displacement_gradient(&own);
                 let rate = match rate {
                     StrainRate::Difference(terms) => {
@@ -320,8 +351,8 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         let Lame { lambda, mu } = moduli;
         for (e, (nodes, points)) in self.elements().enumerate() {
             let own = gather(nodes, u);
-            let mut sum = ElementMatrix::<N>::ZERO;
-            for point in points {
+            let mut sum = ElementMatrix::<N, f64>::zero();
+            for point in &points {
                 let f = Matrix2::identity() + point.displacement_gradient(&own);
                 let left = f * f.transpose();
                 // With g = F ∇Nₐ and h = F ∇N_b the block is λ g hᵀ + μ h gᵀ + μ (∇Nₐ·∇N_b) F Fᵀ.
@@ -333,7 +364,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
                     [block.m11, block.m12, block.m21, block.m22].map(|k| k * point.area)
                 });
             }
-            sum.scatter(e, slots, values);
+            sum.scatter(e, 1, slots, values);
         }
     }
 
@@ -352,7 +383,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         let mut smallest = f64::INFINITY;
         for (nodes, points) in self.elements() {
             let u = gather(nodes, u);
-            for point in points {
+            for point in &points {
                 let h = point.displacement_gradient(&u);
                 smallest = smallest.min((1.0 + h.m11) * (1.0 + h.m22) - h.m12 * h.m21);
             }

@@ -5,11 +5,13 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::displacement::Compensated;
+use crate::lanes::{LANES, Lanes, Number, one_plus};
 use crate::material::Lame;
-use crate::rotation::{Rotation, polar_or};
+use crate::rotation::{Rotation, polar_or_else};
 use crate::scene::ElementKind;
 
 pub mod cell;
+mod connectivity;
 mod discrete_gradient;
 mod incompatible;
 mod isoparametric;
@@ -205,18 +207,29 @@ pub enum Rotations<'a> {
 }
 
 impl Rotations<'_> {
-    /// The rotation of this number, whose displacement gradient is H.
+    /// Those of these numbers, whose displacement gradients are H.
     #[inline(always)]
-    fn see(&mut self, number: usize, h: &Matrix2<f64>) -> Rotation {
+    fn see(&mut self, numbers: [usize; LANES], h: &Matrix2<Lanes>) -> Rotation<Lanes> {
         match self {
-            Self::Given(r) => r[number],
+            Self::Given(r) => rotations_at(r, numbers),
             Self::Follow(r) => {
-                let rotation = polar_or(&(Matrix2::identity() + h), r[number]);
-                r[number] = rotation;
+                let rotation = polar_or_else(&one_plus(h), || rotations_at(r, numbers));
+                let (c, s): ([f64; LANES], [f64; LANES]) = (rotation.c.into(), rotation.s.into());
+                for ((number, c), s) in numbers.into_iter().zip(c).zip(s) {
+                    r[number] = Rotation { c, s };
+                }
                 rotation
             }
         }
     }
+}
+
+/// The rotations of these numbers, side by side.
+#[inline(always)]
+fn rotations_at(r: &[Rotation], numbers: [usize; LANES]) -> Rotation<Lanes> {
+    let [a, b, c, d] = numbers;
+    let [a, b, c, d] = [r[a], r[b], r[c], r[d]];
+    Rotation { c: [a.c, b.c, c.c, d.c].into(), s: [a.s, b.s, c.s, d.s].into() }
 }
 
 /// How fast Green's strain E = ½ (FᵀF − I) changes, 1/s.
@@ -310,12 +323,18 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
 /// under small rotations keep their digits.
 #[must_use]
 #[inline(always)]
-pub fn warped_strain(r: Rotation, h: &Matrix2<f64>) -> Matrix2<f64> {
+pub fn warped_strain<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> Matrix2<T> {
     let (c, s) = (r.c, r.s);
-    let c_minus_1 = if c > 0.0 { -s * s / (1.0 + c) } else { c - 1.0 };
+    let c_minus_1 = cosine_minus_1(r);
     let xx = c_minus_1 + c * h.m11 + s * h.m21;
     let yy = c_minus_1 - s * h.m12 + c * h.m22;
     // The ±s of Rᵀ cancel in the symmetric part.
-    let xy = 0.5 * (c * (h.m12 + h.m21) + s * (h.m22 - h.m11));
+    let xy = T::splat(0.5) * (c * (h.m12 + h.m21) + s * (h.m22 - h.m11));
     Matrix2::new(xx, xy, xy, yy)
+}
+
+/// c − 1 to the last digits: −s²/(1 + c).
+#[inline(always)]
+fn cosine_minus_1<T: Number>(Rotation { c, s }: Rotation<T>) -> T {
+    (-s * s / (T::one() + c)).select(c.simd_gt(T::zero()), c - T::one())
 }

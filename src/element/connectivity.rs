@@ -1,0 +1,43 @@
+//! Which nodes elements have: one by one, and side by side.
+
+use crate::lanes::{LANES, Numbers};
+
+/// The nodes of elements of `N` nodes.
+#[derive(Debug)]
+pub(super) struct Connectivity<const N: usize> {
+    elements: Vec<[u32; N]>,
+    /// Those in all lanes, node by node.
+    batches: Vec<[[u32; LANES]; N]>,
+}
+
+impl<const N: usize> Connectivity<N> {
+    /// From node numbers, element by element.
+    pub fn new(numbers: &[u32]) -> Self {
+        let (elements, _) = numbers.as_chunks::<N>();
+        let batches = elements.chunks(LANES).map(|own| {
+            let lanes = Numbers { first: 0, count: own.len() }.all();
+            std::array::from_fn(|a| lanes.map(|lane| own[lane][a]))
+        });
+        Self { batches: batches.collect(), elements: elements.to_vec() }
+    }
+
+    /// How many elements.
+    pub fn len(&self) -> usize {
+        self.elements.len()
+    }
+
+    /// Of every element.
+    pub fn iter(&self) -> std::slice::Iter<'_, [u32; N]> {
+        self.elements.iter()
+    }
+
+    /// Of all elements, as many at once as there are lanes.
+    #[inline(always)]
+    pub fn batches(&self) -> impl Iterator<Item = (Numbers, &[[u32; LANES]; N])> {
+        let count = self.elements.len();
+        self.batches.iter().enumerate().map(move |(batch, nodes)| {
+            let first = batch * LANES;
+            (Numbers { first, count: LANES.min(count - first) }, nodes)
+        })
+    }
+}

@@ -1,0 +1,79 @@
+//! Numbers side by side: element loops work on [`LANES`] elements at once, one in each lane of a vector register.
+
+use nalgebra::{Matrix2, Scalar, SimdRealField, SimdValue, Vector2};
+use simba::simd::WideF64x4;
+
+/// One number of each of several elements.
+pub type Lanes = WideF64x4;
+
+/// How many.
+pub const LANES: usize = <Lanes as SimdValue>::LANES;
+
+/// An `f64`, or [`Lanes`] of them: what is written for one element is computed for several.
+pub trait Number: Scalar + Copy + SimdRealField<Element = f64> {}
+
+impl<T: Scalar + Copy + SimdRealField<Element = f64>> Number for T {}
+
+/// Which elements are in the lanes: so many from `first` on. Where these are fewer than lanes the last one is there again.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Numbers {
+    pub first: usize,
+    pub count: usize,
+}
+
+impl Numbers {
+    /// The element in every lane.
+    #[inline(always)]
+    pub fn all(self) -> [usize; LANES] {
+        let mut all = [self.first; LANES];
+        all.iter_mut().enumerate().for_each(|(lane, number)| *number += lane.min(self.count - 1));
+        all
+    }
+
+    /// This quadrature point, of so many, of the element in every lane.
+    #[inline(always)]
+    pub fn points(self, of: usize, point: usize) -> [usize; LANES] {
+        let mut all = self.all();
+        all.iter_mut().for_each(|number| *number = of * *number + point);
+        all
+    }
+}
+
+/// The vector 0: nalgebra's own passes registers through memory.
+#[inline(always)]
+pub(crate) fn zero_vector<T: Number>() -> Vector2<T> {
+    Vector2::new(T::zero(), T::zero())
+}
+
+/// The matrix 0.
+#[inline(always)]
+pub(crate) fn zero_matrix<T: Number>() -> Matrix2<T> {
+    Matrix2::new(T::zero(), T::zero(), T::zero(), T::zero())
+}
+
+/// I + H.
+#[inline(always)]
+pub(crate) fn one_plus<T: Number>(h: &Matrix2<T>) -> Matrix2<T> {
+    Matrix2::new(T::one() + h.m11, h.m12, h.m21, T::one() + h.m22)
+}
+
+/// Vectors of several elements, side by side.
+#[must_use]
+#[inline(always)]
+pub(crate) fn side_by_side([a, b, c, d]: [Vector2<f64>; LANES]) -> Vector2<Lanes> {
+    Vector2::new([a.x, b.x, c.x, d.x].into(), [a.y, b.y, c.y, d.y].into())
+}
+
+/// The vectors of these nodes, side by side.
+#[must_use]
+#[inline(always)]
+pub(crate) fn gather(all: &[Vector2<f64>], [a, b, c, d]: [u32; LANES]) -> Vector2<Lanes> {
+    side_by_side([all[a as usize], all[b as usize], all[c as usize], all[d as usize]])
+}
+
+/// The vector in this lane.
+#[must_use]
+#[inline(always)]
+pub(crate) fn lane<T: Number>(v: &Vector2<T>, lane: usize) -> Vector2<f64> {
+    Vector2::new(v.x.extract(lane), v.y.extract(lane))
+}
