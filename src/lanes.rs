@@ -39,24 +39,6 @@ impl Numbers {
     }
 }
 
-/// The vector 0: nalgebra's own passes registers through memory.
-#[inline(always)]
-pub(crate) fn zero_vector<T: Number>() -> Vector2<T> {
-    Vector2::new(T::zero(), T::zero())
-}
-
-/// The matrix 0.
-#[inline(always)]
-pub(crate) fn zero_matrix<T: Number>() -> Matrix2<T> {
-    Matrix2::new(T::zero(), T::zero(), T::zero(), T::zero())
-}
-
-/// I + H.
-#[inline(always)]
-pub(crate) fn one_plus<T: Number>(h: &Matrix2<T>) -> Matrix2<T> {
-    Matrix2::new(T::one() + h.m11, h.m12, h.m21, T::one() + h.m22)
-}
-
 /// Vectors of several elements, side by side.
 #[must_use]
 #[inline(always)]
@@ -76,4 +58,43 @@ pub(crate) fn gather(all: &[Vector2<f64>], [a, b, c, d]: [u32; LANES]) -> Vector
 #[inline(always)]
 pub(crate) fn lane<T: Number>(v: &Vector2<T>, lane: usize) -> Vector2<f64> {
     Vector2::new(v.x.extract(lane), v.y.extract(lane))
+}
+
+// What follows nalgebra has too, but passes registers through memory for it.
+
+/// The vector 0.
+#[inline(always)]
+pub(crate) fn zero_vector<T: Number>() -> Vector2<T> {
+    Vector2::new(T::zero(), T::zero())
+}
+
+/// The matrix 0.
+#[inline(always)]
+pub(crate) fn zero_matrix<T: Number>() -> Matrix2<T> {
+    Matrix2::new(T::zero(), T::zero(), T::zero(), T::zero())
+}
+
+/// I + H.
+#[inline(always)]
+pub(crate) fn one_plus<T: Number>(h: &Matrix2<T>) -> Matrix2<T> {
+    Matrix2::new(T::one() + h.m11, h.m12, h.m21, T::one() + h.m22)
+}
+
+/// v wᵀ.
+#[inline(always)]
+pub(crate) fn outer<T: Number>(v: &Vector2<T>, w: &Vector2<T>) -> Matrix2<T> {
+    Matrix2::new(v.x * w.x, v.x * w.y, v.y * w.x, v.y * w.y)
+}
+
+/// M v.
+#[inline(always)]
+pub(crate) fn apply<T: Number>(m: &Matrix2<T>, v: &Vector2<T>) -> Vector2<T> {
+    Vector2::new(m.m11 * v.x + m.m12 * v.y, m.m21 * v.x + m.m22 * v.y)
+}
+
+/// A B.
+#[inline(always)]
+pub(crate) fn product<T: Number>(a: &Matrix2<T>, b: &Matrix2<T>) -> Matrix2<T> {
+    let columns = [Vector2::new(b.m11, b.m21), Vector2::new(b.m12, b.m22)].map(|column| apply(a, &column));
+    Matrix2::new(columns[0].x, columns[1].x, columns[0].y, columns[1].y)
 }

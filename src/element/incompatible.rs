@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use nalgebra::{Matrix2, Matrix4, Matrix4x2, SimdPartialOrd, SimdValue, Vector2};
 
 use super::connectivity::Connectivity;
-use super::isoparametric::{SMALLEST_STRETCH_TRACE, add_forces, apply, gather, product};
+use super::isoparametric::{SMALLEST_STRETCH_TRACE, add_forces, gather};
 use super::matrix::ElementMatrix;
 use super::rounding::{Rounded, RoundedPoint, UNIT};
 use super::{
@@ -13,7 +13,7 @@ use super::{
     rotations_at, warped_strain,
 };
 use crate::displacement::Compensated;
-use crate::lanes::{LANES, Lanes, Number, one_plus, zero_vector};
+use crate::lanes::{LANES, Lanes, Number, apply, one_plus, product, zero_vector};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 

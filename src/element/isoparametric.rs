@@ -11,7 +11,7 @@ use super::{
     warped_strain,
 };
 use crate::displacement::Compensated;
-use crate::lanes::{LANES, Lanes, Number, lane, side_by_side, zero_matrix, zero_vector};
+use crate::lanes::{LANES, Lanes, Number, apply, lane, outer, product, side_by_side, zero_matrix, zero_vector};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
@@ -109,25 +109,6 @@ impl<const N: usize, T: Number> QuadraturePoint<N, T> {
         let [axial, lambda, plus, minus] = [axial, lambda, mu + s, mu - s].map(|v| self.area * v);
         PointTangent { axial, lambda, plus, minus }
     }
-}
-
-/// v wᵀ.
-#[inline(always)]
-pub(super) fn outer<T: Number>(v: &Vector2<T>, w: &Vector2<T>) -> Matrix2<T> {
-    Matrix2::new(v.x * w.x, v.x * w.y, v.y * w.x, v.y * w.y)
-}
-
-/// M v.
-#[inline(always)]
-pub(super) fn apply<T: Number>(m: &Matrix2<T>, v: &Vector2<T>) -> Vector2<T> {
-    Vector2::new(m.m11 * v.x + m.m12 * v.y, m.m21 * v.x + m.m22 * v.y)
-}
-
-/// A B.
-#[inline(always)]
-pub(super) fn product<T: Number>(a: &Matrix2<T>, b: &Matrix2<T>) -> Matrix2<T> {
-    let columns = [Vector2::new(b.m11, b.m21), Vector2::new(b.m12, b.m22)].map(|column| apply(a, &column));
-    Matrix2::new(columns[0].x, columns[1].x, columns[0].y, columns[1].y)
 }
 
 /// Elements of `N` nodes with `Q` quadrature points.
