@@ -144,6 +144,38 @@ fn a_swing_is_studied() {
     assert!(study.fastest_within(0.5 * own).is_none());
 }
 
+/// The bar of a motion's study goes forward all the time. Called off among what is timed, or among what is not, it keeps
+/// what has been measured.
+#[test]
+fn a_study_of_a_motion_says_how_far_it_is_and_keeps_what_is_measured() {
+    let scene = scene_with("swing", &["dynamics.duration=0.1"]);
+    let until = |is_enough: &dyn Fn(usize, usize) -> bool| {
+        let (mut last, mut timed, mut meshes) = (0.0, 0, Vec::new());
+        let mut observe = |progress: warpbeam::study::Progress<'_>| {
+            assert!((last..=1.0).contains(&progress.fraction), "from {last} to {}", progress.fraction);
+            last = progress.fraction;
+            let now = progress.now.to_owned();
+            if now.ends_with("its settings' paths") {
+                meshes.push(now);
+                meshes.dedup();
+            } else {
+                timed += usize::from(!meshes.is_empty());
+            }
+            if is_enough(meshes.len(), timed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let study = MotionStudy::new(&scene, Extent::Quick, &mut observe).unwrap();
+        assert!(!study.front().is_empty() && !study.summary().contains("NaN"));
+        let mut meshes: Vec<_> = study.measurements.iter().map(|m| (m.setting.element, m.setting.cells)).collect();
+        meshes.dedup();
+        (study.is_partial, meshes.len(), study.measurements.len())
+    };
+    // Told that it is measured, the fourth setting is not any more.
+    assert_eq!(until(&|_, timed| timed == 4), (true, 1, 3));
+    let (is_partial, meshes, measured) = until(&|meshes, _| meshes == 2);
+    assert!(is_partial && meshes == 1 && measured > 20, "{is_partial} {meshes} {measured}");
+    assert_eq!(until(&|_, _| false), (false, 6, 6 * measured));
+}
+
 /// The reference against a trajectory computed independently on the same mesh: `tests/data/swing.py`.
 #[test]
 fn the_reference_is_the_truth() {

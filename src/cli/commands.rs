@@ -292,13 +292,13 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     };
     let entries = parallel::map(
         &cases,
-        |case| case.solve().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
+        |case, _| case.solve().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
         observe,
     );
     let entries: Vec<_> = entries.into_iter().flatten().collect::<Result<_, _>>()?;
     let motions = parallel::map(
         &motion_cases,
-        |case| case.run().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
+        |case, _| case.run().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
         |done| observe(cases.len() + done),
     );
     let motions: Vec<_> = motions.into_iter().flatten().collect::<Result<_, _>>()?;

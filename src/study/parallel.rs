@@ -11,30 +11,43 @@ use rayon::prelude::*;
 /// Time after which an observer is asked again, though nothing is done.
 const ASK: Duration = Duration::from_millis(50);
 
+/// Whether work was called off: asked by work that takes long, to end early.
+#[derive(Debug, Default)]
+pub struct CalledOff(AtomicBool);
+
+impl CalledOff {
+    /// [`ControlFlow::Break`] once it was.
+    pub fn flow(&self) -> ControlFlow<()> {
+        if self.0.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
 /// Works on all items on all cores, and returns what comes of them in their order. `observe` is told on the calling
-/// thread how many are done, and calls the rest off: of items that were not begun then there is `None`.
+/// thread how many are done, and calls the rest off: of items that were not begun then there is `None`, and those that
+/// were are told.
 pub fn map<T: Sync, R: Send>(
     items: &[T],
-    work: impl Fn(&T) -> R + Sync,
+    work: impl Fn(&T, &CalledOff) -> R + Sync,
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Vec<Option<R>> {
-    let called_off = AtomicBool::new(false);
+    let called_off = CalledOff::default();
     let (sender, receiver) = mpsc::channel();
     let one = |sender: &mut mpsc::Sender<()>, item: &T| {
-        if called_off.load(Ordering::Relaxed) {
+        if called_off.flow().is_break() {
             return None;
         }
-        let result = work(item);
+        let result = work(item, &called_off);
         // Nobody listens any more only where the caller panics.
         let _ = sender.send(());
         Some(result)
     };
     thread::scope(|scope| {
-        let worker = scope.spawn(|| items.par_iter().map_with(sender, one).collect());
+        // One by one: items are few and long beside what a task costs.
+        let worker = scope.spawn(|| items.par_iter().with_max_len(1).map_with(sender, one).collect());
         let mut done = 0;
         loop {
             if observe(done).is_break() {
-                called_off.store(true, Ordering::Relaxed);
+                called_off.0.store(true, Ordering::Relaxed);
             }
             match receiver.recv_timeout(ASK) {
                 Ok(()) => done += 1,
@@ -53,9 +66,9 @@ mod tests {
     #[test]
     fn results_come_in_order_and_work_is_called_off() {
         let items: Vec<u32> = (0..1000).collect();
-        let squares = map(&items, |n| n * n, |_| ControlFlow::Continue(()));
+        let squares = map(&items, |n, _| n * n, |_| ControlFlow::Continue(()));
         assert!(squares.iter().zip(&items).all(|(square, n)| *square == Some(n * n)));
-        let slow = |n: &u32| {
+        let slow = |n: &u32, _: &CalledOff| {
             thread::sleep(Duration::from_millis(1));
             *n
         };
@@ -64,5 +77,21 @@ mod tests {
         let done = some.iter().flatten().count();
         assert!(some.len() == items.len() && (10..items.len()).contains(&done), "{done}");
         assert!(some.iter().zip(&items).all(|(result, n)| result.is_none_or(|result| result == *n)));
+    }
+
+    #[test]
+    fn work_that_has_begun_is_told_that_it_is_called_off() {
+        // Without being told neither would ever end.
+        let until_told = |_: &u32, called_off: &CalledOff| {
+            while called_off.flow().is_continue() {
+                thread::yield_now();
+            }
+        };
+        let mut asked = 0;
+        let third = |_| {
+            asked += 1;
+            if asked < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
+        assert!(map(&[1, 2], until_told, third).iter().flatten().count() > 0);
     }
 }

@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector2;
 
+use super::parallel::{self, CalledOff};
+use super::pareto;
 use super::reference::{Reference, end, finest_element, first_probe, system_of};
 use super::timing::{expected_time, times_from_rest};
-use super::{parallel, pareto};
 use crate::assembly::System;
 use crate::dynamics::StopReason;
 use crate::method::METHODS;
@@ -207,12 +208,11 @@ impl Study {
         let meshes = meshes(scene, extent);
         let mut study = Self::begin(scene, observe)?;
         // What is not timed first, on all cores: the timed part is then alone on the machine.
-        let ends = |mesh: &MeshChoice| MeshEnds::find(scene, mesh);
-        let ends = parallel::map(&meshes, ends, |done| {
+        let ends = |mesh: &MeshChoice, _: &CalledOff| MeshEnds::find(scene, mesh);
+        let ends = all_done(parallel::map(&meshes, ends, |done| {
             let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
             observe(Progress { fraction, now: "the ends of the methods", so_far: None })
-        });
-        let ends = ends.into_iter().map(|ends| ends.ok_or(StudyError::Cancelled)?).collect::<Result<Vec<_>, _>>()?;
+        }))?;
         let all: f64 = ends.iter().map(MeshEnds::expected_time).sum();
         // The likely answers first: those of the element that converges fastest.
         let mut order: Vec<_> = meshes.iter().zip(&ends).collect();
@@ -323,6 +323,11 @@ impl Study {
 /// Goes on, or is called off.
 pub(super) fn check(flow: ControlFlow<()>) -> Result<(), StudyError> {
     if flow.is_break() { Err(StudyError::Cancelled) } else { Ok(()) }
+}
+
+/// What has come of all items of [`parallel::map`], or of the first that failed or was called off.
+pub(super) fn all_done<T>(results: Vec<Option<Result<T, StudyError>>>) -> Result<Vec<T>, StudyError> {
+    results.into_iter().map(|result| result.ok_or(StudyError::Cancelled)?).collect()
 }
 
 /// A mesh to measure on.

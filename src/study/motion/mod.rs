@@ -7,19 +7,21 @@ use std::time::Duration;
 
 use nalgebra::Vector2;
 
+use self::plan::{Job, MeshPlan, Plan, Samples, cells};
 pub use self::reference::MotionReference;
 use self::reference::fine_path;
+use super::parallel::{self, CalledOff};
 use super::pareto;
 use super::reference::{finest_element, first_probe, system_of};
 use super::timing::{Runs, median_time};
-use super::trade::{Extent, Observer, Progress, Setting, StudyError, check, mesh_words};
+use super::trade::{Extent, Observer, Progress, Setting, StudyError, all_done, check, mesh_words};
 use crate::assembly::{Mass, System};
-use crate::dynamics::{Counts, INTEGRATORS, IntegratorEntry, critical_step};
-use crate::method::METHODS;
+use crate::dynamics::{Counts, critical_step};
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::simulation::{Simulation, Status};
 use crate::words::count;
 
+mod plan;
 mod reference;
 mod report;
 
@@ -224,173 +226,17 @@ pub struct MotionStudy {
     pub is_partial: bool,
 }
 
-/// How much is looked at.
-struct Plan {
-    /// The longest time that is simulated, s, and in time steps of the scene.
-    longest: (f64, f64),
-    /// The longest time step over the scene's.
-    coarsest: f64,
-    /// Steps in the longest one.
-    steps: &'static [u32],
-    /// Solves a step.
-    solves: &'static [u32],
-    /// Nodes along the beam over those of the scene's mesh.
-    meshes: &'static [f64],
-    /// The same of the reference.
-    reference_mesh: f64,
-    /// More steps than these are not run to their end.
-    most_steps: u32,
-    /// Time that is given to timing a setting.
-    timing: Duration,
-}
-
-const QUICK: Plan = Plan {
-    longest: (1.0, 60.0),
-    coarsest: 1.0,
-    steps: &[1, 2, 4],
-    solves: &[1, 0],
-    meshes: &[0.5, 1.0],
-    reference_mesh: 2.0,
-    most_steps: 20_000,
-    timing: Duration::from_millis(20),
-};
-
-const FULL: Plan = Plan {
-    longest: (2.0, 240.0),
-    coarsest: 2.0,
-    steps: &[1, 2, 4, 8, 16],
-    solves: &[1, 2, 0],
-    meshes: &[0.25, 0.5, 1.0, 1.5],
-    reference_mesh: 3.0,
-    most_steps: 100_000,
-    timing: Duration::from_millis(200),
-};
-
 /// Runs of a setting that are timed, at most.
 const RUNS: usize = 5;
-
-/// Steps of the reference in the shortest of the others.
-const REFERENCE_STEPS: u32 = 4;
-
-impl Plan {
-    /// Steps of the reference between samples.
-    fn reference_steps(&self) -> u32 {
-        self.steps.iter().copied().max().unwrap_or(1) * REFERENCE_STEPS
-    }
-}
-
-/// The explicit integrator's step over its critical one.
-const BELOW_CRITICAL: f64 = 0.9;
 /// Steps after which the time of a motion that is cut short is known.
 const ENOUGH_STEPS: u32 = 500;
-/// A scene shorter than so many of its steps is studied with shorter ones.
-const FEWEST_STEPS: f64 = 8.0;
-/// The finest mesh of the settings has no more nodes along and across than this.
-const MOST_NODES: f64 = 1000.0;
 
-/// Times at which paths are compared: multiples of the longest time step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Samples {
-    /// Time between two, s.
-    interval: f64,
-    /// How many, without the start.
-    count: u32,
-}
-
-impl Samples {
-    fn of(scene: &Scene, plan: &Plan) -> Self {
-        let (seconds, steps) = plan.longest;
-        let own = scene.dynamics.time_step;
-        let duration = scene.dynamics.duration.min(seconds).min(steps * own);
-        let interval = (plan.coarsest * own).min(duration / FEWEST_STEPS);
-        Self { interval, count: (duration / interval * (1.0 + 1e-9)).floor().max(1.0) as u32 }
-    }
-
-    fn duration(self) -> f64 {
-        self.interval * f64::from(self.count)
-    }
-}
-
-/// Cells of a mesh whose nodes along and across are `factor` times the scene's; `None` where the mesh is a file's.
-fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
-    let beam = scene.beam.as_ref()?;
-    let pieces = |element: ElementKind| element.entry().sides[0].len() as f64 - 1.0;
-    let own = beam.cells.map(|n| f64::from(n) * pieces(beam.element));
-    // A scene of a very fine mesh is studied on coarser ones.
-    let factor = factor * (MOST_NODES / (own[0] * own[1])).sqrt().min(1.0);
-    Some(own.map(|n| (n * factor / pieces(element)).round().max(1.0) as u32))
-}
-
-/// What is measured on a mesh.
-#[derive(Clone, Copy)]
-struct Job {
-    element: ElementKind,
-    cells: Option<[u32; 2]>,
-    integrator: &'static IntegratorEntry,
-    /// Steps between samples; `None`: what stability asks for.
-    steps: Option<u32>,
-    method: MethodKind,
-    iterations: u32,
-    /// About how long it takes, over others.
-    weight: f64,
-}
-
-/// Everything that is measured, mesh by mesh.
-fn jobs(scene: &Scene, extent: Extent) -> Vec<Job> {
-    let plan = extent.plan();
-    let mut jobs = Vec::new();
-    for element in scene.elements() {
-        let mut meshes: Vec<_> = plan.meshes.iter().map(|&factor| cells(scene, element, factor)).collect();
-        meshes.dedup();
-        for cells in meshes {
-            let nodes = cells.map_or(1.0, |[along, across]| f64::from(along * across));
-            for integrator in INTEGRATORS {
-                let explicit = integrator.is_explicit();
-                let steps: Vec<_> = if explicit { vec![None] } else { plan.steps.iter().map(|&n| Some(n)).collect() };
-                for steps in steps {
-                    for method in methods(integrator, extent) {
-                        for &iterations in solves(integrator, method, plan) {
-                            let weight = nodes * f64::from(steps.unwrap_or(1) * integrator.stages.max(1));
-                            jobs.push(Job { element, cells, integrator, steps, method, iterations, weight });
-                        }
-                    }
-                }
-            }
-        }
-    }
-    jobs
-}
-
-/// The methods that make a difference.
-fn methods(integrator: &IntegratorEntry, extent: Extent) -> Vec<MethodKind> {
-    let all = METHODS.iter().map(|m| m.kind);
-    if integrator.is_explicit() {
-        // Without a matrix there are two theories.
-        return vec![MethodKind::Linear, MethodKind::Newton];
-    }
-    all.filter(|&m| extent == Extent::Full || m != MethodKind::Warped).collect()
-}
-
-/// The numbers of solves that make a difference.
-fn solves(integrator: &IntegratorEntry, method: MethodKind, plan: &Plan) -> &'static [u32] {
-    if integrator.is_explicit() || integrator.always_iterates {
-        &[0]
-    } else if method == MethodKind::Linear {
-        // One solve is exact.
-        &[1]
-    } else {
-        plan.solves
-    }
-}
-
-impl Extent {
-    fn plan(self) -> &'static Plan {
-        match self {
-            Self::Quick => &QUICK,
-            Self::Full => &FULL,
-        }
-    }
-}
+/// About the parts of a study's time that go by before its meshes are measured: for the truth …
+const TRUTH_SHARE: f64 = 0.1;
+/// … and for every mesh's own motion.
+const OWN_SHARE: f64 = 0.1;
+/// About the part of a mesh's time that goes by before its settings are timed.
+const FIRST_RUNS_SHARE: f64 = 0.35;
 
 impl MotionStudy {
     /// Measures a scene in motion. [`Progress::so_far`] is `None` throughout.
@@ -400,7 +246,16 @@ impl MotionStudy {
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
         let plan = extent.plan();
         let samples = Samples::of(scene, plan);
-        let reference = MotionReference::new(scene, extent, observe)?;
+        let studied = Studied { scene, samples, plan };
+        let reference = MotionReference::new(scene, extent, &mut |truth| {
+            observe(Progress { fraction: TRUTH_SHARE * truth.fraction, ..truth })
+        })?;
+        let meshes = MeshPlan::all(scene, extent);
+        let own = |mesh: &MeshPlan, called_off: &CalledOff| Meshed::new(studied, mesh, called_off);
+        let meshed = all_done(parallel::map(&meshes, own, |done| {
+            let fraction = TRUTH_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
+            observe(Progress { fraction, now: "the meshes' own motions", so_far: None })
+        }))?;
         let mut study = Self {
             scene: scene.name.clone(),
             duration: samples.duration(),
@@ -410,99 +265,78 @@ impl MotionStudy {
             measurements: Vec::new(),
             is_partial: false,
         };
-        let jobs = jobs(scene, extent);
-        let all: f64 = jobs.iter().map(|j| j.weight).sum();
+        let all: f64 = meshes.iter().map(MeshPlan::weight).sum();
+        let before = TRUTH_SHARE + OWN_SHARE;
         let mut done = 0.0;
-        let mut mesh: Option<Meshed> = None;
-        for job in jobs {
-            let meshed = match mesh.take() {
-                Some(meshed) if (meshed.element, meshed.cells) == (job.element, job.cells) => Ok(meshed),
-                _ => Meshed::new(scene, job, samples, plan, &mut |now| {
-                    observe(Progress { fraction: done / all, now, so_far: None })
-                }),
-            };
-            let meshed = match meshed {
+        for (mesh, meshed) in meshes.iter().zip(&meshed) {
+            let fraction = |part: f64| before + (1.0 - before) * (done + part * mesh.weight()) / all;
+            let measured = study.measure(studied, mesh, meshed, &mut |part, now| {
+                observe(Progress { fraction: fraction(part), now, so_far: None })
+            });
+            match measured {
                 // What has been measured is worth keeping.
                 Err(StudyError::Cancelled) if !study.measurements.is_empty() => {
                     study.is_partial = true;
                     break;
                 }
-                meshed => meshed?,
-            };
-            let (setting, steps) = meshed.setting(job, samples);
-            if observe(Progress { fraction: done / all, now: &setting.to_string(), so_far: None }).is_break() {
-                study.is_partial = true;
-                break;
+                measured => measured?,
             }
-            study.measurements.push(study.measure(scene, setting, &meshed, samples, steps, plan)?);
-            done += job.weight;
-            mesh = Some(meshed);
+            done += mesh.weight();
         }
-        if study.measurements.is_empty() {
-            return Err(StudyError::Cancelled);
-        }
-        let pairs = study.measurements.iter().map(|m| {
-            let error = m.error.map_or(f64::INFINITY, |e| study.resolved(e.bound()));
-            (m.milliseconds, error)
-        });
-        let front = pareto::front(&pairs.collect::<Vec<_>>());
-        for (m, front) in study.measurements.iter_mut().zip(front) {
-            m.pareto = front;
-        }
+        study.mark_pareto();
         Ok(study)
     }
 
-    /// One setting, of so many steps between samples.
+    /// Adds every setting of a mesh. `say` is told which part of it is done and what is measured, and calls it off.
     fn measure(
-        &self,
-        scene: &Scene,
-        setting: MotionSetting,
-        mesh: &Meshed,
-        samples: Samples,
-        steps: u32,
-        plan: &Plan,
-    ) -> Result<MotionMeasurement, StudyError> {
-        let mut simulation = Simulation::with_system(&setting.apply(scene), mesh.system.clone())?;
-        let cut = u64::from(steps) * u64::from(samples.count) > u64::from(plan.most_steps);
-        let steps_of_run = if cut { ENOUGH_STEPS } else { steps * samples.count };
-        // The first run is for the books and the path; its time is nobody's.
-        let path = if cut {
-            run(&mut simulation, ENOUGH_STEPS);
-            Vec::new()
-        } else {
-            path(&mut simulation, samples, steps, &mut || ControlFlow::Continue(()))?
+        &mut self,
+        studied: Studied<'_>,
+        mesh: &MeshPlan,
+        meshed: &Meshed,
+        say: &mut dyn FnMut(f64, &str) -> ControlFlow<()>,
+    ) -> Result<(), StudyError> {
+        // What is not timed first, on all cores: the timed part is then alone on the machine.
+        let first = |job: &Job, called_off: &CalledOff| {
+            let (setting, steps) = job.setting(mesh, meshed.critical, studied.samples);
+            FirstRun::new(studied, meshed, setting, steps, called_off)
         };
-        let stopped = matches!(simulation.status(), Status::Stopped(_));
-        let ending = match (stopped, cut) {
-            (true, _) => Ending::Stopped,
-            (false, true) => Ending::CutShort,
-            (false, false) => Ending::Finished,
-        };
-        let (counts, drift) = simulation.motion().map(|m| (m.counts(), m.ledger().drift())).unwrap_or_default();
-        simulation.keep_ledger(false);
-        let mut simulated = 0.0;
-        let runs = Runs { count: 1..=RUNS, enough: plan.timing };
-        let time = median_time(runs, &mut simulation, Simulation::reset, |simulation| {
-            run(simulation, steps_of_run);
-            simulated = simulation.state().time();
-        });
-        // A motion that stops at once is as slow as the step it could not take.
-        let seconds = if simulated > 0.0 { simulated } else { setting.time_step };
-        Ok(MotionMeasurement {
-            setting,
-            dofs: mesh.system.dofs(),
-            ending,
-            milliseconds: time.as_secs_f64().max(Duration::from_nanos(1).as_secs_f64()) * 1e3 / seconds,
-            error: (ending == Ending::Finished).then(|| self.error(&path, setting.method, mesh)),
-            drift_percent: 100.0 * drift,
-            counts,
-            pareto: false,
-        })
+        let now = format!("{}, its settings' paths", mesh_words(mesh.element, mesh.cells));
+        let first = all_done(parallel::map(&mesh.jobs, first, |done| {
+            say(FIRST_RUNS_SHARE * done as f64 / mesh.jobs.len() as f64, &now)
+        }))?;
+        let mut done = 0.0;
+        for (job, first) in mesh.jobs.iter().zip(first) {
+            let part = FIRST_RUNS_SHARE + (1.0 - FIRST_RUNS_SHARE) * done / mesh.weight();
+            check(say(part, &first.setting.to_string()))?;
+            self.measurements.push(MotionMeasurement {
+                setting: first.setting,
+                dofs: meshed.system.dofs(),
+                ending: first.ending,
+                milliseconds: first.milliseconds(studied, meshed)?,
+                error: (first.ending == Ending::Finished).then(|| self.error(&first, meshed)),
+                drift_percent: 100.0 * first.drift,
+                counts: first.counts,
+                pareto: false,
+            });
+            done += job.weight;
+        }
+        Ok(())
     }
 
-    fn error(&self, path: &[Vector2<f64>], method: MethodKind, mesh: &Meshed) -> PathError {
-        let reference = &self.reference;
-        let own = if method == MethodKind::Linear { &mesh.linear } else { &mesh.exact };
+    fn mark_pareto(&mut self) {
+        let pairs = self.measurements.iter().map(|m| {
+            let error = m.error.map_or(f64::INFINITY, |e| self.resolved(e.bound()));
+            (m.milliseconds, error)
+        });
+        let front = pareto::front(&pairs.collect::<Vec<_>>());
+        for (m, front) in self.measurements.iter_mut().zip(front) {
+            m.pareto = front;
+        }
+    }
+
+    fn error(&self, run: &FirstRun, mesh: &Meshed) -> PathError {
+        let (reference, path) = (&self.reference, &run.path);
+        let own = if run.setting.method == MethodKind::Linear { &mesh.linear } else { &mesh.exact };
         let [total, rms] = reference.distance(path, &reference.path);
         PathError {
             total,
@@ -541,10 +375,16 @@ impl MotionStudy {
     }
 }
 
+/// A scene and how it is studied.
+#[derive(Clone, Copy)]
+struct Studied<'a> {
+    scene: &'a Scene,
+    samples: Samples,
+    plan: &'a Plan,
+}
+
 /// A mesh with what is found once for it.
 struct Meshed {
-    element: ElementKind,
-    cells: Option<[u32; 2]>,
     system: Arc<System>,
     /// The first probe's path on this mesh with the reference's steps …
     exact: Vec<Vector2<f64>>,
@@ -555,37 +395,78 @@ struct Meshed {
 }
 
 impl Meshed {
-    fn new(
-        scene: &Scene,
-        job: Job,
-        samples: Samples,
-        plan: &Plan,
-        say: &mut dyn FnMut(&str) -> ControlFlow<()>,
-    ) -> Result<Self, StudyError> {
-        let Job { element, cells, integrator, method, iterations, .. } = job;
-        let time_step = scene.dynamics.time_step;
-        let setting = MotionSetting { element, cells, integrator: integrator.kind, method, time_step, iterations };
-        let scene = setting.apply(scene);
+    fn new(studied: Studied<'_>, mesh: &MeshPlan, called_off: &CalledOff) -> Result<Self, StudyError> {
+        let Studied { scene, samples, plan } = studied;
+        let MeshPlan { element, cells, .. } = *mesh;
+        let scene = Setting { element, cells, method: MethodKind::Newton, iterations: 0 }.apply(scene);
         let system = system_of(&scene)?;
         let simulation = Simulation::with_system(&scene, system.clone())?;
         let mass = Mass::new(&system, scene.material.area_density());
         let critical = critical_step(simulation.problem(), &mass, scene.dynamics.damping);
-        let words = mesh_words(element, cells);
-        let mut own = |method| fine_path(&scene, method, &system, samples, plan.reference_steps(), &mut || say(&words));
+        let own = |method| fine_path(&scene, method, &system, samples, plan.reference_steps(), called_off);
         let (exact, linear) = (own(MethodKind::Newton)?, own(MethodKind::Linear)?);
-        Ok(Self { element, cells, system, exact, linear, critical })
+        Ok(Self { system, exact, linear, critical })
+    }
+}
+
+/// The first run of a setting, for the books and the path; its time is nobody's. What is kept of it is little beside the
+/// simulation.
+struct FirstRun {
+    setting: MotionSetting,
+    /// Steps between samples.
+    steps_of_sample: u32,
+    /// All its steps.
+    steps: u32,
+    ending: Ending,
+    /// Of the first probe at the samples; empty where it is cut short.
+    path: Vec<Vector2<f64>>,
+    counts: Counts,
+    /// Energy that the integrator has added, over the largest kinetic energy.
+    drift: f64,
+}
+
+impl FirstRun {
+    fn new(
+        studied: Studied<'_>,
+        mesh: &Meshed,
+        setting: MotionSetting,
+        steps_of_sample: u32,
+        called_off: &CalledOff,
+    ) -> Result<Self, StudyError> {
+        let Studied { scene, samples, plan } = studied;
+        let mut simulation = Simulation::with_system(&setting.apply(scene), mesh.system.clone())?;
+        let cut = u64::from(steps_of_sample) * u64::from(samples.count) > u64::from(plan.most_steps);
+        let (steps, path) = if cut {
+            run(&mut simulation, ENOUGH_STEPS);
+            (ENOUGH_STEPS, Vec::new())
+        } else {
+            (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, called_off)?)
+        };
+        let stopped = matches!(simulation.status(), Status::Stopped(_));
+        let ending = match (stopped, cut) {
+            (true, _) => Ending::Stopped,
+            (false, true) => Ending::CutShort,
+            (false, false) => Ending::Finished,
+        };
+        let (counts, drift) = simulation.motion().map(|m| (m.counts(), m.ledger().drift())).unwrap_or_default();
+        Ok(Self { setting, steps_of_sample, steps, ending, path, counts, drift })
     }
 
-    /// A job as a setting, and its steps between samples.
-    fn setting(&self, job: Job, samples: Samples) -> (MotionSetting, u32) {
-        let Job { element, cells, integrator, method, iterations, .. } = job;
-        let stable = || {
-            let longest = self.critical.map_or(samples.interval, |critical| BELOW_CRITICAL * critical);
-            (samples.interval / longest).ceil().max(1.0) as u32
-        };
-        let steps = job.steps.unwrap_or_else(stable);
-        let time_step = samples.interval / f64::from(steps);
-        (MotionSetting { element, cells, integrator: integrator.kind, method, time_step, iterations }, steps)
+    /// Time of computing a simulated second, ms, timed by runs like this.
+    fn milliseconds(&self, studied: Studied<'_>, mesh: &Meshed) -> Result<f64, StudyError> {
+        let mut simulation = Simulation::with_system(&self.setting.apply(studied.scene), mesh.system.clone())?;
+        simulation.keep_ledger(false);
+        // It warms up caches and clocks, and makes what is made once for a simulation.
+        run(&mut simulation, self.steps.min(self.steps_of_sample));
+        let mut simulated = 0.0;
+        let runs = Runs { count: 1..=RUNS, enough: studied.plan.timing };
+        let time = median_time(runs, &mut simulation, Simulation::reset, |simulation| {
+            run(simulation, self.steps);
+            simulated = simulation.state().time();
+        });
+        // A motion that stops at once is as slow as the step it could not take.
+        let seconds = if simulated > 0.0 { simulated } else { self.setting.time_step };
+        Ok(time.as_secs_f64().max(Duration::from_nanos(1).as_secs_f64()) * 1e3 / seconds)
     }
 }
 
@@ -603,11 +484,11 @@ fn path(
     simulation: &mut Simulation,
     samples: Samples,
     steps: u32,
-    observe: &mut dyn FnMut() -> ControlFlow<()>,
+    called_off: &CalledOff,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut path = Vec::with_capacity(samples.count as usize);
     for _ in 0..samples.count {
-        check(observe())?;
+        check(called_off.flow())?;
         run(simulation, steps);
         if matches!(simulation.status(), Status::Stopped(_)) {
             break;

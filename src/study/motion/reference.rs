@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use std::ops::ControlFlow;
-
-use super::{MotionSetting, Plan, Samples, cells, path, step_words};
+use super::plan::{Plan, Samples, cells};
+use super::{MotionSetting, path, step_words};
 use crate::assembly::System;
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
+use crate::study::parallel::{self, CalledOff};
 use crate::study::reference::{MOST_ELEMENTS, finest_element, system_of};
-use crate::study::trade::{Extent, Observer, Progress, StudyError, mesh_words};
+use crate::study::trade::{Extent, Observer, Progress, StudyError, all_done, mesh_words};
 
 /// The path of the first probe as the finest motion has it.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,13 +71,15 @@ impl MotionReference {
         }
         let steps = plan.reference_steps();
         let [coarse, fine] = meshes(scene, plan)?;
-        let mut follow = |mesh: &Reference, steps: u32, now: &str| {
-            let mut say = || observe(Progress { fraction: 0.0, now, so_far: None });
-            fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, &mut say)
+        // On a coarser mesh, with longer steps, and the best.
+        let paths = [(&coarse, steps / 2), (&fine, steps / 2), (&fine, steps)];
+        let follow = |&(mesh, steps): &(&Reference, u32), called_off: &CalledOff| {
+            fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, called_off)
         };
-        let coarser = follow(&coarse, steps / 2, "the truth, on a coarser mesh")?;
-        let longer = follow(&fine, steps / 2, "the truth, with longer steps")?;
-        let best = follow(&fine, steps, "the truth")?;
+        let paths = all_done(parallel::map(&paths, follow, |done| {
+            observe(Progress { fraction: done as f64 / paths.len() as f64, now: "the truth", so_far: None })
+        }))?;
+        let [coarser, longer, best] = <[_; 3]>::try_from(paths).unwrap_or_default();
         let size = best.iter().map(|u| u.norm()).fold(0.0, f64::max);
         if size == 0.0 {
             return Err(StudyError::NoProbe);
@@ -116,7 +118,7 @@ pub(super) fn fine_path(
     system: &Arc<System>,
     samples: Samples,
     steps: u32,
-    observe: &mut dyn FnMut() -> ControlFlow<()>,
+    called_off: &CalledOff,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
@@ -125,7 +127,7 @@ pub(super) fn fine_path(
     dynamics.time_step = samples.interval / f64::from(steps);
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
     simulation.keep_ledger(false);
-    let path = path(&mut simulation, samples, steps, observe)?;
+    let path = path(&mut simulation, samples, steps, called_off)?;
     match simulation.status() {
         Status::Stopped(reason) => Err(StudyError::NoPath(*reason)),
         _ => Ok(path),

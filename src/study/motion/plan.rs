@@ -1,0 +1,203 @@
+//! What is looked at: meshes, integrators, time steps, methods and numbers of solves, and the times of comparison.
+
+use std::time::Duration;
+
+use super::MotionSetting;
+use crate::dynamics::{INTEGRATORS, IntegratorEntry};
+use crate::method::METHODS;
+use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::study::trade::Extent;
+
+/// How much is looked at.
+pub(super) struct Plan {
+    /// The longest time that is simulated, s, and in time steps of the scene.
+    longest: (f64, f64),
+    /// The longest time step over the scene's.
+    coarsest: f64,
+    /// Steps in the longest one.
+    steps: &'static [u32],
+    /// Solves a step.
+    solves: &'static [u32],
+    /// Nodes along the beam over those of the scene's mesh.
+    meshes: &'static [f64],
+    /// The same of the reference.
+    pub reference_mesh: f64,
+    /// More steps than these are not run to their end.
+    pub most_steps: u32,
+    /// Time that is given to timing a setting.
+    pub timing: Duration,
+}
+
+const QUICK: Plan = Plan {
+    longest: (1.0, 60.0),
+    coarsest: 1.0,
+    steps: &[1, 2, 4],
+    solves: &[1, 0],
+    meshes: &[0.5, 1.0],
+    reference_mesh: 2.0,
+    most_steps: 20_000,
+    timing: Duration::from_millis(20),
+};
+
+const FULL: Plan = Plan {
+    longest: (2.0, 240.0),
+    coarsest: 2.0,
+    steps: &[1, 2, 4, 8, 16],
+    solves: &[1, 2, 0],
+    meshes: &[0.25, 0.5, 1.0, 1.5],
+    reference_mesh: 3.0,
+    most_steps: 100_000,
+    timing: Duration::from_millis(200),
+};
+
+/// Steps of the reference in the shortest of the others.
+const REFERENCE_STEPS: u32 = 4;
+/// The explicit integrator's step over its critical one.
+const BELOW_CRITICAL: f64 = 0.9;
+/// A scene shorter than so many of its steps is studied with shorter ones.
+const FEWEST_STEPS: f64 = 8.0;
+/// The finest mesh of the settings has no more nodes along and across than this.
+const MOST_NODES: f64 = 1000.0;
+
+impl Plan {
+    /// Steps of the reference between samples.
+    pub fn reference_steps(&self) -> u32 {
+        self.steps.iter().copied().max().unwrap_or(1) * REFERENCE_STEPS
+    }
+}
+
+impl Extent {
+    pub(super) fn plan(self) -> &'static Plan {
+        match self {
+            Self::Quick => &QUICK,
+            Self::Full => &FULL,
+        }
+    }
+}
+
+/// Times at which paths are compared: multiples of the longest time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Samples {
+    /// Time between two, s.
+    pub interval: f64,
+    /// How many, without the start.
+    pub count: u32,
+}
+
+impl Samples {
+    pub fn of(scene: &Scene, plan: &Plan) -> Self {
+        let (seconds, steps) = plan.longest;
+        let own = scene.dynamics.time_step;
+        let duration = scene.dynamics.duration.min(seconds).min(steps * own);
+        let interval = (plan.coarsest * own).min(duration / FEWEST_STEPS);
+        Self { interval, count: (duration / interval * (1.0 + 1e-9)).floor().max(1.0) as u32 }
+    }
+
+    pub fn duration(self) -> f64 {
+        self.interval * f64::from(self.count)
+    }
+}
+
+/// Cells of a mesh whose nodes along and across are `factor` times the scene's; `None` where the mesh is a file's.
+pub(super) fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
+    let beam = scene.beam.as_ref()?;
+    let pieces = |element: ElementKind| element.entry().sides[0].len() as f64 - 1.0;
+    let own = beam.cells.map(|n| f64::from(n) * pieces(beam.element));
+    // A scene of a very fine mesh is studied on coarser ones.
+    let factor = factor * (MOST_NODES / (own[0] * own[1])).sqrt().min(1.0);
+    Some(own.map(|n| (n * factor / pieces(element)).round().max(1.0) as u32))
+}
+
+/// A mesh and what is measured on it.
+pub(super) struct MeshPlan {
+    pub element: ElementKind,
+    pub cells: Option<[u32; 2]>,
+    pub jobs: Vec<Job>,
+}
+
+/// What is measured on a mesh.
+#[derive(Clone, Copy)]
+pub(super) struct Job {
+    integrator: &'static IntegratorEntry,
+    /// Steps between samples; `None`: what stability asks for.
+    steps: Option<u32>,
+    method: MethodKind,
+    iterations: u32,
+    /// About how long it takes, over others.
+    pub weight: f64,
+}
+
+impl Job {
+    /// As a setting of a mesh whose critical step is known, and its steps between samples.
+    pub fn setting(self, mesh: &MeshPlan, critical: Option<f64>, samples: Samples) -> (MotionSetting, u32) {
+        let Self { integrator, method, iterations, .. } = self;
+        let MeshPlan { element, cells, .. } = *mesh;
+        let stable = || {
+            let longest = critical.map_or(samples.interval, |critical| BELOW_CRITICAL * critical);
+            (samples.interval / longest).ceil().max(1.0) as u32
+        };
+        let steps = self.steps.unwrap_or_else(stable);
+        let time_step = samples.interval / f64::from(steps);
+        (MotionSetting { element, cells, integrator: integrator.kind, method, time_step, iterations }, steps)
+    }
+}
+
+impl MeshPlan {
+    /// Every mesh of a scene, coarse to fine for each element.
+    pub fn all(scene: &Scene, extent: Extent) -> Vec<Self> {
+        let mut all = Vec::new();
+        for element in scene.elements() {
+            let mut meshes: Vec<_> = extent.plan().meshes.iter().map(|&factor| cells(scene, element, factor)).collect();
+            meshes.dedup();
+            all.extend(meshes.into_iter().map(|cells| Self { element, cells, jobs: jobs(cells, extent) }));
+        }
+        all
+    }
+
+    /// About how long its jobs take, over those of others.
+    pub fn weight(&self) -> f64 {
+        self.jobs.iter().map(|job| job.weight).sum()
+    }
+}
+
+/// Everything that is measured on a mesh.
+fn jobs(cells: Option<[u32; 2]>, extent: Extent) -> Vec<Job> {
+    let plan = extent.plan();
+    let nodes = cells.map_or(1.0, |[along, across]| f64::from(along * across));
+    let mut jobs = Vec::new();
+    for integrator in INTEGRATORS {
+        let explicit = integrator.is_explicit();
+        let steps: Vec<_> = if explicit { vec![None] } else { plan.steps.iter().map(|&n| Some(n)).collect() };
+        for steps in steps {
+            for method in methods(integrator, extent) {
+                for &iterations in solves(integrator, method, plan) {
+                    let weight = nodes * f64::from(steps.unwrap_or(1) * integrator.stages.max(1));
+                    jobs.push(Job { integrator, steps, method, iterations, weight });
+                }
+            }
+        }
+    }
+    jobs
+}
+
+/// The methods that make a difference.
+fn methods(integrator: &IntegratorEntry, extent: Extent) -> Vec<MethodKind> {
+    let all = METHODS.iter().map(|m| m.kind);
+    if integrator.is_explicit() {
+        // Without a matrix there are two theories.
+        return vec![MethodKind::Linear, MethodKind::Newton];
+    }
+    all.filter(|&m| extent == Extent::Full || m != MethodKind::Warped).collect()
+}
+
+/// The numbers of solves that make a difference.
+fn solves(integrator: &IntegratorEntry, method: MethodKind, plan: &Plan) -> &'static [u32] {
+    if integrator.is_explicit() || integrator.always_iterates {
+        &[0]
+    } else if method == MethodKind::Linear {
+        // One solve is exact.
+        &[1]
+    } else {
+        plan.solves
+    }
+}
