@@ -114,7 +114,7 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
         words.push_str(" · ");
         words.push_str(&part);
     };
-    let inside_out = is_inside_out(simulation);
+    let inside_out = input.quality.is_inside_out(simulation);
     if inside_out {
         add(tr("turned inside out").to_owned());
     }
@@ -132,11 +132,6 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
     (words, inside_out || stability(simulation) == Some(false))
 }
 
-/// Whether an element is turned inside out, somewhere: no body does that.
-fn is_inside_out(simulation: &Simulation) -> bool {
-    simulation.system().elements().smallest_area_ratio(simulation.displacement()) <= 0.0
-}
-
 /// Whether a converged equilibrium is stable, where that is certified.
 pub(super) fn stability(simulation: &Simulation) -> Option<bool> {
     let certificate = simulation.certificate()?;
@@ -152,7 +147,7 @@ pub(super) fn rho(input: &PanelInput<'_>) -> Option<f64> {
 pub(super) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
-    if is_inside_out(simulation) {
+    if input.quality.is_inside_out(simulation) {
         let words = "Turned inside out: the area of an element is negative. The equations are solved, but no body can do \
                      that: pull less, or make the cells smaller.";
         lines.push(tr(words).to_owned());
