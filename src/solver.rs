@@ -71,7 +71,7 @@ impl Symbolic {
     /// # Errors
     /// [`SolverError::TooLarge`].
     pub fn new(column_starts: &[usize], row_indices: &[usize]) -> Result<Self, SolverError> {
-        Self::analyse(column_starts, row_indices, SymmetricOrdering::Amd)
+        Self::with_ordering(column_starts, row_indices, SymmetricOrdering::Amd)
     }
 
     /// [`Self::new`] with the order of elimination given: every row once, the first to go first.
@@ -82,20 +82,20 @@ impl Symbolic {
     ) -> Result<Self, SolverError> {
         let inverse = inverse(order);
         let order = PermRef::new_checked(order, &inverse, order.len());
-        Self::analyse(column_starts, row_indices, SymmetricOrdering::Custom(order))
+        Self::with_ordering(column_starts, row_indices, SymmetricOrdering::Custom(order))
     }
 
-    fn analyse(
+    fn with_ordering(
         column_starts: &[usize],
         row_indices: &[usize],
         ordering: SymmetricOrdering<'_, usize>,
     ) -> Result<Self, SolverError> {
         let n = column_starts.len().saturating_sub(1);
         let structure = SymbolicSparseColMat::new_checked(n, n, column_starts.to_vec(), None, row_indices.to_vec());
-        let analyse = |threshold| analyse(&structure, ordering, threshold);
-        let supernodal = analyse(SupernodalThreshold::FORCE_SUPERNODAL)?;
+        let cholesky = |threshold| symbolic_cholesky(&structure, ordering, threshold);
+        let supernodal = cholesky(SupernodalThreshold::FORCE_SUPERNODAL)?;
         let (definite, indefinite) = if n <= MOST_SIMPLICIAL {
-            let simplicial = analyse(SupernodalThreshold::FORCE_SIMPLICIAL)?;
+            let simplicial = cholesky(SupernodalThreshold::FORCE_SIMPLICIAL)?;
             if simplicial.len_val() <= SPARSE * n { (simplicial, Some(supernodal)) } else { (supernodal, None) }
         } else {
             (supernodal, None)
@@ -118,7 +118,8 @@ const SPARSE: usize = 14;
 /// Larger systems have more: it is not looked for.
 const MOST_SIMPLICIAL: usize = 2500;
 
-fn analyse(
+/// The sparsity of a factor in an order of elimination: simplicial or supernodal, as the threshold forces it to be.
+fn symbolic_cholesky(
     structure: &SymbolicSparseColMat<usize>,
     ordering: SymmetricOrdering<'_, usize>,
     threshold: SupernodalThreshold,
@@ -180,7 +181,7 @@ impl Graph {
     pub(crate) fn operations(&self, order: &[usize]) -> Result<f64, SolverError> {
         let inverse = inverse(order);
         let ordering = SymmetricOrdering::Custom(PermRef::new_checked(order, &inverse, order.len()));
-        let symbolic = analyse(&self.0, ordering, SupernodalThreshold::FORCE_SUPERNODAL)?;
+        let symbolic = symbolic_cholesky(&self.0, ordering, SupernodalThreshold::FORCE_SUPERNODAL)?;
         Ok(operations(&symbolic)[0])
     }
 }
