@@ -752,7 +752,7 @@ fn curve_follows_an_arch_through_its_limit_load() {
         }
     }
     assert!(rows.iter().filter(|row| row[stable] == "false").count() > 20);
-    assert!(fs::read_to_string(folder.path().join("snap.svg")).unwrap().contains("stroke-dasharray=\"9 5\""));
+    assert!(picture.contains("stroke-dasharray=\"9 5\""));
     for of in ["crown", "support.0"] {
         let output = warpbeam_in(folder.path(), &["curve", "snap", "--picture", "snap.png", "--of", of]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
@@ -768,6 +768,11 @@ fn a_jump_is_said() {
     let at = json["jumped_at"].as_f64().unwrap();
     assert!((at * 90.0 - 80.8).abs() < 0.5, "{at}");
     assert!(json["probes"][0]["u"][1].as_f64().unwrap() < -0.012, "{json}");
+    // In words a support is called as `solve` calls it; its number names it to scripts.
+    assert!(text.contains("way of support (0.1, 0.0085)  its reaction"), "{text}");
+    let picture = fs::read_to_string(folder.path().join("snap.svg")).unwrap();
+    let axes = ["way of support (0.1, 0.0085), mm", "reaction of support (0.1, 0.0085) along it, N"];
+    assert!(axes.iter().all(|axis| picture.contains(axis)), "{axes:?}");
     let text = stdout(&warpbeam(&["solve", "jump", "--no-truth"]));
     assert!(text.contains("it jumped: beyond 89."), "{text}");
     for scene in [&["cantilever"][..], &["column"], &["jump", "--set", "load.0.force=[0 N, -70 N]"]] {

@@ -12,7 +12,7 @@ use crate::method::{Certificate, floor_words, rho_words};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status, StressResult};
 use crate::stress::strain_warning;
-use crate::study::{Jump, LoadCurve, LoadPath, PathState, Reference, support_name};
+use crate::study::{Jump, LoadCurve, LoadPath, PathState, Reference, support_name, support_words};
 use crate::words::{count, engineering, engineering_pair, prefix};
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
@@ -319,10 +319,11 @@ pub(super) fn curve_table(curve: &LoadCurve) -> String {
 /// A load path for people: where it turns round, and where it jumps.
 pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
     let mut text = format!("{}: load path, {}\n\n", path.scene, count(path.states.len() as u64, "equilibrium state"));
-    let name = path.driven.map(|i| support_name(scene, i));
+    let way = path.driven.map(|i| format!("way of {}", support_words(scene, i)));
+    let width = way.as_ref().map_or(0, |way| way.chars().count());
     let probe = scene.probes.first().map(|p| p.name.as_str());
-    let _ = match &name {
-        Some(name) => write!(text, "   load   way of {name:<12} its reaction   "),
+    let _ = match &way {
+        Some(way) => write!(text, "   load   {way}  {:<17}", "its reaction"),
         None => write!(text, "   load   "),
     };
     let _ = writeln!(text, "{}", probe.map_or_else(String::new, |probe| format!("displacement of {probe}")));
@@ -330,7 +331,7 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
     for state in path.states.iter().step_by(shown) {
         let _ = write!(text, "{:5.1} %  ", 100.0 * state.factor);
         if let Some(words) = driven_words(scene, path, state) {
-            let _ = write!(text, "{:<19} {:<15}", words[0], words[1]);
+            let _ = write!(text, "{:<width$}  {:<15}  ", words[0], words[1]);
         }
         if let Some(u) = state.probes.first() {
             let _ = write!(text, "{:<24}", pair(*u, "m"));

@@ -300,7 +300,13 @@ fn part(scene: &Scene, factor: f64) -> Scene {
     scene
 }
 
-/// What a support is called in tables: its edge, or its number.
+/// What a support is called in words: `support left`, `support (0.1, 0.0085)`.
+#[must_use]
+pub fn support_words(scene: &Scene, number: usize) -> String {
+    scene.supports.get(number).map_or_else(|| "support".to_owned(), |support| format!("support {}", support.place))
+}
+
+/// What a support is called in the columns of tables: its edge, or its number.
 #[must_use]
 pub fn support_name(scene: &Scene, number: usize) -> String {
     match scene.supports.get(number).map(|s| &s.place) {

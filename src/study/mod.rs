@@ -20,7 +20,7 @@ mod tune;
 
 pub use heat_map::{heat_map, motion_heat_map};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
-pub use load_path::{Jump, LoadPath, PathState, support_name};
+pub use load_path::{Jump, LoadPath, PathState, support_name, support_words};
 pub use motion::MotionStudy;
 pub use reference::{ProbeTruth, Reference, TruthSource};
 pub use refined::refined_probes;

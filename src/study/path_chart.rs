@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::chart::Margins;
-use super::{LoadPath, PathState, support_name};
+use super::{LoadPath, PathState, support_words};
 use crate::scene::Scene;
 use crate::words::{number, prefix};
 
@@ -36,8 +36,8 @@ pub fn drawn(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Drawn {
     let turns = path.driven.and_then(|i| scene.supports.get(i)).is_some_and(|s| s.displacement == [0.0; 2]);
     let mut x: Vec<f64> = path.states.iter().map(|s| driven(s).map_or(100.0 * s.factor, |[way, _]| way)).collect();
     let (name, unit) = match path.driven {
-        Some(i) if turns => (format!("turn of {}", support_name(scene, i)), "°"),
-        Some(i) => (format!("way of {}", support_name(scene, i)), "m"),
+        Some(i) if turns => (format!("turn of {}", support_words(scene, i)), "°"),
+        Some(i) => (format!("way of {}", support_words(scene, i)), "m"),
         None => ("part of the load".to_owned(), "%"),
     };
     if turns {
@@ -49,12 +49,12 @@ pub fn drawn(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Drawn {
     let (mut y, name, unit): (Vec<f64>, _, _) = match (ordinate, path.driven) {
         (Ordinate::Reaction(i), _) => (
             path.states.iter().map(|s| s.reactions.get(*i).map_or(0.0, |r| r.force.norm())).collect(),
-            format!("reaction of {}", support_name(scene, *i)),
+            format!("reaction of {}", support_words(scene, *i)),
             "N",
         ),
         (Ordinate::Usual, Some(i)) => (
             path.states.iter().map(|s| driven(s).map_or(0.0, |[_, force]| force)).collect(),
-            format!("reaction of {} along it", support_name(scene, i)),
+            format!("reaction of {} along it", support_words(scene, i)),
             if turns { "N m" } else { "N" },
         ),
         (Ordinate::Usual, None) | (Ordinate::Probe(_), _) => {

@@ -33,10 +33,11 @@ const SENTENCES: &[&str] = &[
     "no thread for the study: %{error}",
     // Axes of a load path.
     "part of the load, %{unit}",
-    "turn of %{place}, %{unit}",
-    "way of %{place}, %{unit}",
-    "reaction of %{place} along it, %{unit}",
-    "reaction of %{place}, %{unit}",
+    "turn of support %{place}, %{unit}",
+    "way of support (%{x}, %{y}), %{unit}",
+    "way of support %{place}, %{unit}",
+    "reaction of support (%{x}, %{y}) along it, %{unit}",
+    "reaction of support %{place} along it, %{unit}",
     "displacement of %{probe}, %{unit}",
     "support.%{n}",
     // What is refused.
