@@ -470,9 +470,35 @@ fn bad_scene_files_get_one_clear_message() {
     let path = folder.path().join("scene.toml");
     let cases: &[(&str, &str, Option<usize>, &str)] = &[
         // Missing keys.
-        ("name = \"Bar\"\n", "", Some(1), "missing field `name`"),
-        ("length = 2.0\n", "", Some(2), "missing field `length`"),
-        ("poisson = 0.3\n", "", Some(7), "missing field `poisson`"),
+        ("name = \"Bar\"\n", "", Some(1), "scene.toml:1: name: expected a title, got nothing"),
+        ("length = 2.0\n", "", Some(2), "beam.length: expected a length (m), got nothing"),
+        ("poisson = 0.3\n", "", Some(7), "material.poisson: expected a pure number, got nothing"),
+        ("young = 1.0e6\n", "", Some(7), "material.young: expected a pressure (Pa), got nothing"),
+        (
+            "cells = [4, 2]\n",
+            "",
+            Some(2),
+            "beam.cells: expected the cells along and across, as in [20, 2], got nothing",
+        ),
+        (
+            "[material]\nyoung = 1.0e6\npoisson = 0.3\n",
+            "",
+            Some(1),
+            "material: expected the table [material], got nothing",
+        ),
+        ("fix = [\"x\", \"y\"]\n", "", Some(11), "support.0.fix: expected the directions it fixes, as in"),
+        (
+            "kind = \"force\"\n",
+            "",
+            Some(15),
+            "load.0.kind: expected one of \"force\", \"gravity\", \"moment\", got nothing",
+        ),
+        (
+            "[[load]]",
+            "[[probe]]\nedge = \"left\"\n[[load]]",
+            Some(15),
+            "probe.0.name: expected what it is called in results",
+        ),
         ("force = [0.0, -10.0]\n", "", Some(15), "force = [fx, fy] in N"),
         ("[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n", "", None, "at least one [[support]]"),
         // Unknown keys and words.
@@ -540,6 +566,10 @@ fn unreadable_files_and_wrong_usage_get_one_clear_message() {
         (&["solve", "article", "--set", "material.young"], "expected PATH=VALUE"),
         (&["solve", "article", "--set", "material.young=-1"], "--set material.young=-1: expected"),
         (&["solve", "article", "--set", "material.yuong=1"], "unknown field `yuong`"),
+        (
+            &["solve", "article", "--set", "load.0.pulse.start=1"],
+            "--set load.0.pulse.start=1: load.0.pulse.duration: expected a time (s), got nothing",
+        ),
         (
             &["solve", "article", "--set", "material.young=12 kN"],
             "--set material.young=12 kN: `12 kN` is a force (N); expected a pressure (Pa)",
@@ -630,7 +660,7 @@ fn a_scene_is_read_from_standard_input() {
     assert_eq!(wrong.status.code(), Some(2));
     assert!(stderr(&wrong).contains("-:17: load.0.edge: expected one of"), "{}", stderr(&wrong));
     let none = run(&["solve", "-"], "");
-    assert!(stderr(&none).contains("missing field `name`"), "{}", stderr(&none));
+    assert!(stderr(&none).contains("-:1: name: expected a title, got nothing"), "{}", stderr(&none));
 }
 
 /// A path need not be text.
@@ -738,6 +768,11 @@ fn curve_follows_an_arch_through_its_limit_load() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let text = stdout(&output);
     assert!(text.contains("the limit load") && text.contains("stable under force control again"), "{text}");
+    // In words a support is called as `solve` calls it; its number names it to scripts.
+    assert!(text.contains("way of support (0.1, 0.0085)  its reaction"), "{text}");
+    let picture = fs::read_to_string(folder.path().join("snap.svg")).unwrap();
+    let axes = ["way of support (0.1, 0.0085), mm", "reaction of support (0.1, 0.0085) along it, N"];
+    assert!(axes.iter().all(|axis| picture.contains(axis)), "{axes:?}");
     let table = fs::read_to_string(folder.path().join("snap.csv")).unwrap();
     let mut lines = table.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -768,11 +803,6 @@ fn a_jump_is_said() {
     let at = json["jumped_at"].as_f64().unwrap();
     assert!((at * 90.0 - 80.8).abs() < 0.5, "{at}");
     assert!(json["probes"][0]["u"][1].as_f64().unwrap() < -0.012, "{json}");
-    // In words a support is called as `solve` calls it; its number names it to scripts.
-    assert!(text.contains("way of support (0.1, 0.0085)  its reaction"), "{text}");
-    let picture = fs::read_to_string(folder.path().join("snap.svg")).unwrap();
-    let axes = ["way of support (0.1, 0.0085), mm", "reaction of support (0.1, 0.0085) along it, N"];
-    assert!(axes.iter().all(|axis| picture.contains(axis)), "{axes:?}");
     let text = stdout(&warpbeam(&["solve", "jump", "--no-truth"]));
     assert!(text.contains("it jumped: beyond 89."), "{text}");
     for scene in [&["cantilever"][..], &["column"], &["jump", "--set", "load.0.force=[0 N, -70 N]"]] {

@@ -35,7 +35,7 @@ pub enum SceneError {
         /// The names that would have worked.
         built_in: String,
     },
-    /// Not TOML, an unknown or missing key, or a value of the wrong type.
+    /// Not TOML, an unknown key, or a value of the wrong type.
     #[error("{}{message}", at(file.as_deref(), *line))]
     Syntax {
         /// The file, or the built-in name; `None` for a text without a name.
@@ -45,12 +45,12 @@ pub enum SceneError {
         /// The parser's sentence.
         message: String,
     },
-    /// A value that cannot be used.
+    /// A value that cannot be used, or a missing key.
     #[error("{}{invalid}", at(file.as_deref(), *line))]
     Invalid {
         /// The file, or the built-in name; `None` for a text without a name.
         file: Option<PathBuf>,
-        /// One-based line of the key; `None` where the key is not written in the file.
+        /// One-based line of the key, or of the table that lacks it; `None` where neither is written in the file.
         line: Option<usize>,
         /// Key and sentence.
         invalid: Invalid,

@@ -14,6 +14,7 @@ pub mod limits;
 mod open;
 mod place;
 pub mod registry;
+mod required;
 pub mod units;
 
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};

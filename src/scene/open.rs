@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
 use super::error::{Invalid, SceneError};
-use super::{Scene, registry, units};
+use super::{Scene, registry, required, units};
 use crate::mesh::{GmshError, Mesh};
 
 /// Scene files are small; anything larger is refused before it is read.
@@ -122,10 +122,12 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     let plain = units::plain(text, str::to_owned).map_err(|invalid| located(text, file, invalid))?;
     // The lines of the plain text are those of the file.
     let text = plain.as_ref();
-    let syntax = |e: toml::de::Error| SceneError::Syntax {
-        file: file.map(Path::to_owned),
-        line: e.span().map(|span| line_of(text, span.start)),
-        message: e.message().trim().replace('\n', ", "),
+    let syntax = |e: toml::de::Error| {
+        let (file, line) = (file.map(Path::to_owned), e.span().map(|span| line_of(text, span.start)));
+        match required::missing(e.message(), toml::from_str(text).ok()) {
+            Some(invalid) => SceneError::Invalid { file, line, invalid },
+            None => SceneError::Syntax { file, line, message: e.message().trim().replace('\n', ", ") },
+        }
     };
     // The file alone first, so that its own errors have lines.
     let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
@@ -134,8 +136,11 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
         for assignment in assignments {
             let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
             let (key, value) = assign(&mut table, assignment).map_err(|e| failed(e.to_string()))?;
-            scene = Scene::deserialize_table(&table)
-                .map_err(|e| failed(format!("{} (got {key} = {value})", e.message().trim().replace('\n', ", "))))?;
+            scene = Scene::deserialize_table(&table).map_err(|e| {
+                let missing = required::missing(e.message(), Some(table.clone())).map(|invalid| invalid.to_string());
+                let message = missing.unwrap_or_else(|| e.message().trim().replace('\n', ", "));
+                failed(format!("{message} (got {key} = {value})"))
+            })?;
         }
     }
     let valid = scene.validate().and_then(|()| folder.map_or(Ok(()), |folder| read_mesh(&mut scene, folder)));

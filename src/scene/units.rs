@@ -165,6 +165,12 @@ pub struct Quantity {
     unit: Option<&'static str>,
 }
 
+impl Quantity {
+    fn in_unit(unit: &'static str) -> Self {
+        Self { dimension: scale_of(unit).map_or(NUMBER, |scale| scale.dimension), unit: Some(unit) }
+    }
+}
+
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let known = NAMES.iter().find(|(dimension, ..)| *dimension == self.dimension);
@@ -212,7 +218,7 @@ struct Scale {
 pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     let text = text.trim();
     let target = scale_of(unit).unwrap_or(Scale { dimension: NUMBER, factor: 1.0, tens: 0 });
-    let expected = || Quantity { dimension: target.dimension, unit: Some(unit) };
+    let expected = || Quantity::in_unit(unit);
     let plain = without_groups(text).ok_or_else(|| UnitError::Ambiguous { text: shown(text) })?;
     let (number, rest) =
         split(&plain).ok_or_else(|| UnitError::NoNumber { text: shown(text), expected: expected() })?;
@@ -347,6 +353,11 @@ fn unit_of(key: &str) -> Option<&'static str> {
     let key: Vec<&str> = key.split('.').filter(is_name).collect();
     let key = key.join(".");
     KEYS.iter().find(|(known, _)| *known == key).map(|(_, limit)| limit.unit)
+}
+
+/// What `key` holds; `None` where that is no number with a unit.
+pub(super) fn quantity_of(key: &str) -> Option<Quantity> {
+    unit_of(key).map(Quantity::in_unit)
 }
 
 /// A number that is typed as text for `key`; `None` where `key` holds no number with a unit.
