@@ -96,16 +96,23 @@ fn with_unit(number: &str, symbol: &str, unit: &str) -> String {
     if unit == "°" { format!("{number}°") } else { format!("{number} {symbol}{unit}").trim_end().to_owned() }
 }
 
-/// A value that is edited, in engineering units: all of its digits where they are few, else six.
+/// A value that is edited, in engineering units: all of its digits where they are no more than six, as typed ones are, else
+/// four.
 ///
 /// ```
 /// use warpbeam::words::editable;
-/// assert_eq!((editable(2.1e11, "Pa"), editable(1000.0 / 3.0, "N")), ("210 GPa".to_owned(), "333.333 N".to_owned()));
+/// assert_eq!(
+///     [editable(2.1e11, "Pa"), editable(1.23456, "N"), editable(1.0 / 60.0, "s")],
+///     ["210 GPa", "1.23456 N", "16.67 ms"]
+/// );
 /// ```
 #[must_use]
 pub fn editable(value: f64, unit: &str) -> String {
-    const EDITABLE: i32 = 6;
-    engineering_digits(value, unit, EDITABLE)
+    const TYPED: usize = 6;
+    /// Of a value, what changing its unit may add to a typed one.
+    const ROUNDING: f64 = 1e-12;
+    let is_typed = (value - rounded(value, TYPED)).abs() <= ROUNDING * value.abs();
+    engineering_digits(value, unit, if is_typed { TYPED as i32 } else { DIGITS })
 }
 
 /// An error or a share in percent: two digits, `exact` where only rounding is left.
@@ -251,6 +258,11 @@ mod tests {
                 );
             }
         }
+        // What was typed in radians, and what no one types.
+        assert_eq!(
+            (editable(0.123_f64.to_radians().to_degrees(), "°").as_str(), editable(1.0 / 60.0, "s").as_str()),
+            ("0.123°", "16.67 ms")
+        );
         assert_eq!((editable(1e-3, "1/s"), editable(16.0, "ms")), ("0.001 1/s".to_owned(), "16 ms".to_owned()));
         assert_eq!((engineering(-90.0, "°"), engineering(30.0, "%")), ("-90°".to_owned(), "30 %".to_owned()));
     }
