@@ -52,9 +52,10 @@ pub fn drawn(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Drawn {
             format!("reaction of {}", support_words(scene, *i)),
             "N",
         ),
-        (Ordinate::Usual, Some(i)) => (
+        // The other axis names the support.
+        (Ordinate::Usual, Some(_)) => (
             path.states.iter().map(|s| driven(s).map_or(0.0, |[_, force]| force)).collect(),
-            format!("reaction of {} along it", support_words(scene, i)),
+            "its reaction along the way".to_owned(),
             if turns { "N m" } else { "N" },
         ),
         (Ordinate::Usual, None) | (Ordinate::Probe(_), _) => {

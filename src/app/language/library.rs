@@ -36,8 +36,7 @@ const SENTENCES: &[&str] = &[
     "turn of support %{place}, %{unit}",
     "way of support (%{x}, %{y}), %{unit}",
     "way of support %{place}, %{unit}",
-    "reaction of support (%{x}, %{y}) along it, %{unit}",
-    "reaction of support %{place} along it, %{unit}",
+    "its reaction along the way, %{unit}",
     "displacement of %{probe}, %{unit}",
     // What is refused.
     "expected a whole number, got %{got}",
