@@ -46,11 +46,25 @@ pub(crate) fn side_by_side([a, b, c, d]: [Vector2<f64>; LANES]) -> Vector2<Lanes
     Vector2::new([a.x, b.x, c.x, d.x].into(), [a.y, b.y, c.y, d.y].into())
 }
 
+/// The matrix in this lane.
+#[must_use]
+#[inline(always)]
+pub(crate) fn matrix_lane(m: &Matrix2<Lanes>, lane: usize) -> Matrix2<f64> {
+    Matrix2::new(m.m11.extract(lane), m.m12.extract(lane), m.m21.extract(lane), m.m22.extract(lane))
+}
+
 /// The vectors of these nodes, side by side.
 #[must_use]
 #[inline(always)]
 pub(crate) fn gather(all: &[Vector2<f64>], [a, b, c, d]: [u32; LANES]) -> Vector2<Lanes> {
     side_by_side([all[a as usize], all[b as usize], all[c as usize], all[d as usize]])
+}
+
+/// The sum over the first so many lanes.
+#[must_use]
+#[inline(always)]
+pub(crate) fn sum(values: Lanes, count: usize) -> f64 {
+    values.into_arr().into_iter().take(count).sum()
 }
 
 /// The vector in this lane.

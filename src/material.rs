@@ -37,8 +37,11 @@ impl Lame {
     /// ψ = μ ‖ε‖² + λ/2 tr²(ε), J/m³.
     #[must_use]
     #[inline]
-    pub fn energy_density(self, strain: &Matrix2<f64>) -> f64 {
-        self.mu * strain.norm_squared() + 0.5 * self.lambda * strain.trace().powi(2)
+    pub fn energy_density<T: Number>(self, strain: &Matrix2<T>) -> T {
+        let squares =
+            strain.m11 * strain.m11 + strain.m12 * strain.m12 + (strain.m21 * strain.m21 + strain.m22 * strain.m22);
+        let trace = strain.m11 + strain.m22;
+        T::splat(self.mu) * squares + T::splat(0.5 * self.lambda) * (trace * trace)
     }
 }
 

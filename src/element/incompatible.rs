@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use nalgebra::{Matrix2, Matrix4, Matrix4x2, SimdPartialOrd, SimdValue, Vector2};
 
 use super::connectivity::Connectivity;
-use super::isoparametric::{SMALLEST_STRETCH_TRACE, add_forces, gather};
+use super::isoparametric::{SMALLEST_STRETCH_TRACE, add_forces, at_nodes};
 use super::matrix::ElementMatrix;
 use super::rounding::{Rounded, RoundedPoint, UNIT};
 use super::{
@@ -13,7 +13,7 @@ use super::{
     rotations_at, warped_strain,
 };
 use crate::displacement::Compensated;
-use crate::lanes::{LANES, Lanes, Number, apply, one_plus, product, zero_vector};
+use crate::lanes::{LANES, Lanes, Number, apply, one_plus, product, sum, zero_vector};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
@@ -106,7 +106,7 @@ impl Quad<Lanes> {
     }
 
     /// The element in this lane.
-    #[inline]
+    #[inline(always)]
     fn lane(&self, of: usize) -> Quad {
         Quad { centre: self.centre.lane(of), gamma: self.gamma.map(|gamma| gamma.extract(of)) }
     }
@@ -306,7 +306,7 @@ impl IncompatibleQuads {
     }
 
     fn elements(&self) -> impl Iterator<Item = (&[u32; 4], Quad)> {
-        let quads = self.quads.iter().flat_map(|quad| (0..LANES).map(|lane| quad.lane(lane)));
+        let quads = self.quads.iter().flat_map(|quad| (0..LANES).map(move |lane| quad.lane(lane)));
         self.nodes.iter().zip(quads)
     }
 
@@ -351,8 +351,9 @@ impl Elements for IncompatibleQuads {
     }
 
     fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]) {
-        for ((nodes, quad), r) in self.elements().zip(r) {
-            *r = polar_or(&(Matrix2::identity() + quad.centre.displacement_gradient(&u.relative(nodes))), *r);
+        let mut rotations = Rotations::Follow(r);
+        for ((numbers, nodes), quad) in self.nodes.batches().zip(&self.quads) {
+            rotations.see(numbers.all(), &quad.centre.displacement_gradient(&u.relative_side_by_side(nodes)));
         }
     }
 
@@ -483,20 +484,20 @@ impl Elements for IncompatibleQuads {
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {
         let condensed = self.condensed(moduli);
         for (nodes, quad, k) in self.with_twist(&condensed) {
-            let own = gather(nodes, u);
+            let own = at_nodes(nodes, u);
             let (f, q) = (Matrix2::identity() + quad.centre.displacement_gradient(&own), quad.twist(&own));
             let (mut strain_rate, mut twist_rate) = (Matrix2::zeros(), Vector2::zeros());
             match rate {
                 StrainRate::Difference(terms) => {
                     for (factor, u) in terms {
-                        let u = gather(nodes, u);
+                        let u = at_nodes(nodes, u);
                         let (h, q) = (quad.centre.displacement_gradient(&u), quad.twist(&u));
                         strain_rate += (h + h.transpose() + h.transpose() * h) * (0.5 * factor);
                         twist_rate += (q + h.transpose() * q) * *factor;
                     }
                 }
                 StrainRate::Velocity(v) => {
-                    let v = gather(nodes, v);
+                    let v = at_nodes(nodes, v);
                     let gradient = quad.centre.displacement_gradient(&v);
                     let rate = f.transpose() * gradient;
                     strain_rate = (rate + rate.transpose()) * 0.5;
@@ -516,7 +517,7 @@ impl Elements for IncompatibleQuads {
         let Lame { lambda, mu } = moduli;
         let condensed = self.condensed(moduli);
         for (e, (nodes, quad, k)) in self.with_twist(&condensed).enumerate() {
-            let own = gather(nodes, u);
+            let own = at_nodes(nodes, u);
             let (f, q) = (Matrix2::identity() + quad.centre.displacement_gradient(&own), quad.twist(&own));
             let k = symmetric(k) * mu;
             let left = f * f.transpose() * mu;
@@ -542,11 +543,13 @@ impl Elements for IncompatibleQuads {
     fn energy(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation]) -> f64 {
         let condensed = self.condensed(moduli);
         let mut energy = 0.0;
-        for ((nodes, quad, k), &r) in self.with_twist(&condensed).zip(r) {
-            let u = u.relative(nodes);
+        let half_mu = Lanes::splat(0.5 * moduli.mu);
+        for ((numbers, nodes), (quad, k)) in self.nodes.batches().zip(self.quads.iter().zip(&condensed.stiffness)) {
+            let (u, r) = (u.relative_side_by_side(nodes), rotations_at(r, numbers.all()));
             let strain = warped_strain(r, &quad.centre.displacement_gradient(&u));
             let q = r.apply_inverse(quad.twist(&u));
-            energy += quad.centre.area * moduli.energy_density(&strain) + 0.5 * moduli.mu * q.dot(&(symmetric(k) * q));
+            let of_twist = half_mu * q.dot(&apply(&symmetric(*k), &q));
+            energy += sum(quad.centre.area * moduli.energy_density(&strain) + of_twist, numbers.count);
         }
         energy
     }
@@ -554,7 +557,7 @@ impl Elements for IncompatibleQuads {
     fn smallest_area_ratio(&self, u: &[Vector2<f64>]) -> f64 {
         let mut smallest = f64::INFINITY;
         for ((nodes, quad), points) in self.elements().zip(&self.points) {
-            let u = gather(nodes, u);
+            let u = at_nodes(nodes, u);
             let (h, q) = (quad.centre.displacement_gradient(&u), quad.twist(&u));
             for point in points {
                 let h = h + q * point.gradients[0].transpose();
@@ -570,7 +573,7 @@ impl Elements for IncompatibleQuads {
         let modes = self.points.iter().zip(&condensed.modes);
         let mut number = 0;
         for (((nodes, quad), (points, modes)), &r) in self.elements().zip(modes).zip(r) {
-            let u = gather(nodes, u);
+            let u = at_nodes(nodes, u);
             let (h, q) = (quad.centre.displacement_gradient(&u), quad.twist(&u));
             let size = modes * r.apply_inverse(q);
             let (first, second) = (Vector2::new(size[0], size[1]), Vector2::new(size[2], size[3]));

@@ -1,7 +1,7 @@
 //! Elements whose displacement is Σ uₐ Nₐ and whose energy is a sum over quadrature points, each with a rotation of its
 //! own: Müller and Gross 2004, article eq. (2).
 
-use nalgebra::{Matrix2, SimdValue, Vector2};
+use nalgebra::{Matrix2, SimdPartialOrd, SimdValue, Vector2};
 
 use super::connectivity::Connectivity;
 use super::matrix::{ElementMatrix, PointTangent};
@@ -11,9 +11,12 @@ use super::{
     warped_strain,
 };
 use crate::displacement::Compensated;
-use crate::lanes::{LANES, Lanes, Number, apply, lane, outer, product, side_by_side, zero_matrix, zero_vector};
+use crate::lanes::{
+    LANES, Lanes, Number, apply, gather, lane, matrix_lane, one_plus, outer, product, side_by_side, sum, zero_matrix,
+    zero_vector,
+};
 use crate::material::Lame;
-use crate::rotation::{Rotation, polar_or};
+use crate::rotation::Rotation;
 
 /// One quadrature point of an element with `N` nodes, at rest; or of several elements, side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,9 +72,11 @@ impl<const N: usize> QuadraturePoint<N, Lanes> {
     }
 
     /// That of the element in this lane.
-    #[inline]
+    #[inline(always)]
     pub(super) fn lane(&self, of: usize) -> QuadraturePoint<N> {
-        QuadraturePoint { gradients: self.gradients.map(|g| lane(&g, of)), area: self.area.extract(of) }
+        let mut gradients = [zero_vector(); N];
+        gradients.iter_mut().zip(&self.gradients).for_each(|(own, g)| *own = lane(g, of));
+        QuadraturePoint { gradients, area: self.area.extract(of) }
     }
 }
 
@@ -149,17 +154,9 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
     }
 
     /// Every element's nodes and quadrature points.
-    fn elements(&self) -> impl Iterator<Item = (&[u32; N], [QuadraturePoint<N>; Q])> {
-        let points = self.points.iter().flat_map(|points| (0..LANES).map(|lane| points.map(|point| point.lane(lane))));
-        self.nodes.iter().zip(points)
-    }
-
-    /// Every element's nodes, points and rotations.
-    fn turned<'a>(
-        &'a self,
-        r: &'a [Rotation],
-    ) -> impl Iterator<Item = (&'a [u32; N], [QuadraturePoint<N>; Q], &'a [Rotation])> {
-        self.elements().zip(r.chunks_exact(Q)).map(|((nodes, points), r)| (nodes, points, r))
+    fn elements(&self) -> impl Iterator<Item = (&[u32; N], impl Iterator<Item = QuadraturePoint<N>>)> {
+        let points = self.points.iter().flat_map(|points| (0..LANES).map(move |lane| (points, lane)));
+        self.nodes.iter().zip(points.map(|(points, lane)| points.iter().map(move |point| point.lane(lane))))
     }
 
     /// One sweep: `gather` takes from the nodes what `look` sees a quadrature point with.
@@ -212,7 +209,7 @@ pub(super) fn add_forces<const N: usize>(
 }
 
 #[inline(always)]
-pub(super) fn gather<const N: usize>(nodes: &[u32; N], u: &[Vector2<f64>]) -> [Vector2<f64>; N] {
+pub(super) fn at_nodes<const N: usize>(nodes: &[u32; N], u: &[Vector2<f64>]) -> [Vector2<f64>; N] {
     let mut own = [Vector2::zeros(); N];
     own.iter_mut().zip(nodes).for_each(|(own, &node)| *own = u[node as usize]);
     own
@@ -240,10 +237,11 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     }
 
     fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]) {
-        for ((nodes, points), r) in self.elements().zip(r.chunks_exact_mut(Q)) {
-            let u = u.relative(nodes);
-            for (point, r) in points.iter().zip(r) {
-                *r = polar_or(&(Matrix2::identity() + point.displacement_gradient(&u)), *r);
+        let mut rotations = Rotations::Follow(r);
+        for ((numbers, nodes), points) in self.nodes.batches().zip(&self.points) {
+            let u = u.relative_side_by_side(nodes);
+            for (q, point) in points.iter().enumerate() {
+                rotations.see(numbers.points(Q, q), &point.displacement_gradient(&u));
             }
         }
     }
@@ -269,10 +267,10 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     }
 
     fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]) {
-        for (nodes, points, r) in self.turned(r) {
+        for ((nodes, points), r) in self.elements().zip(r.chunks_exact(Q)) {
             let own = Rounded::relative(u, nodes);
-            for (point, &r) in points.iter().zip(r) {
-                let seen = RoundedPoint::new(point, moduli, r, &own);
+            for (point, &r) in points.zip(r) {
+                let seen = RoundedPoint::new(&point, moduli, r, &own);
                 for (&node, g) in nodes.iter().zip(&point.gradients) {
                     bound[node as usize] += seen.force(g, Q as f64);
                 }
@@ -303,20 +301,20 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
 
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {
         for (nodes, points) in self.elements() {
-            let own = gather(nodes, u);
-            for point in &points {
+            let own = at_nodes(nodes, u);
+            for point in points {
                 let f = Matrix2::identity() + point.displacement_gradient(&own);
                 let rate = match rate {
                     StrainRate::Difference(terms) => {
                         let mut sum = Matrix2::zeros();
                         for (factor, u) in terms {
-                            let h = point.displacement_gradient(&gather(nodes, u));
+                            let h = point.displacement_gradient(&at_nodes(nodes, u));
                             sum += (h + h.transpose() + h.transpose() * h) * (0.5 * factor);
                         }
                         sum
                     }
                     StrainRate::Velocity(v) => {
-                        let rate = f.transpose() * point.displacement_gradient(&gather(nodes, v));
+                        let rate = f.transpose() * point.displacement_gradient(&at_nodes(nodes, v));
                         (rate + rate.transpose()) * 0.5
                     }
                 };
@@ -331,9 +329,9 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]) {
         let Lame { lambda, mu } = moduli;
         for (e, (nodes, points)) in self.elements().enumerate() {
-            let own = gather(nodes, u);
+            let own = at_nodes(nodes, u);
             let mut sum = ElementMatrix::<N, f64>::zero();
-            for point in &points {
+            for point in points {
                 let f = Matrix2::identity() + point.displacement_gradient(&own);
                 let left = f * f.transpose();
                 // With g = F ∇Nₐ and h = F ∇N_b the block is λ g hᵀ + μ h gᵀ + μ (∇Nₐ·∇N_b) F Fᵀ.
@@ -351,35 +349,40 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
 
     fn energy(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation]) -> f64 {
         let mut energy = 0.0;
-        for (nodes, points, r) in self.turned(r) {
-            let u = u.relative(nodes);
-            for (point, &r) in points.iter().zip(r) {
-                energy += point.area * moduli.energy_density(&warped_strain(r, &point.displacement_gradient(&u)));
+        for ((numbers, nodes), points) in self.nodes.batches().zip(&self.points) {
+            let u = u.relative_side_by_side(nodes);
+            for (q, point) in points.iter().enumerate() {
+                let rotation = rotations_at(r, numbers.points(Q, q));
+                let strain = warped_strain(rotation, &point.displacement_gradient(&u));
+                energy += sum(point.area * moduli.energy_density(&strain), numbers.count);
             }
         }
         energy
     }
 
     fn smallest_area_ratio(&self, u: &[Vector2<f64>]) -> f64 {
-        let mut smallest = f64::INFINITY;
-        for (nodes, points) in self.elements() {
-            let u = gather(nodes, u);
-            for point in &points {
-                let h = point.displacement_gradient(&u);
-                smallest = smallest.min((1.0 + h.m11) * (1.0 + h.m22) - h.m12 * h.m21);
+        let mut smallest = Lanes::splat(f64::INFINITY);
+        for ((_, nodes), points) in self.nodes.batches().zip(&self.points) {
+            let u = nodes.map(|nodes| gather(u, nodes));
+            for point in points {
+                let f = one_plus(&point.displacement_gradient(&u));
+                smallest = smallest.simd_min(f.m11 * f.m22 - f.m12 * f.m21);
             }
         }
-        smallest
+        smallest.simd_horizontal_min()
     }
 
     fn visit_strains(&self, _: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>) {
-        let mut q = 0;
-        for (nodes, points, r) in self.turned(r) {
-            let u = gather(nodes, u);
-            for (point, &r) in points.iter().zip(r) {
-                let h = point.displacement_gradient(&u);
-                visit(q, &h, &warped_strain(r, &h));
-                q += 1;
+        for ((numbers, nodes), points) in self.nodes.batches().zip(&self.points) {
+            let u = nodes.map(|nodes| gather(u, nodes));
+            let seen: [_; Q] = std::array::from_fn(|q| {
+                let h = points[q].displacement_gradient(&u);
+                (h, warped_strain(rotations_at(r, numbers.points(Q, q)), &h))
+            });
+            for lane in 0..numbers.count {
+                for (q, (h, strain)) in seen.iter().enumerate() {
+                    visit((numbers.first + lane) * Q + q, &matrix_lane(h, lane), &matrix_lane(strain, lane));
+                }
             }
         }
     }
