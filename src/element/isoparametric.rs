@@ -208,6 +208,7 @@ pub(super) fn add_forces<const N: usize>(
     }
 }
 
+/// The values of an element's nodes.
 #[inline(always)]
 pub(super) fn at_nodes<const N: usize>(nodes: &[u32; N], u: &[Vector2<f64>]) -> [Vector2<f64>; N] {
     let mut own = [Vector2::zeros(); N];
