@@ -39,6 +39,12 @@ impl Numbers {
     }
 }
 
+/// What elements that are no more than lanes have, in lanes.
+#[must_use]
+pub(crate) fn filled<T: Copy>(own: &[T]) -> [T; LANES] {
+    Numbers { first: 0, count: own.len() }.all().map(|lane| own[lane])
+}
+
 /// Vectors of several elements, side by side.
 #[must_use]
 #[inline(always)]
@@ -63,7 +69,7 @@ pub(crate) fn gather(all: &[Vector2<f64>], [a, b, c, d]: [u32; LANES]) -> Vector
 /// The sum over the first so many lanes.
 #[must_use]
 #[inline(always)]
-pub(crate) fn sum(values: Lanes, count: usize) -> f64 {
+pub(crate) fn sum_of_lanes(values: Lanes, count: usize) -> f64 {
     values.into_arr().into_iter().take(count).sum()
 }
 

@@ -192,8 +192,8 @@ fn reactions(scene: &Scene, solution: &Solution) -> String {
     if solution.supports.len() < 2 && !moved(scene) {
         return text;
     }
-    for (support, reaction) in scene.supports.iter().zip(&solution.supports) {
-        let _ = write!(text, "  support {}", support.place);
+    for (i, (support, reaction)) in scene.supports.iter().zip(&solution.supports).enumerate() {
+        let _ = write!(text, "  {}", support_words(scene, i));
         if support.displacement != [0.0; 2] {
             let _ = write!(text, ", moved by {}", engineering_pair(support.displacement, "m"));
         }

@@ -1,6 +1,6 @@
 //! Which nodes elements have: one by one, and side by side.
 
-use crate::lanes::{LANES, Numbers};
+use crate::lanes::{LANES, Numbers, filled};
 
 /// The nodes of elements of `N` nodes.
 #[derive(Debug)]
@@ -15,8 +15,8 @@ impl<const N: usize> Connectivity<N> {
     pub fn new(numbers: &[u32]) -> Self {
         let (elements, _) = numbers.as_chunks::<N>();
         let batches = elements.chunks(LANES).map(|own| {
-            let lanes = Numbers { first: 0, count: own.len() }.all();
-            std::array::from_fn(|a| lanes.map(|lane| own[lane][a]))
+            let own = filled(own);
+            std::array::from_fn(|a| own.map(|nodes| nodes[a]))
         });
         Self { batches: batches.collect(), elements: elements.to_vec() }
     }

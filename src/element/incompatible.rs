@@ -13,7 +13,7 @@ use super::{
     rotations_at, warped_strain,
 };
 use crate::displacement::Compensated;
-use crate::lanes::{LANES, Lanes, Number, apply, one_plus, product, sum, zero_vector};
+use crate::lanes::{LANES, Lanes, Number, apply, filled, one_plus, product, sum_of_lanes, zero_vector};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
@@ -187,7 +187,7 @@ impl Condensed {
             modes.push(size);
         }
         let stiffness = stiffness.chunks(LANES).map(|own| {
-            let own: [[f64; 3]; LANES] = std::array::from_fn(|lane| own[lane.min(own.len() - 1)]);
+            let own = filled(own);
             std::array::from_fn(|i| own.map(|k| k[i]).into())
         });
         Self { ratio, stiffness: stiffness.collect(), modes }
@@ -549,7 +549,7 @@ impl Elements for IncompatibleQuads {
             let strain = warped_strain(r, &quad.centre.displacement_gradient(&u));
             let q = r.apply_inverse(quad.twist(&u));
             let of_twist = half_mu * q.dot(&apply(&symmetric(*k), &q));
-            energy += sum(quad.centre.area * moduli.energy_density(&strain) + of_twist, numbers.count);
+            energy += sum_of_lanes(quad.centre.area * moduli.energy_density(&strain) + of_twist, numbers.count);
         }
         energy
     }

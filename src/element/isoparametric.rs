@@ -12,8 +12,8 @@ use super::{
 };
 use crate::displacement::Compensated;
 use crate::lanes::{
-    LANES, Lanes, Number, apply, gather, lane, matrix_lane, one_plus, outer, product, side_by_side, sum, zero_matrix,
-    zero_vector,
+    LANES, Lanes, Number, apply, gather, lane, matrix_lane, one_plus, outer, product, side_by_side, sum_of_lanes,
+    zero_matrix, zero_vector,
 };
 use crate::material::Lame;
 use crate::rotation::Rotation;
@@ -355,7 +355,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
             for (q, point) in points.iter().enumerate() {
                 let rotation = rotations_at(r, numbers.points(Q, q));
                 let strain = warped_strain(rotation, &point.displacement_gradient(&u));
-                energy += sum(point.area * moduli.energy_density(&strain), numbers.count);
+                energy += sum_of_lanes(point.area * moduli.energy_density(&strain), numbers.count);
             }
         }
         energy

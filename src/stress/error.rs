@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{Local, NodalStress, visit_points};
+use super::{NodalStress, visit_points};
 use crate::assembly::Problem;
 use crate::rotation::Rotation;
 use crate::state::State;
@@ -53,24 +53,24 @@ impl MeshError {
             .map(|p| (p, (entry.shape)(p.at), (entry.local_gradients)(p.at), (entry.point_weights)(p.at)))
             .collect();
         let (mut error, mut energy, mut area) = (0.0, 0.0, 0.0);
+        let mut weighted = Vec::new();
         self.elements.clear();
         for (e, (own, strains)) in mesh.elements().zip(strains.chunks_exact(per_element)).enumerate() {
             let (mut own_error, mut own_area) = (0.0, 0.0);
             let rotation = one_rotation.then(|| state.rotations()[elements.rotation_of(e * per_element)]);
             for (point, shape, gradients, weights) in &rule {
-                let (mut jacobian, mut recovered, mut turn) = (Matrix2::zeros(), Matrix2::zeros(), Vector2::zeros());
-                for ((&n, shape), gradient) in own.iter().zip(shape).zip(gradients) {
-                    let x: &Vector2<f64> = &mesh.nodes()[n as usize];
-                    jacobian += x * gradient.transpose();
-                    let Local { strain, rotation } = nodal.nodes()[n as usize];
-                    recovered += strain * *shape;
-                    turn += Vector2::new(rotation.c, rotation.s) * *shape;
+                let mut jacobian = Matrix2::zeros();
+                for (&n, gradient) in own.iter().zip(gradients) {
+                    jacobian += mesh.nodes()[n as usize] * gradient.transpose();
                 }
+                weighted.clear();
+                weighted.extend(own.iter().copied().zip(shape.iter().copied()));
+                let recovered = nodal.mean(&weighted);
                 let strain: Matrix2<f64> = strains.iter().zip(weights).map(|(s, w)| s * *w).sum();
                 let at_point = point.weight * jacobian.determinant();
                 let own_energy = at_point * 2.0 * moduli.energy_density(&strain);
-                own_error += at_point * 2.0 * moduli.energy_density(&(recovered - strain));
-                own_error += rotation.map_or(0.0, |r| missed(r, turn).powi(2) * own_energy);
+                own_error += at_point * 2.0 * moduli.energy_density(&(recovered.strain - strain));
+                own_error += rotation.map_or(0.0, |r| missed(r, recovered.rotation).powi(2) * own_energy);
                 energy += own_energy;
                 own_area += at_point;
             }
@@ -86,9 +86,8 @@ impl MeshError {
     }
 }
 
-/// The share of its stress that an element misses by having one rotation: 3 φ², φ the angle from it to the recovered one,
-/// whose cosine and sine are as these two.
-fn missed(rotation: Rotation, recovered: Vector2<f64>) -> f64 {
-    let back = rotation.matrix().tr_mul(&recovered);
+/// The share of its stress that an element misses by having one rotation: 3 φ², φ the angle from it to the recovered one.
+fn missed(rotation: Rotation, recovered: Rotation) -> f64 {
+    let back = rotation.apply_inverse(Vector2::new(recovered.c, recovered.s));
     3.0 * back.y.atan2(back.x).powi(2)
 }
