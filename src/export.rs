@@ -209,7 +209,7 @@ fn xml_attribute(text: &str) -> String {
 }
 
 /// A text as a field of a CSV file.
-fn csv_field(text: &str) -> Cow<'_, str> {
+pub(crate) fn csv_field(text: &str) -> Cow<'_, str> {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\"")).into()
     } else {

@@ -326,6 +326,40 @@ impl Factor {
         );
     }
 
+    /// Number of negative eigenvalues of the matrix of the last factor (Sylvester's law of inertia: those of B in L B Lᵀ).
+    #[must_use]
+    pub fn negative_eigenvalues(&self) -> usize {
+        let symbolic = self.symbolic.0.symbolic(self.kind);
+        let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else { return 0 };
+        if self.kind == Kind::PositiveDefinite {
+            return 0;
+        }
+        let columns = supernodal.supernode_begin().iter().zip(supernodal.supernode_end());
+        let rows = supernodal.col_ptr_for_row_idx().windows(2).map(|w| w[1] - w[0]);
+        let mut negative = 0;
+        for (((&begin, &end), below), &start) in columns.zip(rows).zip(supernodal.col_ptr_for_val()) {
+            let width = end - begin;
+            let diagonal = |i: usize| self.values[start + i * (width + below + 1)];
+            let mut i = 0;
+            while i < width {
+                let coupling = self.subdiagonal[begin + i];
+                if coupling == 0.0 {
+                    negative += usize::from(diagonal(i) < 0.0);
+                    i += 1;
+                    continue;
+                }
+                let (a, b) = (diagonal(i), diagonal(i + 1));
+                // A block with a negative determinant has one eigenvalue of either sign.
+                negative += match a * b - coupling * coupling < 0.0 {
+                    true => 1,
+                    false => 2 * usize::from(a < 0.0),
+                };
+                i += 2;
+            }
+        }
+        negative
+    }
+
     /// Replaces `b` by the solution of the system with the last factor.
     pub fn solve_in_place(&mut self, b: &mut [f64]) {
         let rows = b.len();

@@ -20,7 +20,7 @@ pub struct State {
     pub(crate) velocity: Vec<Vector2<f64>>,
     /// Time since the start, s; zero in statics.
     pub(crate) time: f64,
-    /// The force that accelerates every node at the end of a time step, as that step has left it, N …
+    /// The force that accelerates every node at the end of a time step, without pulses and hand, as that step has left it, N …
     pub(crate) net_force: Vec<Vector2<f64>>,
     /// … where it is known: not at the start, and not of a body that has been moved or loaded anew.
     pub(crate) knows_net_force: bool,

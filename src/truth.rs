@@ -199,13 +199,20 @@ impl ClampedBeam {
     /// other side of that is not taken, so the path stays the stable one.
     #[must_use]
     pub fn path(&self, largest: f64, points: u32) -> Vec<PathPoint> {
+        self.path_to_critical(largest, points).0
+    }
+
+    /// [`Self::path`] with the load factor at which the path loses its stability, where it does so without turning back: the
+    /// beam buckles there.
+    #[must_use]
+    pub fn path_to_critical(&self, largest: f64, points: u32) -> (Vec<PathPoint>, Option<f64>) {
         let mut path = Vec::new();
-        self.follow(largest, points, &mut |factor, unknowns| {
+        let critical = self.follow(largest, points, &mut |factor, unknowns| {
             let tip = self.stations(unknowns, factor).pop();
             let tip = tip.unwrap_or(Tip { x: Vector2::zeros(), angle: 0.0 });
             path.push(PathPoint { factor, tip, clamp_moment: unknowns[1] * self.bending / self.length });
         });
-        path
+        (path, critical)
     }
 
     /// The axis under the whole load, from the clamp to the tip; `None` where the equilibrium cannot be followed.
@@ -229,10 +236,10 @@ impl ClampedBeam {
         stations
     }
 
-    /// Visits the equilibria of [`Self::path`].
-    fn follow(&self, largest: f64, points: u32, visit: &mut dyn FnMut(f64, &DVector<f64>)) {
+    /// Visits the equilibria of [`Self::path`]; returns the load factor beyond which the path goes on unstably.
+    fn follow(&self, largest: f64, points: u32, visit: &mut dyn FnMut(f64, &DVector<f64>)) -> Option<f64> {
         let mut unknowns = DVector::zeros(2 * SEGMENTS);
-        let Some((_, side)) = self.newton_step(&mut unknowns, 0.0) else { return };
+        let (_, side) = self.newton_step(&mut unknowns, 0.0)?;
         let (mut reached, mut step) = (0.0_f64, 1.0 / 16.0_f64);
         for point in 1..=points {
             let goal = largest * f64::from(point) / f64::from(points);
@@ -247,13 +254,15 @@ impl ClampedBeam {
                     None => {
                         step = 0.4 * step.min(goal - reached);
                         if step < SMALLEST_LOAD_STEP {
-                            return;
+                            // Half a step back from where the other side begins.
+                            return self.converge(&unknowns, target, !side).map(|_| 0.5 * (reached + target));
                         }
                     }
                 }
             }
             visit(goal, &unknowns);
         }
+        None
     }
 
     /// The equilibrium at a load factor, near `start` and on the same side of a critical point.

@@ -90,7 +90,7 @@ fn panes_agree_with_solves(harness: &Harness<'_, Lab>) {
         if !alone.status().is_success() {
             continue;
         }
-        let error = truth.first().error_percent(&alone.solution().probes[0]).unwrap();
+        let error = truth.first().unwrap().error_percent(&alone.solution().probes[0]).unwrap();
         assert!((pane.error_percent().unwrap() - error).abs() < 1e-6, "{}: {error}", pane.setting());
         let said = labels(harness).into_iter().find(|l| l.starts_with(&format!("Pane {}: ", number + 1))).unwrap();
         assert!(said.contains(&format!("error {}", percent(error))), "{said}");

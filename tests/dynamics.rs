@@ -657,9 +657,15 @@ fn works_are_forces_times_ways() {
         let middle = simulation.system().mesh().locate(Vector2::new(0.6, 0.01)).unwrap();
         let (mut pulses, mut hands) = (0.0, 0.0);
         let right = simulation.system().edges().iter().position(|edge| edge.name() == "right").unwrap();
-        let pulse = |time: f64| {
-            let part = (time - 0.05) / 0.4;
-            if (0.0..1.0).contains(&part) { (part * TAU / 2.0).sin().powi(2) } else { 0.0 }
+        // The mean over a step, by Simpson's rule on many parts.
+        let pulse = |from: f64, to: f64| {
+            let at = |time: f64| {
+                let part = (time - 0.05) / 0.4;
+                if (0.0..1.0).contains(&part) { (part * TAU / 2.0).sin().powi(2) } else { 0.0 }
+            };
+            let parts =
+                (0..64).map(|i| [0.0, 0.5, 1.0].map(|half| at(from + (to - from) * (f64::from(i) + half) / 64.0)));
+            parts.map(|[a, b, c]| (a + 4.0 * b + c) / (6.0 * 64.0)).sum::<f64>()
         };
         for step in 0..steps {
             if step == steps / 4 {
@@ -680,7 +686,7 @@ fn works_are_forces_times_ways() {
             let before = (along(&simulation), simulation.state().time(), hand(&simulation));
             simulation.step();
             let after = (along(&simulation), simulation.state().time(), hand(&simulation));
-            pulses += 0.5 * (pulse(before.1) + pulse(after.1)) * (after.0 - before.0);
+            pulses += pulse(before.1, after.1) * (after.0 - before.0);
             if let (Some((x0, f0)), Some((x1, f1))) = (before.2, after.2) {
                 hands += 0.5 * (f0 + f1).dot(&(x1 - x0));
             }

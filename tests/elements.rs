@@ -375,7 +375,7 @@ fn q4_bends_with_few_cells() {
     for (id, [along, across], bound) in cases {
         let scene = common::scene(id).with_element(ElementKind::Q4).with_cells(along, across);
         let scene = scene.with_method(MethodKind::Newton);
-        let truth = warpbeam::study::Reference::of(&scene).unwrap().first().displacement;
+        let truth = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().displacement;
         let mut simulation = Simulation::new(&scene).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged);
         assert_eq!(simulation.certify().stable, Some(true));

@@ -393,7 +393,7 @@ fn remedies_are_one_click_away() {
     wait(&mut harness, "the truth", |lab| !lab.is_searching());
     harness.run();
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
-    assert!(harness.query_by_label_contains("ERROR 1.6 % mesh").is_some(), "{:?}", texts(&harness));
+    assert!(harness.query_by_label_contains("ERROR 1.5 % mesh").is_some(), "{:?}", texts(&harness));
     assert!(harness.query_by_label_contains("lock in bending").is_none());
 
     let mut harness = self::harness("cantilever");

@@ -186,7 +186,7 @@ fn wrong_usage_is_refused_before_anything_is_drawn() {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_recording_is_shorter_and_valid() {
-    use common::process::{interrupt, listens, start, wait_for};
+    use common::process::{start, wait_for};
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.gif", "a.png"] {
         let path = folder.path().join(name);
@@ -194,7 +194,7 @@ fn an_interrupted_recording_is_shorter_and_valid() {
         let args = ["record", "swing", "--speed", "0.001", "--size", "128x128", "-o", name];
         let running = start(folder.path(), &args);
         wait_for("some pictures", || fs::metadata(&path).is_ok_and(|file| file.len() > 30_000));
-        let output = interrupt(running);
+        let output = running.interrupt();
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
         assert!(stderr(&output).contains("the recording is partial"), "{}", stderr(&output));
         let movie = if name == "a.gif" { decode_gif(&path) } else { decode_png(&path) };
@@ -204,8 +204,8 @@ fn an_interrupted_recording_is_shorter_and_valid() {
     }
     // Before the first picture there is none.
     let running = start(folder.path(), &["record", "swing", "--seconds", "1e5", "-o", "none.gif"]);
-    wait_for("an ear for signals", || listens(&running));
-    let output = interrupt(running);
+    wait_for("an ear for signals", || running.listens());
+    let output = running.interrupt();
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("nothing was written"), "{}", stderr(&output));
     assert!(!folder.path().join("none.gif").exists());

@@ -58,8 +58,8 @@ fn the_program_measures_rivals() {
     // One small mesh from a file: the least that can be measured.
     let mesh = include_str!("data/square.msh");
     std::fs::write(folder.path().join("square.msh"), mesh).unwrap();
-    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
-        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"force\"\nat = [1, 0]\nforce = [0, -100]\n[[probe]]\nname = \"corner\"\nat = [1, 0]\n";
+    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\ndensity = 20\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"gravity\"\nacceleration = [0, -10]\n[[probe]]\nname = \"corner\"\nat = [1, 0]\n";
     let path = folder.path().join("square.toml");
     std::fs::write(&path, scene).unwrap();
     let args = [path.to_str().unwrap(), "--quick", "--out", out];

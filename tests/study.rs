@@ -225,6 +225,39 @@ fn what_cannot_be_studied_is_refused() {
     }
 }
 
+/// Where no bound of the error is known that is below what is asked, it is not known what meets that: a block sheared until its
+/// elements invert, a force on the point that is measured, an error smaller than the reference's.
+#[test]
+fn tuning_does_not_claim_what_is_not_known() {
+    let block = scene_with("shear", &["load.0.force=[1e6,0]"]);
+    let point = Scene::beam(2.0, 1.0).clamp("left").force([2.0, 0.5], [0.0, -100.0]).probe("tip", [2.0, 0.5]);
+    for (name, scene, asked) in [("block", block, 5.0), ("point", point, 1.0), ("shear", scene("shear"), 0.01)] {
+        let demand = Demand { max_error_percent: Some(asked), max_time_ms: None };
+        let refused = Tuning::of(&scene, demand, &mut go_on);
+        assert!(refused.as_ref().is_err_and(StudyError::is_unknown), "{name}: {:?}", refused.map(|t| t.chosen));
+    }
+    let output = warpbeam(&["tune", "shear", "--error", "0.01%"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stdout(&output).contains("not known which settings meet at most 0.01 % error"), "{}", stdout(&output));
+}
+
+/// A search for a setting that is cancelled has what was measured until then.
+#[test]
+fn a_cancelled_tuning_chooses_from_what_was_measured() {
+    let demand = Demand { max_error_percent: Some(1e-3), max_time_ms: None };
+    let scene = scene("elastica");
+    let mut measured = 0;
+    let mut observe = |progress: warpbeam::study::Progress<'_>| {
+        measured += u32::from(progress.now.contains("×"));
+        if measured < 12 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let own = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().own_error_percent;
+    let demand = Demand { max_error_percent: Some(own * 1.001), ..demand };
+    let tuning = Tuning::of(&scene, demand, &mut observe).unwrap();
+    assert!(tuning.is_partial && !tuning.met && tuning.measured > 0, "{tuning}");
+    assert!(tuning.study.measurements.len() < 60);
+}
+
 /// The same from the command line: files, columns, no number that is none; a step too short to be run to the end is said
 /// to be.
 #[test]

@@ -241,7 +241,13 @@ fn settings(
             actions.push(Action::Apply(best.setting));
         }
         let measured = budget.study.map_or(0, |s| s.measurements.len());
-        ui.label(fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured));
+        ui.label(match budget.study.filter(|study| !study.can_judge(budget.demand)) {
+            Some(study) => {
+                let own = percent(study.against.own_error_percent);
+                fill!("Not known: the reference's own error may be %{own}", own = own)
+            }
+            None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured),
+        });
     });
     list(ui, budget, actions);
 }

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 
 use thiserror::Error;
 
-use crate::scene::{self, STANDARD_INPUT, Scene, SceneError, Source};
+use crate::scene::{self, Scene, SceneError, Source};
 
 /// A scene's place, and the scene that is there.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,10 +43,9 @@ impl Document {
         Ok(Self::new(source, original))
     }
 
-    /// The scene's file; `None` for a built-in scene, and for what came from standard input.
+    /// The scene's file; `None` for a built-in scene, and for one that came from a stream.
     pub(super) fn path(&self) -> Option<&Path> {
-        let name = &self.source.name;
-        (self.source.built_in().is_none() && name != Path::new(STANDARD_INPUT)).then_some(name.as_path())
+        (self.source.built_in().is_none() && !self.source.is_stream()).then_some(self.source.name.as_path())
     }
 
     /// Whether the file has been written since it was read or saved here.

@@ -45,7 +45,7 @@ use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{Extent, Jump, LoadPath, Reference, Study};
+use crate::study::{Extent, LoadPath, PathSummary, Reference, Study};
 use crate::timings::Timings;
 
 mod beside;
@@ -120,7 +120,7 @@ pub struct Lab {
     truth: Finder<Reference>,
     curve: Finder<Curve>,
     /// Where the body jumps on its way from rest.
-    jump: Finder<Jump>,
+    jump: Finder<PathSummary>,
     budget: Budget,
     compare: Compare,
     /// The lowest natural frequency, Hz.
@@ -185,7 +185,7 @@ impl Lab {
             shape: Shape::default(),
             truth: Finder::new(|scene| Reference::of(scene).ok()),
             curve: Finder::new(Curve::of),
-            jump: Finder::new(LoadPath::jump_of),
+            jump: Finder::new(LoadPath::summary_of),
             budget: Budget::default(),
             compare: Compare::default(),
             frequency: Finder::new(natural_frequency),

@@ -12,7 +12,7 @@ use super::overlay::boxed_text;
 use super::palette::{Palette, SMALL};
 use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
-use crate::study::path_chart::{Ordinate, Piece, drawn};
+use crate::study::path_chart::{Ordinate, Piece, drawn, unstable_words};
 use crate::study::{Departure, LoadCurve, LoadPath, MethodPoint};
 use crate::words::{engineering, three_digits, ticks};
 
@@ -125,10 +125,13 @@ fn path(ui: &mut Ui, path: &LoadPath, scene: &Scene) {
             for (points, piece) in drawn.pieces(path) {
                 let (name, color, style) = match piece {
                     Piece::Stable => ("stable", stable, LineStyle::Solid),
-                    Piece::Unstable => ("unstable under force control", unstable, LineStyle::dashed_loose()),
+                    Piece::Unstable => (unstable_words(path), unstable, LineStyle::dashed_loose()),
                     Piece::Jump => ("it jumps", unstable, LineStyle::dotted_dense()),
                 };
                 plot.line(Line::new(tr(name), PlotPoints::from(points)).color(color).width(2.0).style(style));
+            }
+            for (at, words) in drawn.bifurcations(path) {
+                plot.points(Points::new(translated(&words), vec![at]).color(unstable).radius(5.0));
             }
             let at: Vec<[f64; 2]> = drawn.points.last().map(|p| p.0).into_iter().collect();
             plot.points(Points::new(tr("the scene"), at).color(palette.text).radius(4.0));
@@ -237,6 +240,7 @@ mod tests {
             method,
             tip: Vector2::new(0.0, -deflection),
             status: Status::Converged,
+            stable: None,
         };
         let methods = [
             point(MethodKind::Linear, 90.0),

@@ -84,7 +84,7 @@ fn work(
         };
         line.say((progress.fraction as f32, words))
     };
-    let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, theme, language };
+    let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, overwrite: true, theme, language };
     match record(source, scene, &options, path, &mut observe) {
         Ok(recorded) if recorded.pictures == 0 => tr("Nothing was recorded").to_owned(),
         Ok(recorded) => {

@@ -1,6 +1,5 @@
 //! Pictures of a lab without a window.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -15,7 +14,7 @@ use crate::picture::Picture;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
 use crate::scene::{IntegratorKind, Scene, Source};
 use crate::simulation::{Simulation, Status};
-use crate::study::{Extent, Study};
+use crate::study::{Extent, Observer, Study};
 
 /// Largest side of a shot, pixels.
 pub const MAX_SHOT_SIDE: u32 = 8192;
@@ -59,7 +58,8 @@ impl Default for ShotOptions {
     }
 }
 
-/// Solves the scene and writes its picture; returns how the solve ended.
+/// Solves the scene and writes its picture; returns how the solve ended. `observe` receives the progress of a study, and cancels
+/// it: the picture then has what was measured.
 ///
 /// # Errors
 /// [`AppError::Render`].
@@ -69,6 +69,7 @@ pub fn shot(
     simulation: Simulation,
     options: &ShotOptions,
     output: &Path,
+    observe: Observer<'_>,
 ) -> Result<Status, AppError> {
     let gpu = Gpu::headless()?;
     let mut lab = Lab::new(source, scene, simulation);
@@ -83,8 +84,8 @@ pub fn shot(
     }
     if options.study {
         let extent = if options.learn.is_some() { Extent::Quick } else { Extent::Full };
-        match Study::new(lab.scene(), extent, &mut |_| ControlFlow::Continue(())) {
-            Ok(study) => lab.show_study(study),
+        match Study::until_cancelled(lab.scene(), extent, observe) {
+            Ok((study, _)) => lab.show_study(study),
             Err(error) => log::error!("no study: {error}"),
         }
     }

@@ -40,7 +40,7 @@ pub(super) fn errors(input: &PanelInput<'_>) -> Errors {
     let simulation = input.simulation;
     let at_rest = simulation.is_at_rest() && simulation.hand().is_none();
     let Some(reference) = input.truth.filter(|_| at_rest) else { return Errors::default() };
-    let truth = reference.first();
+    let Some(truth) = reference.first() else { return Errors::default() };
     let percent_of = |simulation: &Simulation| {
         let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
         Some((truth.error_percent(&probe)?, probe.u))
@@ -126,8 +126,11 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
     add(count(simulation.iterations(), "iteration"));
-    if let Some(jump) = input.jump.filter(|_| simulation.status().is_success()) {
-        add(translated(&jump.to_string()));
+    if let Some(path) = input.jump.filter(|_| simulation.status().is_success()) {
+        let buckling = path.buckling.map(|buckling| buckling.to_string());
+        for sentence in path.jump.map(|jump| jump.to_string()).into_iter().chain(buckling) {
+            add(translated(&sentence));
+        }
     }
     (words, inside_out || stability(simulation) == Some(false))
 }

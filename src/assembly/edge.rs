@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
+use super::Kinematics;
 use crate::element::side_weights;
 use crate::mesh::Mesh;
 use crate::scene::Invalid;
@@ -66,14 +67,17 @@ impl Edge {
         &self.arms
     }
 
-    /// d₀, the direction at rest.
-    pub(super) fn direction_at_rest(&self) -> Vector2<f64> {
-        self.direction
-    }
-
     /// d = d₀ + Σ cⱼ uⱼ.
     pub(super) fn direction(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
         self.direction + self.sum(u)
+    }
+
+    /// The direction that loads on the edge have: that at rest in linear theory, else the present one.
+    pub(super) fn direction_in(&self, u: &[Vector2<f64>], kinematics: Kinematics) -> Vector2<f64> {
+        match kinematics {
+            Kinematics::Corotated => self.direction(u),
+            Kinematics::Linear => self.direction,
+        }
     }
 
     fn sum(&self, u: &[Vector2<f64>]) -> Vector2<f64> {

@@ -40,6 +40,26 @@ struct Moment {
     slots: Vec<u32>,
 }
 
+impl Moment {
+    /// Adds M ∇θ at the present size times `factor`, N.
+    fn add_force(
+        &self,
+        system: &System,
+        factor: f64,
+        gradient: impl Fn(&Edge, usize) -> Vector2<f64>,
+        force: &mut [Vector2<f64>],
+    ) {
+        let edge = &system.edges()[self.edge];
+        let turned = gradient(edge, self.edge) * (factor * self.now);
+        // Where the edge has shrunk to a point θ has no gradient, and none is added.
+        if turned.iter().all(|v| v.is_finite()) {
+            for &(node, c) in edge.arms() {
+                force[node as usize] += turned * c;
+            }
+        }
+    }
+}
+
 impl Loads {
     /// The loads of a scene on a system that couples the edges of its moments, at time 0.
     pub(super) fn new(loads: &[Load], material: &Material, system: &System) -> Result<Self, Invalid> {
@@ -82,30 +102,46 @@ impl Loads {
             }
         }
         result.dead.copy_from_slice(&result.constant);
-        result.set_moments(0.0);
-        result.add_pulses(0.0);
+        result.set_time(0.0);
         Ok(result)
     }
 
-    /// Takes the pulses of another time, s.
+    /// Sets pulses to their size at a time, s.
     pub fn set_time(&mut self, time: f64) {
+        self.set_pulses(&|pulse| pulse.factor(time));
+    }
+
+    /// Sets every pulse to a factor of its full size: in a time step its mean over the step, so that the step has exactly the
+    /// pulse's impulse.
+    pub(crate) fn set_pulses(&mut self, factor: &dyn Fn(&Pulse) -> f64) {
         if !self.pulses.is_empty() {
             self.dead.copy_from_slice(&self.constant);
-            self.add_pulses(time);
         }
-        self.set_moments(time);
-    }
-
-    fn add_pulses(&mut self, time: f64) {
         for (pulse, forces) in &self.pulses {
-            let factor = pulse.factor(time);
+            let factor = factor(pulse);
             forces.iter().for_each(|&(node, f)| self.dead[node as usize] += f * factor);
         }
+        for moment in &mut self.moments {
+            moment.now = moment.moment * moment.pulse.as_ref().map_or(1.0, factor);
+        }
     }
 
-    fn set_moments(&mut self, time: f64) {
-        for moment in &mut self.moments {
-            moment.now = moment.moment * moment.pulse.map_or(1.0, |pulse| pulse.factor(time));
+    /// Adds the nodal forces of pulses alone at their present size, N, times `factor`.
+    pub(crate) fn add_pulse_force(
+        &self,
+        system: &System,
+        u: &[Vector2<f64>],
+        kinematics: Kinematics,
+        factor: f64,
+        force: &mut [Vector2<f64>],
+    ) {
+        if !self.pulses.is_empty() {
+            for (f, (dead, constant)) in force.iter_mut().zip(self.dead.iter().zip(&self.constant)) {
+                *f += (dead - constant) * factor;
+            }
+        }
+        for moment in self.moments.iter().filter(|m| m.pulse.is_some()) {
+            moment.add_force(system, factor, |edge, _| turn_gradient(edge.direction_in(u, kinematics)), force);
         }
     }
 
@@ -116,11 +152,11 @@ impl Loads {
         self.pulses.iter().map(|(pulse, _)| *pulse).chain(moments).map(|p| p.end()).reduce(f64::max)
     }
 
-    /// The work of the pulses from one state to another, each at the time it has, J: the mean of the forces at both ends
-    /// times the way.
+    /// The work of the pulses from one state to another, each at the time it has, J: the mean of their forces over that time
+    /// times the change of displacement.
     #[must_use]
     pub(crate) fn pulse_work(&self, [before, after]: [&State; 2]) -> f64 {
-        let mean = |pulse: &Pulse| 0.5 * (pulse.factor(before.time) + pulse.factor(after.time));
+        let mean = |pulse: &Pulse| pulse.mean(before.time, after.time);
         let way = |node: u32| after.displacement[node as usize] - before.displacement[node as usize];
         let forces = self
             .pulses
@@ -153,12 +189,7 @@ impl Loads {
         factor: f64,
         force: &mut [Vector2<f64>],
     ) {
-        self.sum(system, factor, force, |edge, _| {
-            turn_gradient(match kinematics {
-                Kinematics::Corotated => edge.direction(u),
-                Kinematics::Linear => edge.direction_at_rest(),
-            })
-        });
+        self.sum(system, factor, force, |edge, _| turn_gradient(edge.direction_in(u, kinematics)));
     }
 
     /// Adds to `bound` what rounding can at most have changed in the part of moments in an external force, N. Dead forces
@@ -214,15 +245,8 @@ impl Loads {
         for (f, dead) in force.iter_mut().zip(&self.dead) {
             *f = dead * factor;
         }
-        for Moment { edge: number, now, .. } in &self.moments {
-            let edge = &system.edges()[*number];
-            // M ∇θ. Where the edge has shrunk to a point θ has no gradient, and none is added.
-            let turned = gradient(edge, *number) * (factor * now);
-            if turned.iter().all(|v| v.is_finite()) {
-                for &(node, c) in edge.arms() {
-                    force[node as usize] += turned * c;
-                }
-            }
+        for moment in &self.moments {
+            moment.add_force(system, factor, &gradient, force);
         }
     }
 

@@ -8,7 +8,7 @@ use super::{Hand, Kinematics, Loads, Matrix, NodalProbe, Supports, System, Syste
 use crate::element::{Elements, MatrixSum, Rotations, Tangent, UNIT};
 use crate::material::Lame;
 use crate::rotation::Rotation;
-use crate::scene::{Load, Material, Scene, Support};
+use crate::scene::{Load, Material, Pulse, Scene, Support};
 use crate::state::State;
 
 /// The discrete problem of a scene.
@@ -49,6 +49,9 @@ pub struct Forces {
     pub(crate) external: Vec<Vector2<f64>>,
     /// The residual force f_ext − f_int. On fixed unknowns it is minus the reaction.
     pub(crate) residual: Vec<Vector2<f64>>,
+    /// The relative residual and the bound of what rounding leaves of it, where supports move the body and the residual is
+    /// within that bound: [`Problem::balance`] returns 0 then.
+    pub(crate) below_rounding: Option<[f64; 2]>,
 }
 
 impl Forces {
@@ -56,7 +59,13 @@ impl Forces {
     #[must_use]
     pub fn new(nodes: usize) -> Self {
         let zero = vec![Vector2::zeros(); nodes];
-        Self { internal: zero.clone(), magnitude: zero.clone(), external: zero.clone(), residual: zero }
+        Self {
+            internal: zero.clone(),
+            magnitude: zero.clone(),
+            external: zero.clone(),
+            residual: zero,
+            below_rounding: None,
+        }
     }
 
     /// f_ext − f_int of every node, N.
@@ -169,6 +178,11 @@ impl Problem {
         &self.loads
     }
 
+    /// The loads of the scene.
+    pub(crate) fn scene_loads(&self) -> &[Load] {
+        &self.scene_loads
+    }
+
     /// What holds, and where it takes what it holds.
     #[must_use]
     pub fn supports(&self) -> &Supports {
@@ -191,6 +205,11 @@ impl Problem {
         if let Some(hand) = &mut self.hand {
             hand.set_time(time);
         }
+    }
+
+    /// Sets every pulse to a factor of its full size; see [`Loads::set_pulses`].
+    pub(crate) fn set_pulses(&mut self, factor: &dyn Fn(&Pulse) -> f64) {
+        self.loads.set_pulses(factor);
     }
 
     /// What is measured.
@@ -276,9 +295,10 @@ impl Problem {
 
     /// f_ext and the residual force beside the internal force of the last [`Self::linearize`], the body at rest; returns
     /// the relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ over the free unknowns. Where the elements carry nothing yet it is
-    /// relative to the load.
+    /// relative to the load. Where supports move the body it is 0 below what rounding leaves; see [`Forces`].
     pub fn balance(&self, state: &State, kinematics: Kinematics, load_factor: f64, forces: &mut Forces) -> f64 {
-        let Forces { internal, magnitude, external, residual } = forces;
+        let Forces { internal, magnitude, external, residual, below_rounding } = forces;
+        *below_rounding = None;
         self.loads.force(&self.system, &state.displacement, kinematics, load_factor, external);
         if let Some(hand) = &self.hand {
             hand.add_force(hand.force_at_rest(&state.displacement) * load_factor, external);
@@ -288,11 +308,17 @@ impl Problem {
         }
         let pattern = self.system.pattern();
         let residual = pattern.norm(residual);
-        let moves = self.supports.move_the_body();
-        if residual == 0.0 || moves && residual <= self.supports.rounding(&self.system, &state.displacement) {
+        if residual == 0.0 {
             return 0.0;
         }
-        residual / pattern.norm(magnitude).max(pattern.norm(external))
+        let scale = pattern.norm(magnitude).max(pattern.norm(external));
+        let bound =
+            if self.supports.move_the_body() { self.supports.rounding(&self.system, &state.displacement) } else { 0.0 };
+        if residual <= bound {
+            *below_rounding = Some([residual, bound].map(|v| v / scale)).filter(|pair| pair[1].is_finite());
+            return 0.0;
+        }
+        residual / scale
     }
 
     /// A bound of what rounding has changed in the relative residual of the last [`Self::balance`], to first order in the

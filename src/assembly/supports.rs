@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
 use super::edge::{no_such_edge, node_at};
 use super::{Kinematics, Matrix, NodeWeights, System};
@@ -309,15 +309,30 @@ pub(super) struct Hold {
     parts: usize,
     /// Those of them that can still move freely.
     loose: usize,
+    /// A node at which a part hangs that can turn about it.
+    hinge: Option<u32>,
 }
 
 /// Refuses to look for the equilibrium of a body that is not held; in motion it may be free.
-pub(super) fn check_held(hold: Hold, analysis: Analysis) -> Result<(), Invalid> {
-    if hold.loose == 0 || analysis == Analysis::Dynamic {
+pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<(), Invalid> {
+    if analysis == Analysis::Dynamic {
+        return Ok(());
+    }
+    if let (0, Some(node)) = (hold.loose, hold.hinge) {
+        let (x, name) = (mesh.node(node), mesh.node_name(node));
+        let message = format!(
+            "expected elements that share sides, got a part that hangs on node {} at ({}, {}) and can turn about it",
+            name.map_or_else(|| "?".to_owned(), |name| name.to_string()),
+            number(x.x),
+            number(x.y)
+        );
+        return Err(Invalid::new("mesh", message));
+    }
+    if hold.loose == 0 {
         return Ok(());
     }
     if hold.parts > 1 {
-        let Hold { parts, loose } = hold;
+        let Hold { parts, loose, .. } = hold;
         let message = format!(
             "expected one connected body, got {parts} parts that share no nodes; supports leave {loose} of them free to move"
         );
@@ -330,7 +345,8 @@ pub(super) fn check_held(hold: Hold, analysis: Analysis) -> Result<(), Invalid> 
 }
 
 impl Hold {
-    pub(super) fn of(mesh: &Mesh, fixed: &[bool]) -> Self {
+    /// `is_grid` for a rectangle of cells, which has no hinges.
+    pub(super) fn of(mesh: &Mesh, fixed: &[bool], is_grid: bool) -> Self {
         let (parts, part_of) = mesh.parts();
         let mut held_nodes = vec![Vec::new(); parts];
         for ((x, fixed), &part) in mesh.nodes().iter().zip(fixed.chunks_exact(2)).zip(&part_of) {
@@ -339,8 +355,57 @@ impl Hold {
                 nodes.push((*x, fixed));
             }
         }
-        Self { parts, loose: held_nodes.iter().filter(|nodes| !is_held(nodes)).count() }
+        let loose = held_nodes.iter().filter(|nodes| !is_held(nodes)).count();
+        let hinged = if is_grid { None } else { mesh.hinged_parts() };
+        let hinge = hinged.and_then(|(parts, of_node)| loose_hinge(mesh, fixed, parts, &of_node));
+        Self { parts, loose, hinge }
     }
+}
+
+/// A hinge between parts that can move against each other although supports hold the body: the Gram matrix of the constraints
+/// that supports and hinges put on the parts' rigid motions is singular. Of the nodes at which parts meet, the one about which
+/// they turn most.
+fn loose_hinge(mesh: &Mesh, fixed: &[bool], parts: usize, of_node: &[Vec<u32>]) -> Option<u32> {
+    const SINGULAR: f64 = 1e-10;
+    let (low, high) = mesh.bounds();
+    let (centre, size) = ((low + high) * 0.5, (high - low).norm());
+    // The displacement of a node by the two translations and the rotation of a part.
+    let modes = |node: usize| {
+        let arm = (mesh.nodes()[node] - centre) / size;
+        [Vector3::new(1.0, 0.0, -arm.y), Vector3::new(0.0, 1.0, arm.x)]
+    };
+    let mut gram = DMatrix::<f64>::zeros(3 * parts, 3 * parts);
+    let mut add = |terms: &[(u32, f64)], mode: &Vector3<f64>| {
+        for &(a, x) in terms {
+            for &(b, y) in terms {
+                let mut block = gram.fixed_view_mut::<3, 3>(3 * a as usize, 3 * b as usize);
+                block += mode * mode.transpose() * (x * y);
+            }
+        }
+    };
+    for (node, own) in of_node.iter().enumerate() {
+        for (axis, mode) in modes(node).iter().enumerate() {
+            if let (Some(&first), true) = (own.first(), fixed[2 * node + axis]) {
+                add(&[(first, 1.0)], mode);
+            }
+            for &other in own.iter().skip(1) {
+                add(&[(own[0], 1.0), (other, -1.0)], mode);
+            }
+        }
+    }
+    let eigen = gram.symmetric_eigen();
+    let (least, value) = eigen.eigenvalues.argmin();
+    if value > SINGULAR * eigen.eigenvalues.max() {
+        return None;
+    }
+    let motion = eigen.eigenvectors.column(least);
+    let turns = |node: &usize| {
+        let rotations = of_node[*node].iter().map(|&part| motion[3 * part as usize + 2]);
+        let (low, high) = rotations.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), r| (l.min(r), h.max(r)));
+        high - low
+    };
+    let hinges = (0..of_node.len()).filter(|&node| of_node[node].len() > 1);
+    hinges.max_by(|a, b| turns(a).total_cmp(&turns(b))).map(|node| node as u32)
 }
 
 /// Whether the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of the three

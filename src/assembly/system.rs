@@ -114,21 +114,31 @@ impl System {
     /// The key that is wrong and what was expected there, or that the mesh is too large.
     pub fn new(scene: &Scene) -> Result<Self, SystemError> {
         scene.validate()?;
-        let (origin, mesh) = match (&scene.beam, &scene.mesh) {
-            (Some(beam), _) => {
-                (Origin::Beam(beam.clone()), Mesh::beam(beam).map_err(|e| Invalid::new("beam", e.to_string()))?)
-            }
+        let origin = match (&scene.beam, &scene.mesh) {
+            (Some(beam), _) => Origin::Beam(beam.clone()),
+            (None, Some(file)) => Origin::File(file.clone()),
+            (None, None) => Origin::Given,
+        };
+        Self::of_body(Arc::new(Body::new(origin, Self::mesh_of(scene)?)), scene)
+    }
+
+    /// Meshes a scene that has been validated.
+    ///
+    /// # Errors
+    /// The key that is wrong and what was expected there.
+    pub(crate) fn mesh_of(scene: &Scene) -> Result<Mesh, Invalid> {
+        match (&scene.beam, &scene.mesh) {
+            (Some(beam), _) => Mesh::beam(beam).map_err(|e| Invalid::new("beam", e.to_string())),
             (None, Some(file)) => {
                 let failed = |message: String| Invalid::new("mesh.file", format!("{}: {message}", file.file));
                 let unread = "its contents are not there: open the scene from its folder".to_owned();
                 let text = file.text.as_deref().ok_or_else(|| failed(unread))?;
                 let element = file.element.or_else(|| Mesh::gmsh_element(text)).unwrap_or_default();
                 let mesh = Mesh::from_gmsh_scaled(text, element, file.scale.unwrap_or(1.0));
-                (Origin::File(file.clone()), mesh.map_err(|e| failed(e.to_string()))?)
+                mesh.map_err(|e| failed(e.to_string()))
             }
-            (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither").into()),
-        };
-        Self::of_body(Arc::new(Body::new(origin, mesh)), scene)
+            (None, None) => Err(Invalid::new("beam", "expected [beam] or [mesh], got neither")),
+        }
     }
 
     /// [`Self::new`] on a mesh of the caller's, which has the edges that the scene names. The scene's own `[beam]` or
@@ -163,7 +173,7 @@ impl System {
         let same_supports = scene.supports.len() == self.supports.len()
             && scene.supports.iter().zip(&self.supports).all(|(a, b)| a.fixes_as(b));
         if same_supports && couples() {
-            check_held(self.hold, scene.analysis)?;
+            check_held(self.hold, self.mesh(), scene.analysis)?;
             return Ok(self.clone());
         }
         Ok(Arc::new(Self::of_body(self.body.clone(), scene)?))
@@ -171,8 +181,9 @@ impl System {
 
     fn of_body(body: Arc<Body>, scene: &Scene) -> Result<Self, SystemError> {
         let fixed = fixed_unknowns(&scene.supports, &body.mesh)?;
-        let hold = Hold::of(&body.mesh, &fixed);
-        check_held(hold, scene.analysis)?;
+        let is_grid = matches!(body.origin, Origin::Beam(_));
+        let hold = Hold::of(&body.mesh, &fixed, is_grid);
+        check_held(hold, &body.mesh, scene.analysis)?;
         let coupled = moment_edges(&body.edges, scene);
         let groups: Vec<Vec<u32>> =
             coupled.iter().map(|&edge| body.edges[edge].weights().iter().map(|&(node, _)| node).collect()).collect();

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use thiserror::Error;
 
 #[cfg(feature = "app")]
@@ -10,6 +10,7 @@ use super::draw_args::{DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
 use crate::scene;
 use crate::scene::limits::{BUDGET_MS, Limit, MAX_ERROR_PERCENT, OutOfRange};
 use crate::scene::units::{self, UnitError};
+use crate::study::Effort;
 
 const EXIT_CODES: &str = "Exit codes: 0 done and converged, 1 ran but did not converge (the result is still printed), \
 2 bad input or usage, or a result that could not be written, 3 no usable graphics adapter.";
@@ -147,12 +148,39 @@ pub(super) struct SolveArgs {
     /// Also write a table (.csv), the mesh with its fields (.vtu) or, of a motion, a series of them (.pvd); see below.
     #[arg(long, value_name = "FILE.csv|.vtu|.pvd")]
     pub out: Option<PathBuf>,
-    /// Do not look for the truth that errors are measured against: it takes a solve on a finer mesh.
-    #[arg(long)]
+    /// Look for the reference solution that errors are measured against: on meshes of up to about 10,000 unknowns, in a second
+    /// or two; on meshes as fine as an own error of 0.01 % takes; or not at all.
+    #[arg(long, value_enum, default_value_t = ReferenceEffort::Bounded)]
+    pub reference: ReferenceEffort,
+    /// The same as --reference none.
+    #[arg(long, hide = true, conflicts_with = "reference")]
     pub no_truth: bool,
-    /// Do not certify the result: whether it is stable, and ρ. That takes some more solves.
+    /// Certify the result, however large the scene is: its stability, ρ, and jumps on the way to it.
     #[arg(long)]
+    pub certificate: bool,
+    /// Do not certify the result. That takes some solves, and is left out beyond 100,000 unknowns anyway.
+    #[arg(long, conflicts_with = "certificate")]
     pub no_certificate: bool,
+}
+
+/// Cost allowed for a reference solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ReferenceEffort {
+    None,
+    Bounded,
+    Full,
+}
+
+impl SolveArgs {
+    /// Effort for the reference solution; `None` where none is wanted.
+    pub fn effort(&self) -> Option<Effort> {
+        match self.reference {
+            _ if self.no_truth => None,
+            ReferenceEffort::None => None,
+            ReferenceEffort::Bounded => Some(Effort::Bounded),
+            ReferenceEffort::Full => Some(Effort::Full),
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -7,23 +7,24 @@ use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::progress::Watch;
-use super::{CliError, NOT_CONVERGED, exit_code, json, named, simulate, text};
-use crate::dynamics::StopReason;
+use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
 use crate::export::{self, ExportError, Format, MotionWriter};
+use crate::mesh::Mesh;
 use crate::picture::draw_svg;
 use crate::scene::{self, Analysis, Scene};
-use crate::simulation::{Simulation, Solution, Status};
+use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult};
+use crate::stress::strain_warning;
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Demand, Extent, LoadCurve, LoadPath, MotionStudy, Progress, Reference, Scaling, Study, StudyError, Tuning,
-    extremes, heat_map, motion_heat_map, parallel, path_chart, plot,
+    Demand, Effort, Extent, LoadCurve, LoadPath, MotionStudy, PathSummary, Reference, Scaling, Study, StudyError,
+    Tuning, extremes, heat_map, motion_heat_map, moved_points, parallel, path_chart, plot,
 };
 use crate::timings::Timings;
 use crate::words::count;
 
-/// Where the time of a command went.
+/// Durations of the parts of a solve.
 pub(super) struct Spent {
-    /// All of it, by the clock.
+    /// The whole, by the clock.
     wall: Duration,
     /// Reading, meshing, the order of elimination.
     set_up: Duration,
@@ -31,26 +32,26 @@ pub(super) struct Spent {
     stages: Timings,
     /// Recovering stresses, and estimating the mesh's error from them.
     stress: Duration,
-    /// Finding the truth that errors are measured against.
-    truth: Duration,
+    /// Finding the reference solution.
+    reference: Duration,
 }
 
 impl Spent {
-    /// All of it.
+    /// The whole, by the clock.
     pub(super) fn wall(&self) -> Duration {
         self.wall
     }
 
-    /// What the solve took: its four stages.
+    /// The four stages of the solve.
     pub(super) fn solve(&self) -> Duration {
         self.stages.total().saturating_sub(self.stages.certify)
     }
 
-    /// The parts that sum to all of it, each with the name it has in JSON.
+    /// The parts that sum to the whole, each with the name it has in JSON.
     pub(super) fn parts(&self) -> [(&'static str, Duration); 9] {
-        let Self { wall, set_up, stages, stress, truth } = *self;
+        let Self { wall, set_up, stages, stress, reference } = *self;
         let Timings { rotate, assemble, factorize, solve, certify } = stages;
-        let other = wall.saturating_sub(set_up + stages.total() + stress + truth);
+        let other = wall.saturating_sub(set_up + stages.total() + stress + reference);
         [
             ("rotate", rotate),
             ("assemble", assemble),
@@ -59,70 +60,123 @@ impl Spent {
             ("certify", certify),
             ("set_up", set_up),
             ("stress", stress),
-            ("truth", truth),
+            ("reference", reference),
             ("other", other),
         ]
     }
 }
 
+/// A result with everything that `solve` finds out about it.
+pub(super) struct Solved<'a> {
+    pub scene: &'a Scene,
+    pub mesh: &'a Mesh,
+    pub solution: &'a Solution,
+    pub stress: &'a StressResult,
+    /// Jumps and buckling on the load path to the result; `None` where that is not known.
+    pub path: Option<PathSummary>,
+    pub reference: Option<&'a Reference>,
+    /// Sentences about what limits the result.
+    pub warnings: &'a [String],
+    pub spent: &'a Spent,
+}
+
+/// Unknowns beyond which a certificate takes much longer than the solve, and is made only on request.
+const MOST_CERTIFIED: usize = 100_000;
+
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
-    let SolveArgs { scene, json, out, no_truth, no_certificate } = args;
     let began = Instant::now();
-    // A wrong file name is said before the work, not after.
-    let format = out.as_deref().map(Format::of).transpose()?;
-    let (scene, mut simulation) = simulate(&scene.into())?;
+    // A wrong file name is reported before the work, not after.
+    let format = args.out.as_deref().map(Format::of).transpose()?;
+    let effort = args.effort();
+    let SolveArgs { scene, json, out, certificate, no_certificate, .. } = args;
+    let source = scene::Source::from(scene);
+    let (scene, mut simulation) = simulate(&source)?;
+    let fits = |option, given| check_fit((&source, &scene), (option, given), false, "it is about equilibria");
+    fits("--reference full", effort == Some(Effort::Full))?;
+    fits("--certificate", certificate)?;
     let set_up = began.elapsed();
-    let (status, written) = match (scene.analysis, &out) {
+    let watch = Watch::new();
+    let certifies = certificate || !no_certificate && simulation.system().dofs() <= MOST_CERTIFIED;
+    let mut path = None;
+    let written = match (scene.analysis, &out) {
         (Analysis::Static, Some(path)) if format == Some(Format::Pvd) => {
             return Err(ExportError::NotInMotion(path.display().to_string()).into());
         }
         (Analysis::Static, _) => {
-            let status = simulation.solve().clone();
-            if !no_certificate {
+            watch.solve(&mut simulation);
+            if certifies && !watch.is_called_off() {
                 simulation.certify();
             }
-            (status, out.as_deref().map_or(Ok(()), |path| export::write(&simulation, path)))
+            out.as_deref().map_or(Ok(()), |path| export::write(&simulation, path))
         }
         (Analysis::Dynamic, _) => {
             let writer = out.as_deref().map(|path| MotionWriter::create(&simulation, path)).transpose()?;
-            march(&mut simulation, writer)
+            march(&mut simulation, writer, &watch)
         }
     };
+    let status = simulation.status().clone();
     let mut certify_path = Duration::ZERO;
-    let mut jump = None;
-    if status == Status::Converged && !no_certificate && !simulation.is_linear() {
+    if status == Status::Converged && certifies && !simulation.is_linear() {
+        let observe = &mut |fraction| {
+            watch.show(fraction, || "following the load path".to_owned());
+            watch.flow()
+        };
         let certified = Instant::now();
-        jump = LoadPath::jump_before(&scene, simulation.displacement());
+        path = LoadPath::to_result(&scene, simulation.displacement(), observe);
         certify_path = certified.elapsed();
     }
     let recovered = Instant::now();
     let stress = simulation.stress_result();
     let stress_time = recovered.elapsed();
-    // A scene without a truth has a result all the same.
     let sought = Instant::now();
-    let truth = if no_truth { None } else { Reference::of(&scene).ok() };
-    let truth_time = sought.elapsed();
-    let solution = Solution { status, ..simulation.solution() };
+    let is_static = scene.analysis == Analysis::Static;
+    let reference = effort
+        .filter(|_| is_static && !watch.is_called_off() && !scene.probes.is_empty())
+        .map(|effort| Reference::find(&scene, Some(&simulation), effort, &mut |progress| watch.observe(&progress)));
+    let reference_time = sought.elapsed();
+    let interrupted = watch.is_called_off();
+    drop(watch);
+    let mut solution = simulation.solution();
+    solution.energy.supports = solution.energy.supports.or(path.and_then(|path: PathSummary| path.supports_work));
     let mut stages = solution.time;
     stages.certify += certify_path;
-    let spent = Spent { wall: began.elapsed(), set_up, stages, stress: stress_time, truth: truth_time };
-    let (mesh, results) = (simulation.system().mesh(), (&solution, &stress));
-    text::print(&if json {
-        json::solution(&scene, mesh, results, jump, truth.as_ref(), &spent)
-    } else {
-        text::solution(&scene, mesh, results, jump, truth.as_ref(), &spent)
-    })?;
-    // What could not be written is no reason to keep the result from who waits for it.
-    written?;
-    if solution.status == Status::Stopped(StopReason::Interrupted) {
-        eprintln!("warpbeam: {}", StopReason::Interrupted);
+    let spent = Spent { wall: began.elapsed(), set_up, stages, stress: stress_time, reference: reference_time };
+    let mut warnings = limits_of(&simulation, &stress);
+    if let Some(Err(error)) = &reference {
+        warnings.push(match error {
+            StudyError::TooFine { .. } => format!("{error} within the budget; --reference full does it"),
+            error => error.to_string(),
+        });
     }
-    Ok(exit_code(&solution.status))
+    if is_static && !certifies && !no_certificate {
+        let unknowns = count(simulation.system().dofs() as u64, "unknown");
+        warnings.push(format!("not certified: {unknowns}; --certificate does it"));
+    }
+    let reference = reference.and_then(Result::ok);
+    warnings.extend(reference.as_ref().map(Reference::limits).unwrap_or_default());
+    let solved = Solved {
+        scene: &scene,
+        mesh: simulation.system().mesh(),
+        solution: &solution,
+        stress: &stress,
+        path,
+        reference: reference.as_ref(),
+        warnings: &warnings,
+        spent: &spent,
+    };
+    text::print(&if json { json::solution(&solved) } else { text::solution(&solved) })?;
+    // The result is printed also where its file could not be written.
+    written?;
+    match (interrupted, &solution.status) {
+        (true, Status::Stopped(reason)) => eprintln!("warpbeam: {reason}"),
+        (true, status) if status.is_success() => eprintln!("warpbeam: interrupted: not everything was found out"),
+        _ => {}
+    }
+    Ok(if interrupted { ExitCode::from(NOT_CONVERGED) } else { exit_code(&solution.status) })
 }
 
-/// Takes a motion to its end, or to where it is called off; the file, if there is one, has what was reached.
-fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>) -> (Status, Result<(), ExportError>) {
-    let watch = Watch::new();
+/// Takes a motion to its end, or to where it is called off; the file, if there is one, has the steps up to there.
+fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &Watch) -> Result<(), ExportError> {
     let duration = simulation.scene().dynamics.duration;
     let mut written = Ok(());
     while *simulation.status() == Status::Running && !watch.is_called_off() {
@@ -133,14 +187,21 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>) -> (Stat
         }
         watch.show_time(simulation.state().time(), duration);
     }
+    simulation.stop();
     if let Some(writer) = writer {
         written = writer.finish(simulation);
     }
-    let status = match simulation.status() {
-        Status::Running => Status::Stopped(StopReason::Interrupted),
-        status => status.clone(),
-    };
-    (status, written)
+    written
+}
+
+/// Sentences about what limits a result, whatever it is compared with.
+fn limits_of(simulation: &Simulation, stress: &StressResult) -> Vec<String> {
+    let mut limits: Vec<String> = Vec::new();
+    limits.extend(strain_warning(Deformation::of(simulation.problem(), simulation.state()).max_strain));
+    limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
+    limits.extend(moved_points(simulation).iter().map(ToString::to_string));
+    limits.extend(simulation.scene().unresolved_pulses());
+    limits
 }
 
 pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
@@ -149,16 +210,26 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(&source)?;
     // What cannot be drawn is said before the work.
     let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
-    let is_png = |path: &Path| match path.extension().and_then(|e| e.to_str()) {
-        Some("png") => Ok(true),
-        Some("svg") => Ok(false),
-        _ => Err(CliError::NoPictureFormat(path.to_owned())),
+    let is_png = |path: &Path| {
+        check_suffix(path, &[".svg", ".png"], ".svg or .png")?;
+        Ok::<_, CliError>(check_suffix(path, &[".png"], ".png").is_ok())
     };
     let is_png = picture.as_deref().map(is_png).transpose()?;
-    let beam = LoadCurve::new(&scene);
-    let path = if beam.is_none() || picture.is_some() { LoadPath::of(&scene) } else { None };
+    out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
+    let watch = Watch::new();
+    let path = LoadPath::follow(&scene, &mut |fraction| {
+        watch.show(fraction, || "following the load path".to_owned());
+        watch.flow()
+    });
+    let beam = if watch.is_called_off() { None } else { LoadCurve::new(&scene) };
+    drop(watch);
     let (words, table) = match (&beam, &path) {
-        (Some(curve), _) => (text::curve(&scene, curve), text::curve_table(curve)),
+        (Some(curve), path) => {
+            // A path without events tells nothing that the curve does not.
+            let path = path.as_ref().filter(|path| !text::events(path).is_empty());
+            let own = path.map(|path| format!("\n{}", text::path(&scene, path))).unwrap_or_default();
+            (text::curve(&scene, curve) + &own, text::curve_table(curve))
+        }
         (None, Some(path)) => (text::path(&scene, path), text::path_table(&scene, path)),
         (None, None) => return Err(CliError::NoPath(named(&source))),
     };
@@ -171,7 +242,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
         if is_png { draw_svg(&svg)?.write_png(&picture)? } else { export::write_text(&picture, &svg)? }
     }
     text::print(&words)?;
-    Ok(if path.is_none_or(|path| path.complete) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
+    Ok(if path.is_none_or(|path| path.end.is_none()) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
 }
 
 /// What a name on the command line asks to be drawn.
@@ -194,17 +265,9 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     let watch = Watch::new();
     let (texts, interrupted) = match scene.analysis {
         Analysis::Static => {
-            let mut partial = None;
-            let observe = &mut |progress: Progress<'_>| {
-                partial = progress.so_far.filter(|study| !study.measurements.is_empty()).cloned().or(partial.take());
-                watch.observe(&progress)
-            };
-            let whole = Study::new(&scene, extent(out), observe);
-            let (study, interrupted) = match (whole, partial) {
-                (Err(StudyError::Cancelled), Some(partial)) => (Ok(partial), true),
-                (whole, _) => (whole, false),
-            };
-            (study.map(|study| [study.table(), plot::svg(&study), study.summary()]), interrupted)
+            let study = Study::until_cancelled(&scene, extent(out), &mut |progress| watch.observe(&progress));
+            let interrupted = study.as_ref().is_ok_and(|(_, is_partial)| *is_partial);
+            (study.map(|(study, _)| [study.table(), plot::svg(&study), study.summary()]), interrupted)
         }
         Analysis::Dynamic => {
             let study = MotionStudy::new(&scene, extent(out), &mut |progress| watch.observe(&progress));
@@ -250,6 +313,7 @@ fn ended(interrupted: bool, missing: &str) -> ExitCode {
 
 pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let TuneArgs { scene, error, time, write } = args;
+    write.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".toml"], ".toml"))?;
     let source = scene::Source::from(scene);
     let (scene, _) = simulate(&source)?;
     let error = if time.is_none() { error.or(Some(1.0)) } else { error };
@@ -258,13 +322,20 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let tuning = Tuning::of(&scene, demand, &mut |progress| watch.observe(&progress));
     drop(watch);
     let tuning = match tuning {
-        Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been chosen")),
+        Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
+        Err(error) if error.is_unknown() => {
+            text::print(&format!("{}: not known which settings meet {demand}: {error}\n", scene.name))?;
+            return Ok(ExitCode::from(NOT_CONVERGED));
+        }
         tuning => tuning.map_err(failed(&source))?,
     };
     if let Some(path) = &write {
         export::write_text(path, &tuned(&scene, &tuning, &source, path).to_toml()?)?;
     }
     text::print(&format!("{tuning}\n"))?;
+    if tuning.is_partial {
+        return Ok(ended(true, "finer meshes have not been measured"));
+    }
     Ok(if tuning.met { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
 }
 
@@ -272,8 +343,8 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
 fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) -> Scene {
     let mut tuned = tuning.chosen.setting.apply(scene);
     if let (Some(mesh), false) = (&mut tuned.mesh, source.built_in().is_some()) {
-        // The mesh is named relative to the scene file, which is another one now.
-        let folder = |path: &Path| path.parent().and_then(|folder| std::path::absolute(folder).ok());
+        // The mesh is named relative to the scene file, which is another one now. The folder of a bare name is the present one.
+        let folder = |path: &Path| path.parent().and_then(|folder| std::path::absolute(folder.join(".")).ok());
         let old = folder(&source.name);
         if let Some(old) = old.filter(|old| Some(old) != folder(path).as_ref()) {
             mesh.file = old.join(&mesh.file).display().to_string();

@@ -92,6 +92,9 @@ pub(super) struct RecordArgs {
     /// Its size in pixels, 64x64 to 8192x8192.
     #[arg(long, value_name = "WxH", default_value = "800x500", value_parser = parse_size)]
     pub size: [u32; 2],
+    /// Replace the numbered pictures that the folder has.
+    #[arg(long)]
+    pub overwrite: bool,
     /// Light or dark.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,

@@ -5,25 +5,19 @@ use std::time::Duration;
 use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
-use super::commands::Spent;
-use crate::mesh::Mesh;
+use super::commands::Solved;
 use crate::scene::{Place, Scene, Support};
-use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Solution, StressResult, SupportReaction};
-use crate::stress::{PlaneTensor, strain_warning};
-use crate::study::{Jump, ProbeTruth, Reference};
+use crate::simulation::{MotionResult, ProbeResult, ProbeStress, SupportReaction};
+use crate::stress::PlaneTensor;
+use crate::study::{ProbeReference, Reference};
 
 /// A result.
-pub(super) fn solution(
-    scene: &Scene,
-    mesh: &Mesh,
-    (solution, stress): (&Solution, &StressResult),
-    jump: Option<Option<Jump>>,
-    truth: Option<&Reference>,
-    spent: &Spent,
-) -> String {
-    let truths = truth.map_or(&[][..], Reference::probes);
+pub(super) fn solution(solved: &Solved<'_>) -> String {
+    let Solved { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
+    let references = reference.map_or(&[][..], Reference::probes);
+    let probes = solution.probes.iter().enumerate();
     let probes: Vec<Value> =
-        solution.probes.iter().enumerate().map(|(i, p)| probe(p, stress.probes.get(i), truths.get(i))).collect();
+        probes.map(|(i, p)| probe(p, stress.probes.get(i), references.get(i).and_then(Option::as_ref))).collect();
     let supports: Vec<Value> = scene.supports.iter().zip(&solution.supports).map(|(s, r)| support(s, r)).collect();
     let certificate = solution.certificate.unwrap_or_default();
     let deformation = &solution.deformation;
@@ -39,8 +33,9 @@ pub(super) fn solution(
         "status": solution.status.id(),
         "reason": solution.status.failure(),
         "stable": certificate.stable,
-        "jumped": jump.map(|jump| jump.is_some()),
-        "jumped_at": jump.flatten().map(|jump| number(jump.factor)),
+        "jumped": path.map(|path| path.jump.is_some()),
+        "jumped_at": path.and_then(|path| path.jump).map(|jump| number(jump.factor)),
+        "buckles_at": path.and_then(|path| path.buckling).map(|buckling| number(buckling.factor)),
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
         "residual": number(solution.residual),
@@ -57,12 +52,12 @@ pub(super) fn solution(
         })),
         "mesh_error_percent": stress.mesh_error_percent.map(number),
         "mesh_error_of": "estimate: energy norm",
-        "warnings": strain_warning(deformation.max_strain).into_iter().collect::<Vec<_>>(),
+        "warnings": warnings,
         "probes": probes,
         "energy": {
             "elastic": number(solution.energy.elastic),
             "external": number(solution.energy.external),
-            "supports": number(solution.energy.supports),
+            "supports": solution.energy.supports.map(number),
             // A body at rest has neither.
             "kinetic": solution.motion.map(|m| number(m.ledger.kinetic)),
             "dissipated": solution.motion.map(|m| number(m.ledger.dissipated)),
@@ -117,7 +112,8 @@ fn tensor(tensor: &PlaneTensor) -> Value {
     json!({ "xx": xx, "yy": yy, "zz": zz, "xy": xy })
 }
 
-fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, truth: Option<&ProbeTruth>) -> Value {
+fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, reference: Option<&ProbeReference>) -> Value {
+    let (u, source) = (reference.map(|r| pair(r.displacement)), reference.map(|r| r.source));
     let cauchy = stress.and_then(|s| s.cauchy);
     json!({
         "name": result.name,
@@ -127,9 +123,13 @@ fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, truth: Option<&Prob
         "strain": stress.map(|s| tensor(&s.strain)),
         "stress": cauchy.map(|s| tensor(&s)),
         "von_mises": cauchy.map(|s| number(s.von_mises())),
-        "truth_u": truth.map(|t| pair(t.displacement)),
-        "truth_source": truth.map(|t| t.source.to_string()),
-        "error_percent": truth.and_then(|t| t.error_percent(result)).map(number),
+        "reference_u": u,
+        "reference_source": source.map(|source| source.to_string()),
+        "reference_error_percent": reference.map(|r| number(r.own_error_percent)),
+        "error_percent": reference.and_then(|r| r.error_percent(result)).map(number),
+        // The names of version 0.1, for one more version.
+        "truth_u": u,
+        "truth_source": source.map(|source| source.to_string()),
     })
 }
 

@@ -4,6 +4,7 @@
 //! Exit codes: 0 done and converged, 1 ran but did not converge or was interrupted, 2 bad input or usage, or a result that
 //! could not be written, 3 no graphics adapter.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -12,7 +13,7 @@ use self::args::{Cli, Command};
 use crate::assembly::SystemError;
 use crate::export::ExportError;
 use crate::picture::PictureError;
-use crate::scene::{self, Scene, SceneError};
+use crate::scene::{self, Analysis, Scene, SceneError};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::StudyError;
 use crate::words::number;
@@ -55,8 +56,6 @@ enum CliError {
     NoPath(String),
     #[error("--of {name}: expected one of {}", known.join(", "))]
     NoOrdinate { name: String, known: Vec<String> },
-    #[error("{}: expected a name that ends in .svg or .png", .0.display())]
-    NoPictureFormat(std::path::PathBuf),
     #[error("the tuned scene cannot be written as TOML: {0}")]
     Toml(#[from] toml::ser::Error),
     #[error("standard output: {0}")]
@@ -65,11 +64,13 @@ enum CliError {
     Export(#[from] ExportError),
     #[error(transparent)]
     Picture(#[from] PictureError),
-    #[cfg(feature = "app")]
     #[error(
-        "{scene}: expected a scene with analysis = \"static\": --compare shows equilibria; of a motion, --motion shows other integrators"
+        "{scene}: expected a scene with analysis = \"{}\" for {option}: {reason}",
+        if *moves { "dynamic" } else { "static" }
     )]
-    ComparesMotion { scene: String },
+    Misfit { scene: String, option: &'static str, moves: bool, reason: &'static str },
+    #[error("{}: expected a name that ends in {expected}", path.display())]
+    Suffix { path: std::path::PathBuf, expected: &'static str },
     #[cfg(feature = "app")]
     #[error(transparent)]
     App(#[from] crate::app::AppError),
@@ -120,6 +121,29 @@ pub fn main() -> ExitCode {
         eprintln!("warpbeam: {error}");
         ExitCode::from(error.exit_code())
     })
+}
+
+/// Refuses a file name with another suffix than those expected, which are in lower case and with their dots.
+fn check_suffix(path: &Path, known: &[&str], expected: &'static str) -> Result<(), CliError> {
+    let suffix = path.extension().and_then(|e| e.to_str()).map(|e| format!(".{}", e.to_ascii_lowercase()));
+    match suffix.is_some_and(|suffix| known.contains(&suffix.as_str())) {
+        true => Ok(()),
+        false => Err(CliError::Suffix { path: path.to_owned(), expected }),
+    }
+}
+
+/// Refuses an option that is given for a scene whose analysis it does not fit.
+fn check_fit(
+    (source, scene): (&scene::Source, &Scene),
+    (option, given): (&'static str, bool),
+    moves: bool,
+    reason: &'static str,
+) -> Result<(), CliError> {
+    let fits = (scene.analysis == Analysis::Dynamic) == moves;
+    match given && !fits {
+        true => Err(CliError::Misfit { scene: named(source), option, moves, reason }),
+        false => Ok(()),
+    }
 }
 
 fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {

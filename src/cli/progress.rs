@@ -1,4 +1,4 @@
-//! Commands that take long: how far they are, and that nobody waits for them any more.
+//! Progress of commands that take long, and their cancellation by Ctrl-C or SIGTERM.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -6,19 +6,24 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
+use crate::simulation::{Simulation, Status};
 use crate::study::Progress;
 
 /// Steps of a full bar.
 const FULL: u64 = 10_000;
-/// Time from one drawing of the bar to the next: texts are not made to be thrown away.
+/// Time from one drawing of the bar to the next.
 const REDRAW: Duration = Duration::from_millis(100);
-/// What shells see of a process that a second Ctrl-C has ended.
+/// Time after which a command counts as long: until then no bar is drawn.
+const LONG: Duration = Duration::from_millis(400);
+/// Fraction of the work from which on the rest of the time can be told.
+const TELLING: f64 = 0.02;
+/// Exit code of a process that a second Ctrl-C has ended, as shells have it.
 const KILLED_BY_INTERRUPT: i32 = 130;
 
-/// A bar on standard error while it lives, if that is a terminal, and an ear for Ctrl-C (and SIGTERM): the first asks
-/// the command to end with what it has, the second ends the process.
+/// Progress bar on standard error, if that is a terminal, and handler of Ctrl-C, SIGTERM and SIGHUP: the first signal asks the
+/// command to end with the result it has, the second ends the process.
 #[derive(Debug)]
 pub(super) struct Watch {
     bar: ProgressBar,
@@ -28,7 +33,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// One a command: the process has one ear for Ctrl-C.
+    /// Starts to handle signals. A process can have one watch.
     pub(super) fn new() -> Self {
         let called_off = Arc::new(AtomicBool::new(false));
         let heard = called_off.clone();
@@ -42,41 +47,69 @@ impl Watch {
         }
         // Not drawn where standard error is no terminal.
         let bar = ProgressBar::new(FULL);
-        if let Ok(style) = ProgressStyle::with_template("{msg}  {wide_bar} {percent:>3} %, {eta} left") {
+        if let Ok(style) = ProgressStyle::with_template("{msg}  {wide_bar} {prefix}") {
             bar.set_style(style);
         }
         Self { bar, began: Instant::now(), drawn: Cell::new(None), called_off }
     }
 
-    /// Whether the command is to end with what it has.
+    /// `true` if the command is to end with the result it has.
     pub(super) fn is_called_off(&self) -> bool {
         self.called_off.load(Ordering::Relaxed)
     }
 
-    /// Shows the fraction that is done, 0 to 1, and some words.
-    pub(super) fn show(&self, fraction: f64, words: impl FnOnce() -> String) {
+    /// [`ControlFlow::Break`] if the command is to end with the result it has.
+    pub(super) fn flow(&self) -> ControlFlow<()> {
+        if self.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Shows a message and the fraction that is done, 0 to 1.
+    pub(super) fn show(&self, fraction: f64, message: impl FnOnce() -> String) {
         let now = Instant::now();
+        let spent = now.duration_since(self.began);
         let fresh = self.drawn.get().is_some_and(|drawn| now.duration_since(drawn) < REDRAW);
-        if self.bar.is_hidden() || fresh {
+        if self.bar.is_hidden() || fresh || spent < LONG {
             return;
         }
         self.drawn.set(Some(now));
-        self.bar.set_position((fraction.clamp(0.0, 1.0) * FULL as f64) as u64);
-        self.bar.set_message(words());
+        let fraction = fraction.clamp(0.0, 1.0);
+        self.bar.set_position((fraction * FULL as f64) as u64);
+        self.bar.set_message(message());
+        self.bar.set_prefix(match fraction >= TELLING {
+            true => format!("{:.0} %, {} left", 100.0 * fraction, HumanDuration(spent.mul_f64(1.0 / fraction - 1.0))),
+            false => format!("{:.0} %", 100.0 * fraction),
+        });
     }
 
-    /// Shows how far a motion is, s.
+    /// Iterates a search until its status is final, or it is called off.
+    pub(super) fn solve(&self, simulation: &mut Simulation) {
+        let tolerance = simulation.scene().solver.tolerance;
+        while *simulation.status() == Status::Running {
+            if self.is_called_off() {
+                simulation.stop();
+                break;
+            }
+            simulation.step();
+            let (n, residual) = (simulation.iterations(), simulation.residual());
+            let fraction = (residual.ln() / tolerance.ln()).clamp(0.0, 1.0);
+            self.show(if fraction.is_finite() { fraction } else { 0.0 }, || {
+                format!("iteration {n}, residual {residual:.1e}")
+            });
+        }
+    }
+
+    /// Shows the time that a motion has reached, s.
     pub(super) fn show_time(&self, time: f64, duration: f64) {
         let rate = || time / self.began.elapsed().as_secs_f64().max(1e-9);
         self.show(time / duration, || format!("{time:.3} of {duration} s, {:.3} s a second", rate()));
     }
 
-    /// Shows how far a study is; calls it off where the command is to end.
+    /// Shows the progress of a study; calls it off where the command is to end.
     pub(super) fn observe(&self, progress: &Progress<'_>) -> ControlFlow<()> {
         if !progress.now.is_empty() {
-            self.show(progress.fraction, || format!("measuring {}", progress.now));
+            self.show(progress.fraction, || progress.now.to_owned());
         }
-        if self.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        self.flow()
     }
 }
 

@@ -12,10 +12,10 @@ use crate::scene;
 use crate::words::{count, number};
 
 pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
-    let RecordArgs { scene, output, seconds, speed, fps, size, theme, language } = args;
+    let RecordArgs { scene, output, seconds, speed, fps, size, overwrite, theme, language } = args;
     let source = scene::Source::from(scene);
     let scene = scene::open(&source)?;
-    let options = RecordOptions { size, seconds, speed, fps, theme, language };
+    let options = RecordOptions { size, seconds, speed, fps, overwrite, theme, language };
     let watch = Watch::new();
     let observe = &mut |progress: RecordProgress| {
         watch.show(progress.fraction, || words(&progress));

@@ -6,13 +6,12 @@ use std::io::{ErrorKind, Write as _};
 use nalgebra::Vector2;
 
 use super::CliError;
-use super::commands::Spent;
-use crate::mesh::Mesh;
+use super::commands::Solved;
+use crate::export::csv_field;
 use crate::method::{Certificate, floor_words, rho_words};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
-use crate::simulation::{MotionResult, Solution, Status, StressResult};
-use crate::stress::strain_warning;
-use crate::study::{Jump, LoadCurve, LoadPath, PathState, Reference, support_name, support_words};
+use crate::simulation::{MotionResult, Solution, Status};
+use crate::study::{LoadCurve, LoadPath, PathState, Reference, support_name, support_words};
 use crate::words::{count, engineering, engineering_pair, prefix};
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
@@ -37,14 +36,8 @@ pub(super) fn scenes() -> String {
 }
 
 /// A result.
-pub(super) fn solution(
-    scene: &Scene,
-    mesh: &Mesh,
-    (solution, stress): (&Solution, &StressResult),
-    jump: Option<Option<Jump>>,
-    truth: Option<&Reference>,
-    spent: &Spent,
-) -> String {
+pub(super) fn solution(solved: &Solved<'_>) -> String {
+    let Solved { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
     let mut text = format!(
         "{}: element {}, {}, {} unknowns\n",
         scene.name,
@@ -76,8 +69,11 @@ pub(super) fn solution(
     if let Some(floor) = solution.residual_floor {
         let _ = writeln!(text, "  {}", floor_words(floor, scene.solver.tolerance));
     }
-    if let Some(jump) = jump.flatten() {
-        let _ = writeln!(text, "{jump}");
+    if let Some(path) = path {
+        let buckling = path.buckling.map(|buckling| buckling.to_string());
+        for sentence in path.jump.map(|jump| jump.to_string()).into_iter().chain(buckling) {
+            let _ = writeln!(text, "{sentence}");
+        }
     }
     if let Some(auto) = &solution.auto {
         let _ = writeln!(
@@ -106,7 +102,7 @@ pub(super) fn solution(
     if let Some(rho) = fixed_point_rho {
         let _ = writeln!(text, "{}", rho_words(rho));
     }
-    let truths = truth.map_or(&[][..], Reference::probes);
+    let references = reference.map_or(&[][..], Reference::probes);
     for (i, probe) in solution.probes.iter().enumerate() {
         let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), pair(probe.u, "m"));
         if let Some(at_probe) = stress.probes.get(i) {
@@ -122,14 +118,14 @@ pub(super) fn solution(
                 let _ = writeln!(text, "  stress (Cauchy) {x}, {y}, shear {xy}; von Mises {von_mises}");
             }
         }
-        let truth = truths.get(i).and_then(|truth| Some((truth, truth.error_percent(probe)?)));
-        if let Some((truth, error)) = truth {
-            let u = pair(truth.displacement, "m");
-            let _ = writeln!(text, "  {}: {u}, error {error:.3} %", truth.source);
+        let known = references.get(i).and_then(Option::as_ref);
+        if let Some((reference, error)) = known.and_then(|r| Some((r, r.error_percent(probe)?))) {
+            let (u, own) = (pair(reference.displacement, "m"), reference.own_error());
+            let _ = writeln!(text, "  {}: {u}, error {error:.3} %, {own}", reference.source);
         }
     }
-    if let Some(off) = truth.and_then(|t| t.beam_off_by_percent) {
-        let _ = writeln!(text, "  beam theory, with its small strains, is {off:.1} % off");
+    if let Some(off) = reference.and_then(|r| r.beam_off_by_percent) {
+        let _ = writeln!(text, "  beam theory is {off:.1} % off");
     }
     let deformation = &solution.deformation;
     let _ = writeln!(
@@ -139,17 +135,15 @@ pub(super) fn solution(
         engineering(100.0 * deformation.max_strain, "%"),
         deformation.inverted_elements
     );
-    if let Some(warning) = strain_warning(deformation.max_strain) {
-        let _ = writeln!(text, "  {warning}");
-    }
     if let Some(largest) = stress.largest {
         let node = mesh.node_name(largest.node).map_or_else(String::new, |node| format!(", node {node}"));
         let (value, at) = (engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));
         let _ = writeln!(text, "largest von Mises (Cauchy) {value}, at {at} of the rest body{node}");
     }
-    if let Some(percent) = stress.mesh_error_percent {
-        let _ = writeln!(text, "mesh error {percent:.2} % (estimate: energy norm)");
-    }
+    let _ = match stress.mesh_error_percent {
+        Some(percent) => writeln!(text, "mesh error {percent:.2} % (estimate: energy norm)"),
+        None => writeln!(text, "mesh error: no estimate (nothing is strained, or q4 has a single row of cells)"),
+    };
     // Where supports move, what they do together may be nothing but rounding.
     if !moved(scene) {
         let _ = writeln!(
@@ -167,11 +161,17 @@ pub(super) fn solution(
         joules(solution.energy.external)
     );
     text.push_str(&match moved(scene) {
-        true => format!(", of the moved supports {}\n", joules(solution.energy.supports)),
+        true => match solution.energy.supports {
+            Some(work) => format!(", of the moved supports {}\n", joules(work)),
+            None => ", of the moved supports not known: the load path was not followed to its end\n".to_owned(),
+        },
         false => "\n".to_owned(),
     });
     if let Some(motion) = &solution.motion {
         text.push_str(&books(motion));
+    }
+    for warning in warnings {
+        let _ = writeln!(text, "note: {warning}");
     }
     let seconds = |time: std::time::Duration| engineering(time.as_secs_f64(), "s");
     let parts = spent.parts();
@@ -288,8 +288,15 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
         );
     }
     text.push('\n');
+    if let Some(factor) = curve.buckles_at {
+        let percent = engineering(100.0 * factor, "%");
+        let _ = writeln!(text, "the exact beam buckles at {percent} of the load: beyond, its path is unstable\n");
+    } else if curve.samples.last().is_some_and(|sample| sample.factor < 1.0) {
+        text.push_str("the exact beam could not be followed farther\n\n");
+    }
     for point in &curve.methods {
-        let word = point.status.word();
+        let unstable = point.status == Status::Converged && point.stable == Some(false);
+        let word = point.status.word() + if unstable { ", unstable" } else { "" };
         let _ = writeln!(text, "{:<7} at full load: {}, {word}", point.method.id(), pair(point.tip, "m"));
     }
     text
@@ -318,7 +325,11 @@ pub(super) fn curve_table(curve: &LoadCurve) -> String {
 
 /// A load path for people: where it turns round, and where it jumps.
 pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
-    let mut text = format!("{}: load path, {}\n\n", path.scene, count(path.states.len() as u64, "equilibrium state"));
+    let mut text = format!(
+        "{}: load path on the scene's own mesh, {}\n\n",
+        path.scene,
+        count(path.states.len() as u64, "equilibrium state")
+    );
     let way = path.driven.map(|i| format!("way of {}", support_words(scene, i)));
     let width = way.as_ref().map_or(0, |way| way.chars().count());
     let probe = scene.probes.first().map(|p| p.name.as_str());
@@ -336,7 +347,12 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
         if let Some(u) = state.probes.first() {
             let _ = write!(text, "{:<24}", pair(*u, "m"));
         }
-        let _ = writeln!(text, "{}", if state.stable == Some(false) { "unstable under force control" } else { "" });
+        let word = match (state.stable, path.driven) {
+            (Some(false), None) => "unstable",
+            (Some(false), Some(_)) => "unstable under force control",
+            _ => "",
+        };
+        let _ = writeln!(text, "{word}");
     }
     text.push('\n');
     for pair in path.states.windows(2) {
@@ -349,13 +365,15 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
             let _ = writeln!(text, "{way}, {force}: {word}");
         }
     }
-    if let Some(jump) = path.jump {
-        let _ = writeln!(text, "{jump}");
-    }
-    if !path.complete {
-        let _ = writeln!(text, "the path was not followed to its end");
-    }
+    text.push_str(&events(path));
     text
+}
+
+/// Changes of stability and jumps on a load path, and where it ends.
+pub(super) fn events(path: &LoadPath) -> String {
+    let bifurcations = path.bifurcations.iter().map(ToString::to_string);
+    let (jump, end) = (path.jump.map(|jump| jump.to_string()), path.end.map(|end| end.to_string()));
+    bifurcations.chain(jump).chain(end).map(|sentence| sentence + "\n").collect()
 }
 
 /// The way of the support that moves, and its reaction along it.
@@ -371,15 +389,17 @@ fn driven_words(scene: &Scene, path: &LoadPath, state: &PathState) -> Option<[St
 /// A load path as CSV.
 pub(super) fn path_table(scene: &Scene, path: &LoadPath) -> String {
     let mut text = String::from("load_factor");
+    let mut add = |name: &str, columns: &[&str]| {
+        for column in columns {
+            let _ = write!(text, ",{}", csv_field(&format!("{name}_{column}")));
+        }
+    };
     for probe in &scene.probes {
-        let _ = write!(text, ",{0}_u_x,{0}_u_y", probe.name);
+        add(&probe.name, &["u_x", "u_y"]);
     }
     for i in 0..scene.supports.len() {
-        let name = support_name(scene, i);
-        let _ = write!(
-            text,
-            ",{name}_displacement_x,{name}_displacement_y,{name}_turn,{name}_force_x,{name}_force_y,{name}_moment"
-        );
+        let columns = ["displacement_x", "displacement_y", "turn", "force_x", "force_y", "moment"];
+        add(&support_name(scene, i), &columns);
     }
     text.push_str(",stable_under_force\n");
     for state in &path.states {

@@ -1,11 +1,13 @@
 //! The commands that draw: `run` and `shot`.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use super::args::{RequiredSceneArgs, SetArgs, SolveArgs};
+use super::args::{ReferenceEffort, RequiredSceneArgs, SetArgs, SolveArgs};
 use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
-use super::{CliError, commands, exit_code, named, simulate, text};
+use super::progress::Watch;
+use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, simulate, text};
 use crate::app;
 use crate::scene::{self, registry};
 
@@ -14,12 +16,37 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let compare = compare.map(|panes| panes.0).unwrap_or_default();
     let learn = learn.map(usize::from);
     let options = app::ShotOptions { size, panel: !no_panel, curve, study, learn, motion, compare, theme, language };
+    check_suffix(&output, &[".png"], ".png")?;
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
-    if !options.compare.is_empty() && scene.analysis == scene::Analysis::Dynamic {
-        return Err(CliError::ComparesMotion { scene: named(&source) });
+    let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);
+    fits(
+        "--compare",
+        !options.compare.is_empty(),
+        false,
+        "it shows equilibria; of a motion, --motion shows other integrators",
+    )?;
+    fits("--curve", options.curve, false, "it shows equilibria; of a motion, --motion shows the energy")?;
+    fits(
+        "--motion",
+        options.motion.is_some(),
+        true,
+        "it shows integrators; of equilibria, --compare shows other methods",
+    )?;
+    fits(
+        "--study",
+        options.study && options.learn.is_none(),
+        false,
+        "it measures solves; of a motion, use `warpbeam study`",
+    )?;
+    let watch = Watch::new();
+    let status = app::shot(source, scene, simulation, &options, &output, &mut |progress| watch.observe(&progress))?;
+    let interrupted = watch.is_called_off();
+    drop(watch);
+    if interrupted {
+        eprintln!("warpbeam: interrupted: the picture has what was measured until then");
+        return Ok(ExitCode::from(NOT_CONVERGED));
     }
-    let status = app::shot(source, scene, simulation, &options, &output)?;
     if let Some(reason) = status.failure() {
         eprintln!("warpbeam: {}: {reason}", status.id());
     }
@@ -33,6 +60,7 @@ pub(super) fn run_default() -> Result<ExitCode, CliError> {
 }
 
 pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliError> {
+    check_suffix(output, &[".png"], ".png")?;
     let scene = scene::open(&source)?;
     let simulation = || Ok::<_, CliError>(simulate(&source)?.1);
     // A window does not wait for a large mesh; what is wrong with a small one is said without a window.
@@ -47,8 +75,18 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
                 scene: source.name.clone(),
                 set: SetArgs { assignments: source.assignments.clone() },
             };
-            commands::solve(SolveArgs { scene: args, json: false, out: None, no_truth: false, no_certificate: false })?;
-            app::shot(source, scene, simulation, &app::ShotOptions::default(), output)?;
+            commands::solve(SolveArgs {
+                scene: args,
+                json: false,
+                out: None,
+                reference: ReferenceEffort::Bounded,
+                no_truth: false,
+                certificate: false,
+                no_certificate: false,
+            })?;
+            app::shot(source, scene, simulation, &app::ShotOptions::default(), output, &mut |_| {
+                ControlFlow::Continue(())
+            })?;
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -348,10 +348,9 @@ impl StageSolver<'_> {
         done
     }
 
-    /// The force f_ext − f_int that accelerates a body at the time of its state, but for that of a hand, into
-    /// `result.net_force`.
+    /// Stores the force f_ext − f_int that accelerates a body, without pulses and hand, in `result.net_force`.
     pub fn measure_net_force(&mut self, state: &State, result: &mut State) {
-        self.problem.set_time(state.time);
+        self.problem.set_pulses(&|_| 0.0);
         let (problem, forces) = (&*self.problem, &mut self.memory.forces);
         timed(&mut self.timings.assemble, || {
             problem.linearize(state, forces, None);
@@ -361,7 +360,7 @@ impl StageSolver<'_> {
         result.knows_net_force = true;
     }
 
-    /// Keeps that force as the stage has left it at its end: α M (u − û) + f_d less the hand's.
+    /// Stores the same force as the stage has left it at its end: α M (u − û) + f_d less those of hand and pulses.
     pub(super) fn keep_net_force(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) {
         let Memory { free_flight, scratch: [way, _], .. } = &mut *self.memory;
         combine(way, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
@@ -372,7 +371,16 @@ impl StageSolver<'_> {
         }
         let applied = self.applied_hand_force(stage, start, state);
         self.add_hand_force(-applied, &mut state.net_force);
+        let mut net_force = std::mem::take(&mut state.net_force);
+        self.add_pulse_force(state, -1.0, &mut net_force);
+        state.net_force = net_force;
         state.knows_net_force = true;
+    }
+
+    /// Adds the forces of pulses at their present size on a body in a state, N, times `factor`.
+    pub(super) fn add_pulse_force(&self, state: &State, factor: f64, forces: &mut [Vector2<f64>]) {
+        let problem = &*self.problem;
+        problem.loads().add_pulse_force(problem.system(), &state.displacement, self.kinematics, factor, forces);
     }
 
     /// The hand's force on a body at the time of its state, N.
@@ -401,7 +409,8 @@ impl StageSolver<'_> {
     ///
     /// What is lost is what the stage leaves unsolved, and the difference between the work of loads and hand and that of
     /// the forces it has used. Forces between start and end do the work of the potential; what pulses and hand do beside
-    /// it is what their forces half way do. Forces at the end do not: pulses and hand are booked by the trapezoidal rule.
+    /// it is what their forces half way do. Forces at the end do not: pulses are recorded by their mean over the stage, the hand by
+    /// the trapezoidal rule.
     pub(super) fn book(
         &mut self,
         stage: &Stage<'_>,

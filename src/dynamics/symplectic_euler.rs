@@ -29,6 +29,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let Step { solver, h, start, state, books, .. } = step;
     let h = *h;
     solver.problem.set_time(start.time);
+    solver.problem.set_pulses(&|pulse| pulse.mean(start.time, start.time + h));
     let lumped = solver.mass.lumped();
     let pull = |hand: Option<&Hand>, state: &_| {
         let force = |hand: &Hand| {

@@ -37,12 +37,15 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
         solver.measure_net_force(start, state);
     }
     solver.problem.set_time(start.time + g);
+    solver.problem.set_pulses(&|pulse| pulse.mean(start.time, start.time + g));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (g, &start.velocity)]);
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
     solver.follow(state);
     // The state gets another one at the end of the step.
     let mut net_force = std::mem::take(&mut state.net_force);
     solver.add_hand_force(hand, &mut net_force);
+    // Half of the pulses acts where the step begins, half where the stage ends, both at their mean.
+    solver.add_pulse_force(start, 1.0, &mut net_force);
     let trapezoid = Stage {
         inertia: 4.0 / (g * g),
         from_start: false,
@@ -76,6 +79,9 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let c1 = 1.0 / (GAMMA * (2.0 - GAMMA));
     let c0 = (1.0 - GAMMA).powi(2) * c1;
     solver.problem.set_time(start.time + h);
+    // M (v₁ − v₀) = c₁ M (v_g − v₀) + w f₁ is the impulse of the whole step.
+    let (t, end) = (start.time, start.time + h);
+    solver.problem.set_pulses(&|pulse| (pulse.impulse(t, end) - c1 * pulse.impulse(t, t + g)) / w);
     combine(
         &mut solver.memory.free_flight,
         [

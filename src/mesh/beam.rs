@@ -25,7 +25,7 @@ impl Mesh {
             .map(|(i, j)| {
                 let along = i as f64 / columns as f64;
                 let across = j as f64 / rows as f64 - 0.5;
-                place(beam, along, beam.height * across)
+                bent(beam, along, beam.height * across)
             })
             .collect();
         // For every node of an element, the weights of its corners.
@@ -61,9 +61,9 @@ impl Mesh {
     }
 }
 
-/// Where a point is: `along` from 0 to 1, `across` from the axis, m. The axis of an arch is a parabola, its sections are
-/// normal to it.
-fn place(beam: &Beam, along: f64, across: f64) -> Vector2<f64> {
+/// Position, m, of a point of the beam: `along` runs from 0 to 1, `across` is the distance from the axis, m. The axis of an
+/// arch is a parabola, its sections are normal to it.
+pub(crate) fn bent(beam: &Beam, along: f64, across: f64) -> Vector2<f64> {
     let x = beam.length * along;
     if beam.rise == 0.0 {
         return Vector2::new(x, across);
@@ -71,4 +71,30 @@ fn place(beam: &Beam, along: f64, across: f64) -> Vector2<f64> {
     let slope = 4.0 * beam.rise * (1.0 - 2.0 * along) / beam.length;
     let axis = Vector2::new(x, 4.0 * beam.rise * along * (1.0 - along));
     axis + Vector2::new(-slope, 1.0) * (across / slope.hypot(1.0))
+}
+
+/// Inverse of [`bent`]: `along` and `across`, m, of the point of the beam that is nearest to a position, m, at first order.
+pub(crate) fn straightened(beam: &Beam, at: Vector2<f64>) -> [f64; 2] {
+    /// Newton's method on a parabola takes a handful of steps.
+    const STEPS: u32 = 50;
+    let mut along = at.x / beam.length;
+    if beam.rise != 0.0 {
+        // The foot of the perpendicular on the axis: (at − axis(t)) · axis′(t) = 0.
+        for _ in 0..STEPS {
+            let slope = 4.0 * beam.rise * (1.0 - 2.0 * along);
+            let (tangent, bend) = (Vector2::new(beam.length, slope), -8.0 * beam.rise);
+            let arm = at - bent(beam, along, 0.0);
+            // Gauss–Newton where the second derivative would turn the step round.
+            let curvature = (tangent.norm_squared() - arm.y * bend).max(0.1 * tangent.norm_squared());
+            let step = arm.dot(&tangent) / curvature;
+            along += step;
+            if step.abs() < 1e-15 {
+                break;
+            }
+        }
+    }
+    let along = along.clamp(0.0, 1.0);
+    let (foot, up) = (bent(beam, along, 0.0), bent(beam, along, 1.0));
+    let half = 0.5 * beam.height;
+    [along, (at - foot).dot(&(up - foot)).clamp(-half, half)]
 }

@@ -3,7 +3,7 @@
 //!
 //! Counts in the file are never trusted with memory: everything read is a line that is there.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -218,7 +218,11 @@ impl File {
             let block: Vec<i64> = lines.numbers(4, "a node block: dimension, tag, parametric, count")?;
             let mut tags = Vec::new();
             for _ in 0..block[3] {
-                tags.push(lines.numbers::<u64>(1, "a node tag")?[0]);
+                let tag = lines.numbers::<u64>(1, "a node tag")?[0];
+                if self.nodes.insert(tag, Vector2::zeros()).is_some() {
+                    return Err(lines.error(&format!("every node once, got node {tag} a second time")));
+                }
+                tags.push(tag);
             }
             for tag in tags {
                 let x: Vec<f64> = lines.numbers(3, "the coordinates of a node")?;
@@ -237,6 +241,7 @@ impl File {
 
     fn read_elements(&mut self, lines: &mut Lines<'_>) -> Result<(), GmshError> {
         let header: Vec<u64> = lines.numbers(4, "the numbers of element blocks and elements")?;
+        let mut numbers: HashSet<u64> = HashSet::new();
         for _ in 0..header[0] {
             let block: Vec<i64> = lines.numbers(4, "an element block: dimension, tag, type, count")?;
             let [_, entity, kind, count] = [block[0], block[1], block[2], block[3]];
@@ -249,6 +254,9 @@ impl File {
             for _ in 0..count {
                 let least = 1 + element.map_or(line.unwrap_or(1), |e| e.nodes.len());
                 let tags = lines.numbers::<u64>(least, "an element: tag, nodes")?;
+                if !numbers.insert(tags[0]) {
+                    return Err(lines.error(&format!("every element once, got element {} a second time", tags[0])));
+                }
                 match (element, line) {
                     (Some(element), _) => self.elements.push((lines.number, element, tags[1..least].to_vec())),
                     (None, Some(_)) => self.lines.push((lines.number, entity, [tags[1], tags[2]])),
@@ -292,6 +300,21 @@ impl File {
         )))
     }
 
+    /// Refuses elements with the same corners.
+    fn check_doubles(&self, entry: &ElementType) -> Result<(), GmshError> {
+        let mut lines: HashMap<Vec<u64>, usize> = HashMap::new();
+        for (line, _, tags) in &self.elements {
+            let mut corners = tags[..entry.cell.corners.len()].to_vec();
+            corners.sort_unstable();
+            if let Some(first) = lines.insert(corners.clone(), *line) {
+                let expected =
+                    format!("every element once, got nodes {corners:?}, which the element of line {first} has");
+                return Err(GmshError::Syntax { line: *line, expected });
+            }
+        }
+        Ok(())
+    }
+
     fn into_mesh(self, kind: ElementKind) -> Result<Mesh, GmshError> {
         let entry = kind.entry();
         if self.elements.is_empty() {
@@ -305,6 +328,7 @@ impl File {
         }
         self.check_flat()?;
         self.check_shapes(entry)?;
+        self.check_doubles(entry)?;
         // A cell of a beam is two triangles.
         let a_cell = if entry.cell.corners.len() == 3 { 2.0 } else { 1.0 };
         TOTAL_CELLS.check(self.elements.len() as f64 / a_cell).map_err(|_| {

@@ -14,6 +14,7 @@ mod locate;
 mod recovery;
 mod refine;
 
+pub(crate) use beam::{bent, straightened};
 pub use gmsh::GmshError;
 pub use locate::MaterialPoint;
 pub use recovery::Recovery;
@@ -271,6 +272,47 @@ impl Mesh {
             part_of[node] = part_of[first];
         }
         (parts as usize, part_of)
+    }
+
+    /// Parts of the mesh whose elements share sides, and nodes at which parts meet without sharing one: hinges. For every node the
+    /// parts that have it, each once; empty for nodes without an element. `None` where no two parts meet in a node.
+    pub(crate) fn hinged_parts(&self) -> Option<(usize, Vec<Vec<u32>>)> {
+        // Two sides of the outline end at a node of it, four where parts only touch.
+        let mut ends = vec![0_u32; self.nodes.len()];
+        self.outline().iter().flat_map(Segment::ends).for_each(|node| ends[node as usize] += 1);
+        if ends.iter().all(|&count| count <= 2) {
+            return None;
+        }
+        let mut of_side: HashMap<[u32; 2], usize> = HashMap::new();
+        let mut part: Vec<usize> = (0..self.element_count()).collect();
+        fn first(part: &mut [usize], mut element: usize) -> usize {
+            while part[element] != element {
+                part[element] = part[part[element]];
+                element = part[element];
+            }
+            element
+        }
+        for (element, nodes) in self.elements().enumerate() {
+            for side in self.sides(nodes) {
+                if let Some(other) = of_side.insert(side.key(), element) {
+                    let (a, b) = (first(&mut part, element), first(&mut part, other));
+                    part[a.max(b)] = a.min(b);
+                }
+            }
+        }
+        let mut numbers: HashMap<usize, u32> = HashMap::new();
+        let mut of_node = vec![Vec::new(); self.nodes.len()];
+        for (element, nodes) in self.elements().enumerate() {
+            let next = numbers.len() as u32;
+            let number = *numbers.entry(first(&mut part, element)).or_insert(next);
+            for &node in nodes {
+                let parts: &mut Vec<u32> = &mut of_node[node as usize];
+                if !parts.contains(&number) {
+                    parts.push(number);
+                }
+            }
+        }
+        Some((numbers.len(), of_node))
     }
 
     /// The mesh with these edges in the place of its own.

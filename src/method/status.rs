@@ -21,6 +21,8 @@ pub enum Reason {
     Iteration(IterationError),
     /// No load step, however small, and no descent led on.
     NoDescent,
+    /// Stopped from outside.
+    Interrupted,
 }
 
 impl Reason {
@@ -28,7 +30,7 @@ impl Reason {
     #[must_use]
     pub fn is_divergence(&self) -> bool {
         match self {
-            Self::IterationLimit(_) | Self::Stuck(_) | Self::NoDescent => false,
+            Self::IterationLimit(_) | Self::Stuck(_) | Self::NoDescent | Self::Interrupted => false,
             Self::Stalled(_) | Self::RanAway(_) | Self::Iteration(_) => true,
         }
     }
@@ -50,6 +52,7 @@ impl std::fmt::Display for Reason {
             Self::RanAway(sizes) => {
                 write!(f, "the body has gone more than {sizes} times its size away; lower the load")
             }
+            Self::Interrupted => write!(f, "interrupted before the end: the result is partial"),
             Self::NoDescent => write!(f, "no load step, however small, and no descent leads on from here"),
             Self::Iteration(error) => write!(f, "{error}; lower the load"),
         }

@@ -4,6 +4,7 @@ use super::{
     Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
     MethodKind, Place, Plane, Probe, Pulse, Scene, SolverSettings, Start, Support,
 };
+use crate::words::engineering;
 
 impl Scene {
     /// A scene without a mesh, for [`crate::Simulation::with_mesh`].
@@ -266,6 +267,23 @@ impl Scene {
     pub fn elements(&self) -> impl Iterator<Item = ElementKind> + Clone + use<> {
         let (any, own) = (self.mesh.is_none(), self.element().entry());
         ElementKind::all().filter(move |e| any || e.entry().shares_cell(own))
+    }
+
+    /// Sentences about pulses that are shorter than a time step.
+    #[must_use]
+    pub fn unresolved_pulses(&self) -> Vec<String> {
+        let step = self.dynamics.time_step;
+        let pulses = self.loads.iter().enumerate().filter_map(|(i, load)| Some((i, load.pulse()?)));
+        let short = pulses.filter(|(_, pulse)| pulse.duration < step);
+        short
+            .map(|(i, pulse)| {
+                let [duration, step] = [pulse.duration, step].map(|time| engineering(time, "s"));
+                format!(
+                    "the pulse of load.{i} lasts {duration}, less than a step of {step}: its impulse is exact, its shape is not \
+                     resolved"
+                )
+            })
+            .collect()
     }
 
     /// Makes every cell of its mesh this element.

@@ -125,6 +125,33 @@ impl Pulse {
         if (0.0..=1.0).contains(&t) { (std::f64::consts::PI * t).sin().powi(2) } else { 0.0 }
     }
 
+    /// The integral of the factor from one time to another, s.
+    ///
+    /// ```
+    /// use warpbeam::scene::Pulse;
+    /// let pulse = Pulse { start: 1.0, duration: 0.2 };
+    /// assert_eq!(pulse.impulse(0.0, 9.0), 0.1);
+    /// ```
+    #[must_use]
+    pub fn impulse(&self, from: f64, to: f64) -> f64 {
+        use std::f64::consts::TAU;
+        // ∫ sin²(π t/d) dt = t/2 − d/4π sin(2π t/d).
+        let until = |time: f64| {
+            let part = ((time - self.start) / self.duration).clamp(0.0, 1.0);
+            self.duration * (0.5 * part - (TAU * part).sin() / (2.0 * TAU))
+        };
+        match (from <= self.start, to >= self.end()) {
+            (true, true) => 0.5 * self.duration,
+            _ => until(to) - until(from),
+        }
+    }
+
+    /// The mean of the factor from one time to another.
+    #[must_use]
+    pub fn mean(&self, from: f64, to: f64) -> f64 {
+        if to > from { self.impulse(from, to) / (to - from) } else { self.factor(from) }
+    }
+
     /// When it is over, s.
     #[must_use]
     pub fn end(&self) -> f64 {

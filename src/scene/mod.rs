@@ -286,6 +286,10 @@ impl Scene {
         }
         for (i, probe) in self.probes.iter().enumerate() {
             probe.place.validate(&format!("probe.{i}"))?;
+            if let Some(first) = self.probes[..i].iter().position(|other| other.name == probe.name) {
+                let message = format!("expected a name of its own, got \"{}\", which probe.{first} has", probe.name);
+                return Err(Invalid::new(format!("probe.{i}.name"), message));
+            }
         }
         check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
         check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;

@@ -1,8 +1,9 @@
 //! From a name or a path, and `--set` assignments, to a validated scene; errors with file and line.
 
-use std::io::Read as _;
+use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Mutex, PoisonError};
 
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
@@ -35,8 +36,8 @@ pub struct Source {
 /// # Errors
 /// [`SceneError`], each with one message that says what was expected.
 pub fn open(source: &Source) -> Result<Scene, SceneError> {
-    // The folder of standard input is the current one.
-    let folder = source.name.parent().unwrap_or(Path::new(""));
+    // The folder of a stream is the current one.
+    let folder = source.name.parent().filter(|_| !source.is_stream()).unwrap_or(Path::new(""));
     parse(&source.text()?, Some(&source.name), Some(folder), &source.assignments)
 }
 
@@ -56,25 +57,41 @@ impl Source {
     fn text(&self) -> Result<String, SceneError> {
         match self.built_in() {
             Some(built_in) => Ok(built_in.toml.to_owned()),
-            None if self.name == Path::new(STANDARD_INPUT) => read_standard_input(),
+            None if self.is_stream() => self.read_stream(),
             None => read(&self.name),
         }
     }
+
+    /// `true` for standard input and for pipes (`<(…)` in a shell), which can be read only once.
+    #[must_use]
+    pub fn is_stream(&self) -> bool {
+        self.name == Path::new(STANDARD_INPUT)
+            || self.built_in().is_none()
+                && std::fs::metadata(&self.name).is_ok_and(|file| !file.is_file() && !file.is_dir())
+    }
+
+    /// Text of a stream, kept for later calls.
+    fn read_stream(&self) -> Result<String, SceneError> {
+        static TEXTS: Mutex<BTreeMap<PathBuf, Result<String, String>>> = Mutex::new(BTreeMap::new());
+        let is_input = self.name == Path::new(STANDARD_INPUT);
+        let mut texts = TEXTS.lock().unwrap_or_else(PoisonError::into_inner);
+        let text = texts.entry(self.name.clone()).or_insert_with(|| match is_input {
+            true => read_to_limit(std::io::stdin().lock()),
+            false => std::fs::File::open(&self.name).map_err(|error| error.to_string()).and_then(read_to_limit),
+        });
+        let name = if is_input { Path::new("standard input") } else { &self.name };
+        text.clone().map_err(|reason| unreadable(name, reason))
+    }
 }
 
-/// What standard input holds. It can be read only once, so it is kept for who asks again.
-fn read_standard_input() -> Result<String, SceneError> {
-    static TEXT: OnceLock<Result<String, String>> = OnceLock::new();
-    let text = TEXT.get_or_init(|| {
-        let mut text = String::new();
-        let read = std::io::stdin().lock().take(MAX_FILE_BYTES + 1).read_to_string(&mut text);
-        match read {
-            Err(error) => Err(error.to_string()),
-            Ok(bytes) if bytes as u64 > MAX_FILE_BYTES => Err(too_large(bytes as u64)),
-            Ok(_) => Ok(text),
-        }
-    });
-    text.clone().map_err(|reason| unreadable(Path::new("standard input"), reason))
+/// Reads all text there is, but no more than a scene may have.
+fn read_to_limit(stream: impl Read) -> Result<String, String> {
+    let mut text = String::new();
+    match stream.take(MAX_FILE_BYTES + 1).read_to_string(&mut text) {
+        Err(error) => Err(error.to_string()),
+        Ok(bytes) if bytes as u64 > MAX_FILE_BYTES => Err(too_large(bytes as u64)),
+        Ok(_) => Ok(text),
+    }
 }
 
 fn too_large(bytes: u64) -> String {

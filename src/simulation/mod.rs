@@ -29,10 +29,9 @@ mod status;
 pub use self::motion::Motion;
 pub use field::Field;
 pub use point::PointState;
-use results::supports_work;
 pub use results::{
     Deformation, Energy, LargestStress, ProbeResult, ProbeStress, Reaction, StressResult, SupportReaction, energy,
-    probe_results, reaction, support_reactions,
+    probe_results, reaction, support_reactions, supports_power,
 };
 pub use status::Status;
 
@@ -453,6 +452,15 @@ impl Simulation {
         &self.status
     }
 
+    /// Ends a search or a motion that has not come to its end, with the best state there is.
+    pub fn stop(&mut self) {
+        match &mut self.process {
+            Process::Search(search) => search.stop(&mut self.body),
+            Process::Motion(motion) => motion.stop(&self.body),
+        }
+        self.judge();
+    }
+
     /// Finds out what is known of the final state whatever method found it, at the price of some solves; remembered
     /// until the next change. Nothing is known of linear theory's results, before the end, in motion, and while a hand
     /// pulls.
@@ -486,7 +494,11 @@ impl Simulation {
             deformation: Deformation::of(problem, state),
             probes: probe_results(problem, state),
             energy: Energy {
-                supports: supports_work(problem, &supports, load_factor),
+                supports: match (problem.supports().move_the_body(), self.is_linear()) {
+                    (false, _) => Some(0.0),
+                    (true, true) => Some(0.5 * supports_power(problem, &supports)),
+                    (true, false) => None,
+                },
                 ..energy(problem, state, load_factor)
             },
             reaction: reaction(problem, state, self.forces()),
@@ -692,7 +704,8 @@ impl Simulation {
     /// which is within it and above the tolerance. `None` where the tolerance is met, or nothing is.
     #[must_use]
     pub fn residual_floor(&self) -> Option<f64> {
-        self.search().and_then(Search::residual_floor)
+        let floor = self.search().and_then(Search::residual_floor);
+        floor.filter(|_| self.residual() > self.body.scene.solver.tolerance)
     }
 
     /// Length of the last step over that of the one before: below 1 the iteration contracts.

@@ -8,7 +8,7 @@ use crate::dynamics::{
     Booking, Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionDecision, MotionReport,
     Solves, StageSolver, Step, StepError, StopReason, critical_step,
 };
-use crate::scene::{Load, MethodKind, Scene, Start};
+use crate::scene::{DynamicsSettings, Load, MethodKind, Scene, Start};
 use crate::solver::SolverError;
 use crate::state::{State, largest};
 use crate::timings::Timings;
@@ -148,13 +148,13 @@ impl Motion {
         if self.stopped.is_some() {
             return;
         }
-        let end = body.state.time + body.scene.dynamics.time_step;
+        let (whole, end) = next_step(&body.scene.dynamics, body.state.time);
         self.last_step = Timings::default();
         let (mut halvings, mut left) = (0, 1_u32);
         let factorizations = self.counts.factorizations;
         while left > 0 {
             self.start.copy_from(&body.state);
-            let part = body.scene.dynamics.time_step / f64::from(1_u32 << halvings);
+            let part = whole / f64::from(1_u32 << halvings);
             match self.take_step(body, part).and_then(|booking| self.book(&booking, body)) {
                 Ok(()) => left -= 1,
                 Err(error) => {
@@ -289,6 +289,13 @@ impl Motion {
         if linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
+    /// Ends a motion that has not come to its end.
+    pub(super) fn stop(&mut self, body: &Body) {
+        if self.status(&body.scene, &body.state) == Status::Running {
+            self.stopped = Some(StopReason::Interrupted);
+        }
+    }
+
     /// Whether strains are those of linear theory.
     pub(super) fn is_linear(&self, scene: &Scene) -> bool {
         self.kinematics(scene) == Kinematics::Linear
@@ -298,7 +305,7 @@ impl Motion {
         let settings = &scene.dynamics;
         match &self.stopped {
             Some(reason) => Status::Stopped(*reason),
-            None if state.time > settings.duration - NO_TIME * settings.time_step => Status::Finished,
+            None if state.time >= settings.duration => Status::Finished,
             None => Status::Running,
         }
     }
@@ -371,6 +378,16 @@ impl Motion {
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
         self.critical_step
+    }
+}
+
+/// Length of the step that begins at a time, s, and the time it ends at: the step that reaches the duration ends there.
+fn next_step(settings: &DynamicsSettings, time: f64) -> (f64, f64) {
+    let DynamicsSettings { time_step, duration, .. } = *settings;
+    if time < duration && time + time_step > duration - NO_TIME * time_step {
+        (duration - time, duration)
+    } else {
+        (time_step, time + time_step)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::assembly::{Forces, Kinematics, Problem};
 use crate::rotation::polar;
 use crate::scene::Place;
 use crate::state::State;
-use crate::stress::{MeshError, NodalStress, PlaneTensor};
+use crate::stress::{MeshError, NodalStress, PlaneTensor, Singularity};
 
 /// What a probe sees.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,9 +29,10 @@ pub struct Energy {
     pub elastic: f64,
     /// Work of the loads at their present size, from rest.
     pub external: f64,
-    /// Work of the supports that move, their reactions at their present size, from rest: force times way and moment
-    /// times turn.
-    pub supports: f64,
+    /// Work of the supports that move, the integral of their reactions along the load path from rest: 0 where none moves. In
+    /// linear theory half of the final reactions times the displacements; else `None`, as it takes the path, which
+    /// [`crate::study::LoadPath`] follows.
+    pub supports: Option<f64>,
 }
 
 /// What the supports do to the body.
@@ -107,7 +108,7 @@ pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
 #[must_use]
 pub fn energy(problem: &Problem, state: &State, load_factor: f64) -> Energy {
     let external = -problem.loads().potential(state, load_factor);
-    Energy { elastic: problem.elastic_energy(state), external, supports: 0.0 }
+    Energy { elastic: problem.elastic_energy(state), external, supports: None }
 }
 
 /// f_int − f_ext on the fixed unknowns.
@@ -154,11 +155,12 @@ pub fn support_reactions(
     react.collect()
 }
 
-/// The work of supports that move, their reactions at their present size, J.
-pub(super) fn supports_work(problem: &Problem, reactions: &[SupportReaction], load_factor: f64) -> f64 {
+/// Work of the reactions of supports that move, J, for a unit of the load factor: what they do at their present size times the
+/// whole displacement and rotation of each.
+#[must_use]
+pub fn supports_power(problem: &Problem, reactions: &[SupportReaction]) -> f64 {
     let pairs = problem.supports().all().iter().zip(reactions);
-    let work: f64 = pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.turn).sum();
-    load_factor * work
+    pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.turn).sum()
 }
 
 /// The largest von Mises stress of the recovered Cauchy stresses.
@@ -191,6 +193,8 @@ pub struct ProbeStress {
 pub struct StressResult {
     /// The largest von Mises (Cauchy) stress; `None` where no node has one.
     pub largest: Option<LargestStress>,
+    /// Why that stress depends on the mesh; `None` where it does not.
+    pub singularity: Option<Singularity>,
     /// At every probe.
     pub probes: Vec<ProbeStress>,
     /// The estimate of the mesh's own error in the energy norm, percent; see [`MeshError`].
@@ -210,8 +214,10 @@ impl StressResult {
                 cauchy: local.cauchy(material, nodal.kinematics()),
             }
         });
+        let largest = nodal.largest_von_mises();
         Self {
-            largest: nodal.largest_von_mises().map(|(node, von_mises)| LargestStress {
+            singularity: largest.and_then(|(node, _)| Singularity::at(problem, node)),
+            largest: largest.map(|(node, von_mises)| LargestStress {
                 von_mises,
                 node,
                 at: mesh.nodes()[node as usize],

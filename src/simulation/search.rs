@@ -228,11 +228,25 @@ impl Search {
         }
         let most = body.scene.solver.max_iterations;
         if self.status == Status::Running && self.iterations >= most {
-            self.status = Reason::IterationLimit(most).into();
-            self.method.stop(&mut body.state);
-            // What is missing to the whole load.
-            self.measure_forces(body, workspace, true, (None, 1.0), timings);
+            self.end(body, workspace, Reason::IterationLimit(most), timings);
         }
+    }
+
+    /// Ends before convergence with the best state there is, and measures its residual under the whole load.
+    fn end(&mut self, body: &mut Body, workspace: &mut Workspace, reason: Reason, timings: &mut Timings) {
+        self.status = reason.into();
+        self.method.stop(&mut body.state);
+        self.measure_forces(body, workspace, true, (None, 1.0), timings);
+    }
+
+    /// Ends a search that is still running.
+    pub fn stop(&mut self, body: &mut Body) {
+        if self.status != Status::Running {
+            return;
+        }
+        let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
+        self.end(body, &mut workspace, Reason::Interrupted, &mut Timings::default());
+        self.workspace = Some(workspace);
     }
 
     /// Rotations, forces and residual of the current state under the load that is on the body at present, and the
@@ -313,11 +327,12 @@ impl Search {
     }
 
     pub fn residual(&self) -> f64 {
-        self.residual
+        self.forces.below_rounding.map_or(self.residual, |[residual, _]| residual)
     }
 
     pub fn residual_floor(&self) -> Option<f64> {
-        self.floor
+        let below = self.forces.below_rounding.filter(|_| self.status == Status::Converged);
+        self.floor.or(below.map(|[_, bound]| bound))
     }
 
     pub fn step_ratio(&self) -> Option<f64> {

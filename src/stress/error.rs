@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{NodalStress, visit_points};
 use crate::assembly::Problem;
+use crate::mesh::Mesh;
 use crate::rotation::Rotation;
 use crate::state::State;
 
@@ -20,9 +21,13 @@ use crate::state::State;
 /// moment M acts on them by forces M cos(θ/2)/H, whose part along the frame is M cos²(θ/2)/H: cos²(θ/2) of what it should
 /// be, and so is the stress. For that η² has ∫ (3 φ²)² ε : C : ε t dA more, φ(X) the angle from the element's rotation to
 /// the recovered one: 3 φ² has the mean θ²/4 ≈ sin²(θ/2).
+///
+/// A single row of four-node elements gives no estimate: in bending each of them has the same linear stress over the height as
+/// its neighbours, and the curvature of the true one is seen by none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshError {
-    /// 100 η / ‖u‖; `None` where nothing is deformed, or the arithmetic leaves the range of f64.
+    /// 100 η / ‖u‖; `None` where nothing is deformed, for a single row of four-node elements, and where the arithmetic leaves the
+    /// range of f64.
     pub percent: Option<f64>,
     /// Where it lies: of every element the root of its η² over its area, over that of ‖u‖² over the body's area, percent.
     /// The mean square of it over the body is the square of the whole.
@@ -81,9 +86,18 @@ impl MeshError {
         let whole = energy + error;
         let known = whole > 0.0 && whole.is_finite();
         let percent = |share: f64| if known { 100.0 * (share / whole).sqrt() } else { 0.0 };
-        self.percent = known.then(|| percent(error));
+        self.percent = (known && !(one_rotation && is_a_single_row(mesh))).then(|| percent(error));
         self.elements.iter_mut().for_each(|density| *density = percent(*density * area));
     }
+}
+
+/// `true` if every node is on the outline.
+fn is_a_single_row(mesh: &Mesh) -> bool {
+    let mut inner = vec![true; mesh.nodes().len()];
+    for side in mesh.outline() {
+        side.nodes().iter().for_each(|&node| inner[node as usize] = false);
+    }
+    mesh.connectivity().iter().all(|&node| !inner[node as usize])
 }
 
 /// The share of its stress that an element misses by having one rotation: 3 φ², φ the angle from it to the recovered one.

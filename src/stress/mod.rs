@@ -18,8 +18,10 @@ use crate::scene::{Material, Plane};
 use crate::state::State;
 
 mod error;
+mod singularity;
 
 pub use error::MeshError;
+pub use singularity::Singularity;
 
 /// A symmetric tensor of second order without shear out of the plane: stress (Pa) or strain.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

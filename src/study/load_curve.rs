@@ -51,6 +51,8 @@ pub struct MethodPoint {
     pub tip: Vector2<f64>,
     /// How it ended.
     pub status: Status,
+    /// `false` if the end is an unstable equilibrium; `None` where that is not known.
+    pub stable: Option<bool>,
 }
 
 /// The curve of a scene that has a cantilever's truth.
@@ -58,6 +60,8 @@ pub struct MethodPoint {
 pub struct LoadCurve {
     /// From no load to past the full one.
     pub samples: Vec<Sample>,
+    /// Load factor at which the exact beam buckles, where the samples end; `None` where they go on to the end.
+    pub buckles_at: Option<f64>,
     /// For 3, 5 and 10 percent, as far as the samples reach.
     pub departures: Vec<Departure>,
     /// Every method, on the scene's own mesh.
@@ -83,9 +87,9 @@ impl LoadCurve {
         let rest = Vector2::new(beam.length, 0.0);
         let none =
             Sample { factor: 0.0, linear: Vector2::zeros(), truth: Vector2::zeros(), rotation: 0.0, strain: 0.0 };
-        let loaded = beam.path(LARGEST_FACTOR, SAMPLES).into_iter();
+        let (loaded, buckles_at) = beam.path_to_critical(LARGEST_FACTOR, SAMPLES);
         let samples: Vec<Sample> = std::iter::once(none)
-            .chain(loaded.map(|p| Sample {
+            .chain(loaded.into_iter().map(|p| Sample {
                 factor: p.factor,
                 linear: linear * p.factor,
                 truth: p.tip.x - rest,
@@ -95,7 +99,7 @@ impl LoadCurve {
             .collect();
         let departures = DEPARTURES.into_iter().filter_map(|percent| departure(&samples, percent)).collect();
         let methods = METHODS.iter().filter_map(|entry| method_point(scene, entry.kind, &system)).collect();
-        Some(Self { samples, departures, methods })
+        Some(Self { samples, buckles_at, departures, methods })
     }
 }
 
@@ -123,5 +127,6 @@ fn method_point(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Opti
     simulation.solve();
     let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"))?;
     let tip = probe.mean(simulation.displacement());
-    Some(MethodPoint { method, tip, status: simulation.status().clone() })
+    let stable = simulation.certify().stable;
+    Some(MethodPoint { method, tip, status: simulation.status().clone(), stable })
 }

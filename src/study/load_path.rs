@@ -1,12 +1,15 @@
 //! The load path of any scene at rest: its equilibria while loads are put on and supports taken on their way together,
 //! from nothing to the whole. Each is the one nearest to the one before; where there is none the body jumps.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Vector2;
 
-use crate::assembly::{Forces, Problem};
+use crate::assembly::{Forces, Kinematics, Problem};
+use crate::element::Tangent;
 use crate::method::{Workspace, support_stiffness};
 use crate::scene::{Analysis, MethodKind, Place, Scene};
-use crate::simulation::{Simulation, Status, SupportReaction};
+use crate::simulation::{Simulation, Status, SupportReaction, supports_power};
 use crate::state::{State, largest};
 use crate::words::engineering;
 
@@ -51,6 +54,90 @@ impl std::fmt::Display for Jump {
     }
 }
 
+/// A critical point that the path goes through: the exact tangent is singular, another path crosses this one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Bifurcation {
+    /// Fraction of the load, to a thousandth.
+    pub factor: f64,
+    /// Negative eigenvalues of the exact tangent below it and beyond it: 0 where the path is stable.
+    pub unstable_modes: [usize; 2],
+}
+
+impl Bifurcation {
+    /// Percent of the load, to a hundredth.
+    fn percent(&self) -> String {
+        engineering((self.factor * 1e4).round() / 1e2, "%")
+    }
+
+    /// A few words for a picture: `buckles at 49.3 %`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        let percent = engineering((self.factor * 1e3).round() / 10.0, "%");
+        match self.unstable_modes {
+            [0, _] => format!("buckles at {percent}"),
+            [_, 0] => format!("stable from {percent}"),
+            [_, modes] => format!("{modes} unstable modes from {percent}"),
+        }
+    }
+}
+
+impl std::fmt::Display for Bifurcation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let percent = self.percent();
+        match self.unstable_modes {
+            [0, _] => write!(f, "buckles at {percent} of the load: beyond, this path is unstable"),
+            [_, 0] => write!(f, "stable again from {percent} of the load on"),
+            [_, modes] => write!(f, "from {percent} of the load on {modes} modes are unstable"),
+        }
+    }
+}
+
+/// Reason why a path ends before the whole load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PathEndReason {
+    /// No equilibrium, stable or not, is near.
+    NoEquilibrium,
+    /// The path took more solves than it may.
+    Solves(u32),
+    /// The command was interrupted.
+    Interrupted,
+}
+
+/// Where a path ends before the whole load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PathEnd {
+    /// Fraction of the load.
+    pub factor: f64,
+    /// Reason.
+    pub reason: PathEndReason,
+}
+
+impl std::fmt::Display for PathEnd {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the path ends at {} of the load: ", engineering(100.0 * self.factor, "%"))?;
+        match self.reason {
+            PathEndReason::NoEquilibrium => write!(f, "no equilibrium was found beyond"),
+            PathEndReason::Solves(most) => write!(f, "it took more than {most} solves"),
+            PathEndReason::Interrupted => write!(f, "interrupted"),
+        }
+    }
+}
+
+/// Critical points of the load path that ends at an equilibrium.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct PathSummary {
+    /// The jump on the way, if there was one.
+    pub jump: Option<Jump>,
+    /// The first critical point at which the path loses its stability.
+    pub buckling: Option<Bifurcation>,
+    /// Work of the supports that move, J; `None` where the path was not followed to the whole load.
+    pub supports_work: Option<f64>,
+}
+
 /// The path of a scene.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -61,18 +148,24 @@ pub struct LoadPath {
     pub states: Vec<PathState>,
     /// Where it jumps, the first time.
     pub jump: Option<Jump>,
+    /// Where its stability changes without a jump.
+    pub bifurcations: Vec<Bifurcation>,
     /// Number of the first support that moves: the path is drawn over its way. Else over the load.
     pub driven: Option<usize>,
-    /// Whether it was followed to its end.
-    pub complete: bool,
+    /// Work of the supports that move, the integral of their reactions along the path, J.
+    pub supports_work: f64,
+    /// Where it ends before the whole load; `None` where it was followed to its end.
+    pub end: Option<PathEnd>,
     /// Displacement at the end, m.
-    end: Vec<Vector2<f64>>,
+    last: Vec<Vector2<f64>>,
 }
 
 /// States of a path that is drawn.
 const DRAWN: u32 = 60;
 /// States of a path that is followed only to see where it jumps.
 const FOLLOWED: u32 = 8;
+/// States of a path along which the work of supports is integrated, by the trapezoidal rule.
+const INTEGRATED: u32 = 40;
 /// A step of the load factor that is not divided any more.
 const SMALLEST_STEP: f64 = 1e-4;
 /// A step that moves the body so many times as far as the steps before promised has left the path.
@@ -86,46 +179,70 @@ const FEW_ITERATIONS: u32 = 20;
 const ENOUGH_ITERATIONS: u32 = 500;
 /// Solves after which a path is given up.
 const MOST_SOLVES: u32 = 300;
+/// Width of the part of the load within which a change of stability is found.
+const BRACKET: f64 = 1e-3;
 /// Unknowns beyond which a path is too dear to be a by-product of a solve.
 const MOST_UNKNOWNS: usize = 6000;
 
+/// Receives the fraction that is done, and cancels with [`ControlFlow::Break`].
+pub type PathObserver<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+
 impl LoadPath {
-    /// The path of a scene; `None` of a motion, of linear theory, and where the scene cannot be simulated.
+    /// Follows the path of a scene. `None` for a motion, for linear theory, and where the scene cannot be simulated.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
-        Follower::new(scene)?.follow(DRAWN)
+        Self::follow(scene, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// The jump on the way to a result of a scene, its displacement in m: `Some(None)` where there was none, `None`
-    /// where that is not known.
+    /// [`Self::of`] with progress; a path that is cancelled ends early.
     #[must_use]
-    pub fn jump_before(scene: &Scene, result: &[Vector2<f64>]) -> Option<Option<Jump>> {
+    pub fn follow(scene: &Scene, observe: PathObserver<'_>) -> Option<Self> {
+        Follower::new(scene)?.follow(DRAWN, observe)
+    }
+
+    /// Follows the load path to a result of a scene, a displacement in m, and summarizes it; `None` where the path does not reach it.
+    #[must_use]
+    pub fn to_result(scene: &Scene, result: &[Vector2<f64>], observe: PathObserver<'_>) -> Option<PathSummary> {
         /// Part of the largest displacement that is no other equilibrium.
         const SAME: f64 = 0.02;
-        let follower = Follower::new(scene)?;
-        if follower.simulation.system().dofs() > MOST_UNKNOWNS
-            || result.len() != follower.simulation.displacement().len()
-        {
+        // Before equations are set up only to be refused.
+        if 2 * result.len() > MOST_UNKNOWNS {
             return None;
         }
-        let path = follower.follow(FOLLOWED)?;
-        if path.jump.is_some() {
-            return Some(path.jump);
+        let follower = Follower::new(scene)?;
+        let count = if follower.whole.supports().move_the_body() { INTEGRATED } else { FOLLOWED };
+        let path = follower.follow(count, observe)?;
+        let summary = path.summary();
+        if summary.jump.is_some() || summary.buckling.is_some() {
+            return Some(summary);
         }
-        let distance = path.end.iter().zip(result).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-        let elsewhere = distance > SAME * largest(result).max(largest(&path.end));
+        if path.end.is_some() || result.len() != path.last.len() {
+            return None;
+        }
+        let distance = path.last.iter().zip(result).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        let elsewhere = distance > SAME * largest(result).max(largest(&path.last));
         // Another equilibrium than that of the path was reached by going through a jump of one's own.
-        path.complete.then(|| elsewhere.then_some(Jump { factor: 1.0, distance }))
+        Some(PathSummary { jump: elsewhere.then_some(Jump { factor: 1.0, distance }), ..summary })
     }
 
-    /// Where a scene's body jumps on its way from rest; `None` where it does not, or that is not known.
+    /// Follows the load path of a scene and summarizes it; `None` where the path cannot be followed.
     #[must_use]
-    pub fn jump_of(scene: &Scene) -> Option<Jump> {
+    pub fn summary_of(scene: &Scene) -> Option<PathSummary> {
         let follower = Follower::new(scene)?;
         if follower.simulation.system().dofs() > MOST_UNKNOWNS {
             return None;
         }
-        follower.follow(FOLLOWED)?.jump
+        Some(follower.follow(FOLLOWED, &mut |_| ControlFlow::Continue(()))?.summary())
+    }
+
+    /// Summarizes the path.
+    #[must_use]
+    pub fn summary(&self) -> PathSummary {
+        PathSummary {
+            jump: self.jump,
+            buckling: self.bifurcations.iter().find(|b| b.unstable_modes[0] == 0).copied(),
+            supports_work: self.end.is_none().then_some(self.supports_work),
+        }
     }
 
     /// The way of the support that moves at a state: its displacement, m, or its turn, rad, where it only turns; and the
@@ -151,6 +268,13 @@ struct Follower {
     forces: Forces,
     reached: f64,
     state: State,
+    /// The accepted state before, and its load factor.
+    before: (f64, State),
+    /// Negative eigenvalues of the exact tangent at the last accepted state.
+    unstable_modes: usize,
+    /// Work of the supports so far, J, and their generalised force at the last accepted state, J a load factor.
+    work: f64,
+    power: f64,
     /// How fast the body moves, m a load factor.
     rate: f64,
     solves: u32,
@@ -173,10 +297,25 @@ impl Follower {
         let workspace = Workspace::new(&system).ok()?;
         let simulation = Simulation::with_system(&part(&scene, 0.0), system).ok()?;
         let (state, forces) = (simulation.state().clone(), Forces::new(simulation.displacement().len()));
-        Some(Self { scene, simulation, whole, workspace, forces, reached: 0.0, state, rate, solves: 0 })
+        let before = (0.0, state.clone());
+        Some(Self {
+            scene,
+            simulation,
+            whole,
+            workspace,
+            forces,
+            reached: 0.0,
+            state,
+            before,
+            unstable_modes: 0,
+            work: 0.0,
+            power: 0.0,
+            rate,
+            solves: 0,
+        })
     }
 
-    fn follow(mut self, count: u32) -> Option<LoadPath> {
+    fn follow(mut self, count: u32, observe: PathObserver<'_>) -> Option<LoadPath> {
         if *self.simulation.solve() != Status::Converged {
             return None;
         }
@@ -185,49 +324,68 @@ impl Follower {
             scene: self.scene.name.clone(),
             states: vec![self.seen()],
             jump: None,
+            bifurcations: Vec::new(),
             driven: self.scene.supports.iter().position(moves),
-            complete: true,
-            end: Vec::new(),
+            supports_work: 0.0,
+            end: None,
+            last: Vec::new(),
         };
         for i in 1..=count {
             let goal = f64::from(i) / f64::from(count);
-            if !self.go(goal, &mut path) {
-                path.complete = false;
+            if let Err(reason) = self.go(goal, &mut path, observe) {
+                // The last equilibrium belongs to the path.
+                if path.states.last().is_some_and(|state| state.factor < self.reached) {
+                    path.states.push(self.seen());
+                }
+                path.end = Some(PathEnd { factor: self.reached, reason });
                 break;
             }
             path.states.push(self.seen());
         }
-        path.end = self.state.displacement.to_vec();
+        path.last = self.state.displacement.to_vec();
+        path.supports_work = self.work;
         Some(path)
     }
 
-    /// Goes on to a load factor; says whether it got there.
-    fn go(&mut self, goal: f64, path: &mut LoadPath) -> bool {
+    /// Goes on to a load factor.
+    fn go(&mut self, goal: f64, path: &mut LoadPath, observe: PathObserver<'_>) -> Result<(), PathEndReason> {
         let mut step = goal - self.reached;
         while self.reached < goal {
+            if observe(self.reached).is_break() {
+                return Err(PathEndReason::Interrupted);
+            }
             // The last part of the way must not be left to rounding.
             let to = if goal - self.reached <= step * (1.0 + 1e-9) { goal } else { self.reached + step };
+            let nearby = |moved: f64, rate: f64, from: f64| moved <= FARTHER * rate * (to - from);
+            if self.unstable_modes > 0 {
+                step = self.go_unstable(to, path)?;
+                continue;
+            }
             let converged = self.solve_near(to);
-            let moved = self.distance();
-            if converged && moved <= FARTHER * self.rate * (to - self.reached) {
+            let moved = self.distance(self.simulation.displacement());
+            if converged && nearby(moved, self.rate, self.reached) {
                 self.accept(to, moved);
                 step *= 2.0;
                 continue;
             }
             if self.solves > MOST_SOLVES {
-                return false;
+                return Err(PathEndReason::Solves(MOST_SOLVES));
             }
             step = 0.4 * (to - self.reached);
             if step >= SMALLEST_STEP {
                 self.go_back();
                 continue;
             }
+            if self.loses_stability(to, path) {
+                step = goal - self.reached;
+                continue;
+            }
             // No near equilibrium: wherever the solve goes is where the body goes.
             let converged = *self.simulation.solve() == Status::Converged;
-            let moved = self.distance();
+            let moved = self.distance(self.simulation.displacement());
             if !converged {
                 path.jump.get_or_insert(Jump { factor: self.reached, distance: 0.0 });
-                return false;
+                return Err(PathEndReason::NoEquilibrium);
             }
             if moved > NO_JUMP * largest(self.simulation.displacement()) {
                 path.states.push(self.seen());
@@ -238,7 +396,94 @@ impl Follower {
             self.rate = rate;
             step = goal - self.reached;
         }
+        Ok(())
+    }
+
+    /// Goes on over a critical point to the unstable equilibrium beyond it, where the path has one near; returns `true` if it
+    /// does.
+    fn loses_stability(&mut self, to: f64, path: &mut LoadPath) -> bool {
+        let mut state = self.predicted(to);
+        let Some(modes) = self.correct(&mut state, to) else { return false };
+        let moved = self.distance(&state.displacement);
+        if modes == 0 || moved > FARTHER * self.rate * (to - self.reached) {
+            return false;
+        }
+        path.states.push(self.seen());
+        path.bifurcations.push(Bifurcation { factor: 0.5 * (self.reached + to), unstable_modes: [0, modes] });
+        self.accept_state(to, moved, &state);
+        self.unstable_modes = modes;
+        path.states.push(self.seen());
         true
+    }
+
+    /// Goes on along a path that is unstable; returns the next step.
+    fn go_unstable(&mut self, to: f64, path: &mut LoadPath) -> Result<f64, PathEndReason> {
+        let width = to - self.reached;
+        let mut state = self.predicted(to);
+        self.solves += 1;
+        let modes = self.correct(&mut state, to);
+        let moved = self.distance(&state.displacement);
+        let near = moved <= FARTHER * self.rate * width;
+        match modes.filter(|_| near) {
+            Some(modes) if modes == self.unstable_modes || width <= BRACKET => {
+                if modes != self.unstable_modes {
+                    let unstable_modes = [self.unstable_modes, modes];
+                    path.bifurcations.push(Bifurcation { factor: 0.5 * (self.reached + to), unstable_modes });
+                }
+                self.accept_state(to, moved, &state);
+                self.unstable_modes = modes;
+                if modes == 0 {
+                    self.go_back();
+                }
+                Ok(2.0 * width)
+            }
+            _ if self.solves > MOST_SOLVES => Err(PathEndReason::Solves(MOST_SOLVES)),
+            _ if width < SMALLEST_STEP => Err(PathEndReason::NoEquilibrium),
+            _ => Ok(0.4 * width),
+        }
+    }
+
+    /// The state at a load factor that the last two states point to.
+    fn predicted(&self, to: f64) -> State {
+        let mut state = self.state.clone();
+        let (factor, before) = &self.before;
+        if self.reached > *factor {
+            let part = (to - self.reached) / (self.reached - factor);
+            let pairs = self.state.displacement.iter().zip(&before.displacement);
+            let ways: Vec<Vector2<f64>> = pairs.map(|(now, before)| (now - before) * part).collect();
+            for (u, way) in state.displacement.overwrite().iter_mut().zip(&ways) {
+                *u += way;
+            }
+        }
+        state
+    }
+
+    /// Takes a state to the equilibrium at a load factor by Newton's method with the exact tangent, whether that is stable or
+    /// not; returns the negative eigenvalues of the tangent there.
+    fn correct(&mut self, state: &mut State, factor: f64) -> Option<usize> {
+        /// A state in balance to this is an equilibrium.
+        const BALANCED: f64 = 1e-9;
+        let Self { whole, workspace, forces, .. } = self;
+        let system = whole.system().clone();
+        whole.supports().put(system.mesh(), factor, Kinematics::Corotated, &mut state.displacement);
+        for _ in 0..FEW_ITERATIONS {
+            system.follow(state, Kinematics::Corotated);
+            whole.linearize(state, forces, Some((Tangent::EXACT, &mut workspace.matrix)));
+            whole.add_load_stiffness(state, Tangent::EXACT, factor, &mut workspace.matrix);
+            let residual = whole.balance(state, Kinematics::Corotated, factor, forces);
+            workspace.tangent = None;
+            workspace.factor.factorize_symmetric(workspace.matrix.values());
+            if residual <= BALANCED {
+                return Some(workspace.factor.negative_eigenvalues());
+            }
+            system.pattern().restrict(forces.residual(), &mut workspace.free);
+            workspace.factor.solve_in_place(&mut workspace.free);
+            if !workspace.free.iter().all(|v| v.is_finite()) {
+                return None;
+            }
+            system.pattern().advance(&workspace.free, 1.0, &mut state.displacement);
+        }
+        None
     }
 
     /// Solves at a load factor from where the body is, as long as that takes few iterations of one load step; says whether
@@ -255,16 +500,29 @@ impl Follower {
         *self.simulation.status() == Status::Converged && self.simulation.load_stepping().1 == 1
     }
 
-    /// How far some node is from the last accepted state, m.
-    fn distance(&self) -> f64 {
-        let nodes = self.simulation.displacement().iter().zip(&self.state.displacement);
+    /// The largest distance of a node from where it is in the last accepted state, m.
+    fn distance(&self, displacement: &[Vector2<f64>]) -> f64 {
+        let nodes = displacement.iter().zip(&self.state.displacement);
         nodes.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
     }
 
     fn accept(&mut self, factor: f64, moved: f64) {
-        self.rate = (moved / (factor - self.reached)).max(f64::MIN_POSITIVE);
+        let state = self.simulation.state().clone();
+        self.accept_state(factor, moved, &state);
+    }
+
+    fn accept_state(&mut self, factor: f64, moved: f64, state: &State) {
+        let step = factor - self.reached;
+        self.rate = (moved / step).max(f64::MIN_POSITIVE);
+        self.before = (self.reached, self.state.clone());
         self.reached = factor;
-        self.state.copy_from(self.simulation.state());
+        self.state.copy_from(state);
+        if self.whole.supports().move_the_body() {
+            let reactions = self.reactions();
+            let power = supports_power(&self.whole, &reactions);
+            self.work += 0.5 * step * (self.power + power);
+            self.power = power;
+        }
     }
 
     fn go_back(&mut self) {
@@ -276,7 +534,9 @@ impl Follower {
     /// The last accepted state.
     fn seen(&mut self) -> PathState {
         let probes = self.whole.probes().iter().map(|p| p.mean(&self.state.displacement)).collect();
-        let stable = if self.whole.supports().move_the_body() {
+        let stable = if self.unstable_modes > 0 {
+            Some(false)
+        } else if self.whole.supports().move_the_body() {
             let Self { whole, workspace, forces, state, .. } = self;
             support_stiffness(whole, state, self.reached, forces, workspace).map(|stiffness| stiffness > 0.0)
         } else {
@@ -286,7 +546,7 @@ impl Follower {
     }
 
     fn reactions(&mut self) -> Vec<SupportReaction> {
-        use crate::assembly::Kinematics::Corotated;
+        use Kinematics::Corotated;
         self.whole.linearize(&self.state, &mut self.forces, None);
         self.whole.balance(&self.state, Corotated, self.reached, &mut self.forces);
         crate::simulation::support_reactions(&self.whole, &self.state, Corotated, &self.forces)

@@ -1,7 +1,9 @@
 //! Measurements over many solves.
 
 mod chart;
+mod convergence;
 pub mod extremes;
+mod fine;
 mod heat_map;
 mod load_curve;
 mod load_path;
@@ -11,19 +13,20 @@ mod pareto;
 pub mod path_chart;
 pub mod plot;
 mod reference;
-mod refined;
 mod report;
 mod scaling;
 mod timing;
 mod trade;
 mod tune;
 
+pub use fine::{Effort, MovedPoint, moved_points};
 pub use heat_map::{heat_map, motion_heat_map};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
-pub use load_path::{Jump, LoadPath, PathState, support_name, support_words};
+pub use load_path::{
+    Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_words,
+};
 pub use motion::MotionStudy;
-pub use reference::{ProbeTruth, Reference, TruthSource};
-pub use refined::refined_probes;
+pub use reference::{ProbeReference, Reference, ReferenceSource};
 pub use scaling::{Exponents, Scaling, ScalingPoint};
 pub use timing::times_from_rest;
 pub use trade::{ErrorSplit, Extent, Measurement, Observer, Progress, Setting, Study, StudyError};

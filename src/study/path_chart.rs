@@ -108,6 +108,17 @@ impl Drawn {
         pieces
     }
 
+    /// Where the path loses or regains its stability without a jump, each with its label.
+    #[must_use]
+    pub fn bifurcations(&self, path: &LoadPath) -> Vec<([f64; 2], String)> {
+        let all = path.bifurcations.iter().filter_map(|bifurcation| {
+            let next = path.states.iter().position(|s| s.factor > bifurcation.factor)?;
+            let (from, to) = (self.points.get(next.checked_sub(1)?)?.0, self.points.get(next)?.0);
+            Some(([0, 1].map(|i| 0.5 * (from[i] + to[i])), bifurcation.label()))
+        });
+        all.collect()
+    }
+
     /// Lines of neighbouring points that are of one kind, each with whether it is stable; they share their ends.
     fn branches(&self) -> Vec<(Vec<[f64; 2]>, bool)> {
         let mut branches: Vec<(Vec<[f64; 2]>, bool)> = Vec::new();
@@ -178,6 +189,15 @@ pub fn svg(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> String {
             line.join(" ")
         );
     }
+    for (point, words) in drawn.bifurcations(path) {
+        let [x, y] = at(point);
+        let _ = writeln!(
+            svg,
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\" fill=\"#be141e\"/><text x=\"{:.1}\" y=\"{:.1}\">{words}</text>",
+            x + 9.0,
+            y + 18.0
+        );
+    }
     let mut row = 0.0;
     let mut key = |words: &str, color: &str, dashes: &str| {
         let (right, y) = (across[1] - 230.0, 24.0 + row);
@@ -191,13 +211,19 @@ pub fn svg(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> String {
         row += 18.0;
     };
     if drawn.points.iter().any(|(_, stable)| !stable) {
-        key("unstable under force control", "#be141e", " stroke-dasharray=\"9 5\"");
+        key(unstable_words(path), "#be141e", " stroke-dasharray=\"9 5\"");
     }
     if jumps {
         key("it jumps", "#be141e", " stroke-dasharray=\"2 5\"");
     }
     svg.push_str("</svg>\n");
     svg
+}
+
+/// Name of the unstable part of a path: where a support moves, it is unstable only once that is let go of.
+#[must_use]
+pub fn unstable_words(path: &LoadPath) -> &'static str {
+    if path.driven.is_some() { "unstable under force control" } else { "unstable" }
 }
 
 /// A number at an axis, without the rounding of its steps.

@@ -1,282 +1,292 @@
-//! What errors are measured against, one truth for one scene everywhere: the exact beam of [`crate::truth`] where plane
-//! elasticity agrees with it, else a fine six-node solution.
+//! Reference solutions: the displacements that errors are measured against, each with a bound of its own error. The exact
+//! beam of [`crate::truth`] where solutions on fine meshes confirm it, else the finest of these.
 
-use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
 
 use super::StudyError;
-use super::refined::refined_probes;
+use super::fine::{Effort, Fine, MovedPoint, fine};
+use super::trade::Observer;
 use crate::assembly::System;
-use crate::mesh::{Mesh, Segment};
 use crate::scene::{Analysis, ElementKind, MethodKind, Place, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
 use crate::truth::{BeamTruth, error_percent};
+use crate::words::{number, two_digits};
 
-/// Where a truth comes from.
+/// Origin of a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TruthSource {
+#[non_exhaustive]
+pub enum ReferenceSource {
     /// The geometrically exact beam.
     ExactBeam,
-    /// A fine six-node solution of the scene's rectangle.
-    FineSolution,
-    /// The six-node solution on the scene's mesh, refined.
+    /// A solution of the scene's rectangle or arch on a fine mesh.
+    FineMesh,
+    /// A solution on the scene's own mesh, refined.
     RefinedMesh,
-    /// No truth but an estimate of it: the scene's own mesh refined once, extrapolated; see [`refined_probes`].
-    Estimate,
 }
 
-impl std::fmt::Display for TruthSource {
+impl ReferenceSource {
+    /// The name it has in JSON.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::ExactBeam => "exact_beam",
+            Self::FineMesh => "fine_mesh",
+            Self::RefinedMesh => "refined_mesh",
+        }
+    }
+}
+
+impl std::fmt::Display for ReferenceSource {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::ExactBeam => "the exact beam",
-            Self::FineSolution => "a fine t6 solution",
-            Self::RefinedMesh => "the fine solution on its refined mesh",
-            Self::Estimate => "an estimate, from its mesh refined once",
+            Self::FineMesh => "a fine solution",
+            Self::RefinedMesh => "a solution on the refined mesh",
         })
     }
 }
 
-/// What a probe would see without any error.
+/// The displacement that a result at a probe is compared with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProbeTruth {
-    /// Its displacement, m.
+#[non_exhaustive]
+pub struct ProbeReference {
+    /// Displacement, m.
     pub displacement: Vector2<f64>,
-    /// How that is known.
-    pub source: TruthSource,
+    /// Bound of its own error, percent of its length.
+    pub own_error_percent: f64,
+    /// Origin.
+    pub source: ReferenceSource,
 }
 
-impl ProbeTruth {
-    /// The distance of a result from the truth, over the true displacement, percent; `None` where nothing moves.
+impl ProbeReference {
+    /// Distance of a result from the reference, percent of the reference's displacement. The true error differs from it by at
+    /// most [`Self::own_error_percent`].
     #[must_use]
     pub fn error_percent(&self, result: &ProbeResult) -> Option<f64> {
         error_percent(result.u, self.displacement)
     }
+
+    /// Distance between two displacements, percent of the reference's displacement.
+    #[must_use]
+    pub fn percent(&self, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
+        100.0 * (a - b).norm() / self.displacement.norm()
+    }
+
+    /// Its own error in words: `its own error at most 0.012 %`.
+    #[must_use]
+    pub fn own_error(&self) -> String {
+        format!("its own error at most {} %", number(two_digits(self.own_error_percent)))
+    }
 }
 
-/// The truth of a scene.
+impl std::fmt::Display for ProbeReference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({})", self.source, self.own_error())
+    }
+}
+
+/// The reference solution of a scene.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Reference {
-    /// Of every probe of the scene.
-    probes: Vec<ProbeTruth>,
-    /// Its own estimated error at the first probe, percent: of the exact beam, how far plane elasticity is from it; 0
-    /// where that is not known.
-    pub error_percent: f64,
-    /// How far the exact beam is from the fine solution that had to replace it, percent.
+    /// One for every probe of the scene; `None` where the probe does not move, or no bound of the error is known.
+    probes: Vec<Option<ProbeReference>>,
+    /// Distance of the exact beam from the fine solution that replaces it, percent; `None` where it does not, or there is none.
     pub beam_off_by_percent: Option<f64>,
-    /// The true outline of the body, m: closed lines.
+    /// Outline of the deformed body, m: closed lines.
     pub outline: Vec<Vec<Vector2<f64>>>,
-    /// What linear theory gives for the first probe without an error of its mesh, m: what is missing to the truth is the
-    /// theory's.
+    /// Displacement of the first probe in linear theory on a fine mesh, m: the rest of the way to the reference is the
+    /// theory's error.
     pub linear: Option<Vector2<f64>>,
+    /// Points of the scene that the reference solution has no node at.
+    pub moved: Vec<MovedPoint>,
+    /// `true` if the mesh comes from a file whose sides are all straight: errors are those of the polygon, not of a curved
+    /// part that it stands for.
+    pub is_polygon: bool,
+    /// Unknowns of the finest mesh.
+    pub unknowns: usize,
 }
 
 impl std::fmt::Display for Reference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.first().source)?;
-        if self.error_percent > 0.0 {
-            write!(f, " (its own error about {:.1e} %)", self.error_percent)?;
+        match self.first() {
+            Some(first) => write!(f, "{first}")?,
+            None => f.write_str("no reference solution")?,
         }
-        self.beam_off_by_percent
-            .map_or(Ok(()), |off| write!(f, "; beam theory, with its small strains, is {off:.1} % off"))
+        self.beam_off_by_percent.map_or(Ok(()), |off| write!(f, "; beam theory is {off:.1} % off"))
     }
 }
 
-/// Cells along a beam that is fine enough to be the truth.
-const FINE: u32 = 64;
-/// Elements of a mesh from a file that is: it is refined until it has as many, and at least once.
-const FINE_ELEMENTS: usize = 2000;
-/// Elements of a mesh from a file beyond which its refinement is too dear to be a by-product of a solve.
-pub(super) const MOST_ELEMENTS: usize = 4000;
-
-/// The exact beam is the truth if a fine solution is no farther from it than this, percent. A stubby beam under a large
-/// load is: its strains are large, and a section does not stay straight.
-const BEAM_AGREES: f64 = 0.5;
-
-/// A solution on a fine mesh and its estimated error.
-struct Fine {
-    probes: Vec<Vector2<f64>>,
-    outline: Vec<Vec<Vector2<f64>>>,
-    linear: Option<Vector2<f64>>,
-    error_percent: f64,
-    source: TruthSource,
-}
+/// A reference is not known where its own error may be larger than this, percent.
+const LARGEST_OWN_ERROR: f64 = 20.0;
+/// Largest distance between the exact beam and a fine solution at which the beam is taken, percent.
+const CONFIRMED: f64 = 0.25;
+/// Largest such distance over the own error of the fine solution at which the beam is taken as well.
+const MARGIN: f64 = 1.5;
 
 impl Reference {
-    /// Finds it.
+    /// Finds the reference solution of a scene at bounded cost.
     ///
     /// # Errors
-    /// [`StudyError`]: the body is in motion, there is nothing to see, the fine solution was not found, or the scene's mesh is so fine already
-    /// that refining it would take too long.
+    /// As [`Self::find`].
     pub fn of(scene: &Scene) -> Result<Self, StudyError> {
-        scene.validate().map_err(SimulationError::from)?;
+        Self::find(scene, None, Effort::Bounded, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Finds the reference solution of a scene. Where the scene has several equilibria it is the one next to `near`, a
+    /// solution of the scene on its own mesh, or without that the one that is reached from rest.
+    ///
+    /// # Errors
+    /// [`StudyError`]: the scene moves or has no probe, its mesh is too fine to be refined, the fine solutions do not
+    /// converge, or the search was cancelled.
+    pub fn find(
+        scene: &Scene,
+        near: Option<&Simulation>,
+        effort: Effort,
+        observe: Observer<'_>,
+    ) -> Result<Self, StudyError> {
+        match near {
+            Some(_) => scene.validate_all_but_geometry(),
+            None => scene.validate(),
+        }
+        .map_err(SimulationError::from)?;
         if scene.analysis == Analysis::Dynamic {
             return Err(StudyError::InMotion);
         }
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
-        let exact = BeamTruth::of(scene);
-        let beam = exact.and_then(|t| t.tip_displacement());
-        let height = scene.beam.as_ref().map_or(0.0, |beam| beam.height);
-        let beam_outline = || exact.and_then(|t| t.outline(height)).map(|line| vec![line]);
-        let at_tip: Vec<bool> = scene.probes.iter().map(|p| p.place == Place::from("right")).collect();
-        match (beam, fine(scene)) {
-            (Some(beam), Ok(fine)) => {
-                let off = at_tip.iter().zip(&fine.probes).find(|(at_tip, _)| **at_tip);
-                let off = off.and_then(|(_, &u)| error_percent(u, beam));
-                let agrees = off.is_none_or(|off| off <= BEAM_AGREES);
-                let probes = at_tip.iter().zip(&fine.probes).map(|(&at_tip, &u)| match at_tip && agrees {
-                    true => ProbeTruth { displacement: beam, source: TruthSource::ExactBeam },
-                    false => ProbeTruth { displacement: u, source: fine.source },
-                });
-                let first_is_beam = agrees && at_tip[0];
-                Ok(Self {
-                    probes: probes.collect(),
-                    error_percent: if first_is_beam { off.unwrap_or(0.0) } else { fine.error_percent },
-                    beam_off_by_percent: off.filter(|_| !agrees),
-                    outline: beam_outline().filter(|_| first_is_beam).unwrap_or(fine.outline),
-                    linear: fine.linear,
-                })
+        if near.is_some_and(is_unstable) {
+            return Err(StudyError::Unstable);
+        }
+        let near = near.filter(|near| *near.status() == Status::Converged && !near.is_linear());
+        let beam = BeamTruth::of(scene);
+        match (beam.and_then(|b| b.tip_displacement()), fine(scene, near, effort, observe)) {
+            (Some(tip), Ok(fine)) => Ok(Self::confirmed(scene, beam, tip, fine)),
+            (None, Ok(fine)) => Ok(Self::of_fine(scene, fine)),
+            (Some(tip), Err(StudyError::NoReference)) => {
+                Self::of_slender(scene, beam, tip).ok_or(StudyError::NoReference)
             }
-            // Extremely slender: nothing to compare with, and nothing better.
-            (Some(beam), Err(StudyError::NoTruth)) if at_tip.iter().all(|&at_tip| at_tip) => Ok(Self {
-                probes: vec![ProbeTruth { displacement: beam, source: TruthSource::ExactBeam }; at_tip.len()],
-                error_percent: 0.0,
-                beam_off_by_percent: None,
-                outline: beam_outline().unwrap_or_default(),
-                linear: None,
-            }),
-            (_, Ok(Fine { probes, outline, linear, error_percent, source })) => Ok(Self {
-                probes: probes.into_iter().map(|displacement| ProbeTruth { displacement, source }).collect(),
-                error_percent,
-                beam_off_by_percent: None,
-                outline,
-                linear,
-            }),
             (_, Err(error)) => Err(error),
         }
     }
 
-    /// [`Self::of`], or where there is none to be found at the price of a solve, an estimate of it, which says so.
-    ///
-    /// # Errors
-    /// As [`Self::of`], where there is no estimate either.
-    pub fn or_estimate(scene: &Scene) -> Result<Self, StudyError> {
-        let missing = match Self::of(scene) {
-            Err(error @ (StudyError::TooFine { .. } | StudyError::NoTruth)) => error,
-            known => return known,
-        };
-        let mut scene = scene.clone();
-        scene.solver.method = MethodKind::Newton;
-        scene.solver.max_iterations = scene.solver.max_iterations.max(200);
-        let mut simulation = Simulation::new(&scene)?;
-        if *simulation.solve() != Status::Converged {
-            return Err(missing);
-        }
-        let probes = refined_probes(&simulation).map_err(|_| missing)?;
-        Ok(Self {
-            error_percent: 0.0,
-            probes: probes
-                .into_iter()
-                .map(|displacement| ProbeTruth { displacement, source: TruthSource::Estimate })
-                .collect(),
+    fn of_fine(scene: &Scene, fine: Fine) -> Self {
+        let source = if scene.beam.is_some() { ReferenceSource::FineMesh } else { ReferenceSource::RefinedMesh };
+        let probes = fine.probes.iter().zip(&fine.errors).map(|(&u, error)| probe(u, (*error)?, source));
+        Self {
+            probes: probes.collect(),
             beam_off_by_percent: None,
-            outline: Vec::new(),
+            outline: fine.outline,
+            linear: fine.linear,
+            moved: fine.moved,
+            is_polygon: fine.is_polygon,
+            unknowns: fine.unknowns,
+        }
+    }
+
+    /// The exact beam at the probes of its tip where a fine solution confirms it, the fine solution at the others.
+    fn confirmed(scene: &Scene, beam: Option<BeamTruth>, tip: Vector2<f64>, fine: Fine) -> Self {
+        let own: Vec<Option<f64>> = fine.errors.clone();
+        let ends = fine.probes.clone();
+        let mut reference = Self::of_fine(scene, fine);
+        for (i, place) in scene.probes.iter().map(|p| &p.place).enumerate() {
+            if *place != Place::from("right") {
+                continue;
+            }
+            let off = (ends[i] - tip).norm();
+            let confirmed = off <= 0.01 * CONFIRMED * tip.norm() || own[i].is_some_and(|own| off <= MARGIN * own);
+            if confirmed {
+                // Where the fine solution has no bound of its own it is about as wrong as the two are apart.
+                let error = off + own[i].unwrap_or(off);
+                reference.probes[i] = probe(tip, error, ReferenceSource::ExactBeam);
+                if i == 0
+                    && let Some(line) = beam.zip(scene.beam.as_ref()).and_then(|(b, beam)| b.outline(beam.height))
+                {
+                    reference.outline = vec![line];
+                }
+            } else if i == 0 {
+                reference.beam_off_by_percent = error_percent(tip, ends[i]);
+            }
+        }
+        reference
+    }
+
+    /// The exact beam of a body too slender for any mesh: sections that stay plane are right but for terms of the height over
+    /// the length. `None` where that is not small, or a probe is not at the tip.
+    fn of_slender(scene: &Scene, beam: Option<BeamTruth>, tip: Vector2<f64>) -> Option<Self> {
+        /// Height over length from which on nothing is known of the beam's own error.
+        const STUBBY: f64 = 0.02;
+        let rectangle = scene.beam.as_ref()?;
+        let at_tip = scene.probes.iter().all(|p| p.place == Place::from("right"));
+        let ratio = rectangle.height / rectangle.length;
+        if !at_tip || ratio > STUBBY {
+            return None;
+        }
+        Some(Self {
+            probes: vec![probe(tip, ratio * tip.norm(), ReferenceSource::ExactBeam); scene.probes.len()],
+            beam_off_by_percent: None,
+            outline: beam?.outline(rectangle.height).map(|line| vec![line]).unwrap_or_default(),
             linear: None,
+            moved: Vec::new(),
+            is_polygon: false,
+            unknowns: 0,
         })
     }
 
-    /// The truth of every probe, in the scene's order.
+    /// The references of the probes, in the scene's order; `None` where a probe does not move, or no bound of its error is
+    /// known.
     #[must_use]
-    pub fn probes(&self) -> &[ProbeTruth] {
+    pub fn probes(&self) -> &[Option<ProbeReference>] {
         &self.probes
     }
 
-    /// The truth of the first probe, by which settings are compared.
+    /// Sentences about what limits the reference.
     #[must_use]
-    pub fn first(&self) -> ProbeTruth {
-        // There is one: a reference without probes is never made.
-        let none = ProbeTruth { displacement: Vector2::zeros(), source: TruthSource::FineSolution };
-        self.probes.first().copied().unwrap_or(none)
+    pub fn limits(&self) -> Vec<String> {
+        let mut limits: Vec<String> =
+            self.moved.iter().map(|point| format!("of the reference solution, {point}")).collect();
+        if self.is_polygon {
+            limits.push(
+                "errors are those of the polygon that the file's straight sides make, not of a curved part".to_owned(),
+            );
+        }
+        if self.probes.contains(&None) {
+            limits.push(
+                "of some probes no error is known: they do not move, or finer meshes do not agree on how".to_owned(),
+            );
+        }
+        limits
     }
 
-    /// The distance between two displacements over the first probe's true one, percent.
+    /// The reference of the first probe, by which settings are compared.
     #[must_use]
-    pub fn percent(&self, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
-        100.0 * (a - b).norm() / self.first().displacement.norm()
+    pub fn first(&self) -> Option<ProbeReference> {
+        self.probes.first().copied().flatten()
     }
+}
+
+/// `true` for an equilibrium whose exact tangent is not positive definite.
+fn is_unstable(simulation: &Simulation) -> bool {
+    if *simulation.status() != Status::Converged || simulation.is_linear() {
+        return false;
+    }
+    let certificate = simulation.certificate().or_else(|| Some(simulation.snapshot()?.certify()));
+    certificate.and_then(|c| c.stable) == Some(false)
+}
+
+/// A reference with an error, m, that is a small part of its displacement.
+fn probe(displacement: Vector2<f64>, error: f64, source: ReferenceSource) -> Option<ProbeReference> {
+    let own_error_percent = 100.0 * error / displacement.norm();
+    (own_error_percent <= LARGEST_OWN_ERROR).then_some(ProbeReference { displacement, own_error_percent, source })
 }
 
 /// The element of fine solutions: six-node triangles, which converge fastest, or what the quadrilaterals of a file can be.
 pub(super) fn finest_element(scene: &Scene) -> ElementKind {
     scene.elements().find(|&e| e == ElementKind::T6).unwrap_or_else(|| scene.element())
-}
-
-/// The fine solution.
-fn fine(scene: &Scene) -> Result<Fine, StudyError> {
-    let mut scene = scene.clone();
-    scene.set_element(finest_element(&scene));
-    let (coarse, fine, source) = match scene.beam.clone() {
-        Some(beam) => {
-            let mut solve = |along: u32| {
-                let across = (f64::from(along) * beam.height / beam.length).round().max(1.0) as u32;
-                if let Some(beam) = &mut scene.beam {
-                    beam.cells = [along, across];
-                }
-                run_to_end(&scene, MethodKind::Newton, &system_of(&scene)?)
-            };
-            (solve(FINE / 2)?, solve(FINE)?, TruthSource::FineSolution)
-        }
-        None => {
-            let system = system_of(&scene)?;
-            if system.mesh().element_count() > MOST_ELEMENTS {
-                return Err(StudyError::TooFine { elements: system.mesh().element_count() });
-            }
-            let solve = |mesh: &Mesh| {
-                let system = System::with_mesh(&scene, mesh.clone()).map_err(SimulationError::from)?;
-                run_to_end(&scene, MethodKind::Newton, &Arc::new(system))
-            };
-            let mut coarse = run_to_end(&scene, MethodKind::Newton, &system)?;
-            let mut mesh = system.mesh().refined();
-            let mut fine = solve(&mesh)?;
-            while mesh.element_count() < FINE_ELEMENTS {
-                mesh = mesh.refined();
-                coarse = std::mem::replace(&mut fine, solve(&mesh)?);
-            }
-            (coarse, fine, TruthSource::RefinedMesh)
-        }
-    };
-    let probes = probe_displacements(&fine);
-    let first = probes.first().copied().unwrap_or_default();
-    let coarse = probe_displacements(&coarse).first().copied().unwrap_or_default();
-    let error_percent = error_percent(coarse, first).unwrap_or(0.0);
-    let linear = end(fine.scene(), MethodKind::Linear, fine.system())?.first().copied();
-    Ok(Fine { probes, outline: outline(&fine), linear, error_percent, source })
-}
-
-/// The closed lines around a body, m, node by node.
-fn outline(simulation: &Simulation) -> Vec<Vec<Vector2<f64>>> {
-    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
-    let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
-    for side in mesh.outline() {
-        sides.entry(side.ends()[0]).or_default().push(side);
-    }
-    let mut lines = Vec::new();
-    while let Some((&first, _)) = sides.first_key_value() {
-        let (mut line, mut corner) = (Vec::new(), first);
-        while let Some(own) = sides.get_mut(&corner) {
-            let Some(side) = own.pop() else { break };
-            if own.is_empty() {
-                sides.remove(&corner);
-            }
-            line.extend(side.nodes().iter().map(|&n| mesh.nodes()[n as usize] + u[n as usize]));
-            corner = side.ends()[1];
-        }
-        lines.push(line);
-    }
-    lines
 }
 
 /// The equations of a scene.
@@ -291,7 +301,7 @@ fn run_to_end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result
     scene.solver.max_iterations = scene.solver.max_iterations.max(200);
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
     if *simulation.solve() != Status::Converged && method == MethodKind::Newton {
-        return Err(StudyError::NoTruth);
+        return Err(StudyError::NoReference);
     }
     Ok(simulation)
 }

@@ -42,7 +42,7 @@ impl Study {
         text
     }
 
-    /// The study for people: the truth, the front, and what an error costs.
+    /// The study for people: the reference solution, the Pareto front, and what an error costs.
     #[must_use]
     pub fn summary(&self) -> String {
         let mut text = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);
@@ -63,7 +63,12 @@ impl Study {
             );
         }
         text.push('\n');
+        let own = self.against.own_error_percent;
         for percent in [10.0, 1.0, 0.1] {
+            if own >= percent {
+                let _ = writeln!(text, "an error of {percent} %: not known, the reference's own may be {own:.2} %");
+                continue;
+            }
             let words = self
                 .cheapest_within(percent)
                 .map_or_else(|| "not reached".to_owned(), |m| format!("{:.4} ms, {}", m.milliseconds(), m.setting));
@@ -71,7 +76,7 @@ impl Study {
             for element in ElementKind::all() {
                 for method in METHODS.iter().map(|m| m.kind) {
                     let own = self.measurements.iter().filter(|m| {
-                        (m.setting.element, m.setting.method) == (element, method) && m.error.bound() <= percent
+                        (m.setting.element, m.setting.method) == (element, method) && self.error_bound(m) <= percent
                     });
                     let words = match own.min_by_key(|m| m.time.total()) {
                         Some(m) => format!("{:.4} ms", m.milliseconds()),

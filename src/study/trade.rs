@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector2;
 
+use super::fine::Effort;
 use super::parallel::{self, CalledOff};
 use super::pareto;
-use super::reference::{Reference, end, finest_element, first_probe, system_of};
+use super::reference::{ProbeReference, Reference, end, finest_element, first_probe, system_of};
 use super::timing::{expected_time, times_from_rest};
 use crate::assembly::System;
 use crate::dynamics::StopReason;
@@ -19,7 +20,7 @@ use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::timings::Timings;
-use crate::words::count;
+use crate::words::{count, number, two_digits};
 
 /// What is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,9 +75,9 @@ pub(super) fn cells_words(cells: Option<[u32; 2]>) -> String {
 /// bounds the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorSplit {
-    /// Distance from the truth.
+    /// Distance from the reference solution.
     pub total: f64,
-    /// Of the mesh: its own exact equilibrium from the truth (locking).
+    /// Error of the mesh (locking): distance of its own exact equilibrium from the reference.
     pub discretization: f64,
     /// Of stopping early: from where the method ends on this mesh.
     pub iteration: f64,
@@ -85,7 +86,7 @@ pub struct ErrorSplit {
 }
 
 impl ErrorSplit {
-    /// The sum of the parts, which the distance from the truth cannot exceed. Settings are compared by it: an iteration
+    /// The sum of the parts, which the distance from the reference cannot exceed. Settings are compared by it: an iteration
     /// stopped early that happens to make up for a coarse mesh is luck, not accuracy.
     #[must_use]
     pub fn bound(&self) -> f64 {
@@ -123,8 +124,10 @@ impl Measurement {
 pub struct Study {
     /// The scene's name.
     pub scene: String,
-    /// What errors are measured against.
+    /// The solution that errors are measured against …
     pub reference: Reference,
+    /// … at the first probe.
+    pub against: ProbeReference,
     /// The error that `auto` was asked for, percent.
     pub asked_percent: f64,
     /// By element, mesh, method, iterations.
@@ -146,8 +149,8 @@ pub enum StudyError {
     /// A body at rest has no path to compare with.
     #[error("expected a scene with analysis = \"dynamic\": this measures the path of its motion, and it is at rest")]
     AtRest,
-    /// The fine motion that would be the truth cannot go on.
-    #[error("no truth: the fine motion of the scene stops: {0}")]
+    /// The fine motion that would be the reference cannot go on.
+    #[error("no reference solution: the fine motion of the scene stops: {0}")]
     NoPath(StopReason),
     /// A mesh from a file cannot be made of other cells.
     #[error("expected a scene with [beam]: this measures it on coarser and finer meshes")]
@@ -155,18 +158,47 @@ pub enum StudyError {
     /// Nothing to compare.
     #[error("expected a scene with a probe that moves; errors are measured there")]
     NoProbe,
-    /// A mesh from a file whose refinement would take too long.
-    #[error("no truth: the mesh of {elements} elements is too large to be refined")]
+    /// A mesh from a file that has too many unknowns when it is refined.
+    #[error("no reference solution: the mesh of {elements} elements is too large to be refined")]
     TooFine {
         /// Elements of the mesh.
         elements: usize,
     },
-    /// The fine solution that would be the truth was not found.
-    #[error("no truth: the fine solution of the scene does not converge")]
-    NoTruth,
+    /// The equilibrium is unstable: the body would not stay there.
+    #[error("no reference solution: the equilibrium is unstable")]
+    Unstable,
+    /// No equilibrium was found on fine meshes.
+    #[error("no reference solution: the fine solution of the scene does not converge")]
+    NoReference,
+    /// The solutions on finer and finer meshes do not approach each other, or too slowly.
+    #[error("no reference solution: solutions on finer and finer meshes do not approach each other")]
+    NoBound,
+    /// The reference solution is no better than what is asked of a result.
+    #[error(
+        "the reference solution's own error may be {} %, no less than the {} % asked",
+        number(two_digits(*own_percent)),
+        number(*asked_percent)
+    )]
+    NotKnown {
+        /// Bound of the reference's own error, percent.
+        own_percent: f64,
+        /// Error asked for, percent.
+        asked_percent: f64,
+    },
     /// Called off.
     #[error("called off")]
     Cancelled,
+}
+
+impl StudyError {
+    /// `true` if there is nothing wrong with the scene, but no reference solution that is good enough.
+    #[must_use]
+    pub fn is_unknown(&self) -> bool {
+        matches!(
+            self,
+            Self::TooFine { .. } | Self::Unstable | Self::NoReference | Self::NoBound | Self::NotKnown { .. }
+        )
+    }
 }
 
 /// How far a study is.
@@ -234,23 +266,38 @@ impl Study {
         Ok(study)
     }
 
-    /// A study with its truth and nothing measured yet.
-    pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
-        check(observe(Progress { fraction: 0.0, now: "the truth", so_far: None }))?;
-        let reference = Reference::or_estimate(scene)?;
-        if reference.first().displacement.norm() == 0.0 {
-            return Err(StudyError::NoProbe);
+    /// [`Self::new`] that ends with what has been measured when it is cancelled; the flag is `true` then.
+    ///
+    /// # Errors
+    /// [`StudyError`]; [`StudyError::Cancelled`] where nothing has been measured.
+    pub fn until_cancelled(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<(Self, bool), StudyError> {
+        let mut partial = None;
+        let whole = Self::new(scene, extent, &mut |progress| {
+            partial = progress.so_far.filter(|study| !study.measurements.is_empty()).cloned().or(partial.take());
+            observe(progress)
+        });
+        match (whole, partial) {
+            (Err(StudyError::Cancelled), Some(partial)) => Ok((partial, true)),
+            (whole, _) => whole.map(|study| (study, false)),
         }
+    }
+
+    /// A study with its reference solution and nothing measured yet.
+    pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
+        let begin = &mut |progress: Progress<'_>| observe(Progress { fraction: 0.0, ..progress });
+        let reference = Reference::find(scene, None, Effort::Bounded, begin)?;
+        let against = reference.first().ok_or(StudyError::NoBound)?;
         Ok(Self {
             scene: scene.name.clone(),
             reference,
+            against,
             asked_percent: scene.solver.max_error_percent,
             measurements: Vec::new(),
         })
     }
 
-    /// Adds every method on a mesh, and marks the front anew. `say` is told which part of it is done and what is measured,
-    /// and calls it off.
+    /// Adds every method on a mesh, and marks the Pareto front. `say` receives the fraction that is done and the setting being
+    /// measured; its error ends the measurement, which then leaves the study unchanged.
     pub(super) fn measure(
         &mut self,
         scene: &Scene,
@@ -260,9 +307,10 @@ impl Study {
     ) -> Result<(), StudyError> {
         let MeshChoice { element, cells, .. } = *mesh;
         let words = mesh_words(element, cells);
-        let truth = self.reference.first().displacement;
-        let percent = |a, b| self.reference.percent(a, b);
+        let reference = self.against;
+        let percent = |a, b| reference.percent(a, b);
         let MeshEnds { system, exact, linear, .. } = ends;
+        let mut measurements = Vec::new();
         for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
             say(number as f64 / METHODS.len() as f64, &format!("{words}, {}", method.id()))?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
@@ -279,14 +327,14 @@ impl Study {
                 let tip = first_probe(&simulation)?;
                 // Where a corotated method ends it is at the exact equilibrium; where not, there is no end.
                 let own_end = *if simulation.is_linear() { linear } else { exact };
-                self.measurements.push(Measurement {
+                measurements.push(Measurement {
                     setting: Setting { element, cells, method, iterations },
                     dofs: simulation.system().dofs(),
                     converged: *simulation.status() == Status::Converged,
                     time,
                     error: ErrorSplit {
-                        total: percent(tip, truth),
-                        discretization: percent(*exact, truth),
+                        total: percent(tip, reference.displacement),
+                        discretization: percent(*exact, reference.displacement),
                         iteration: percent(tip, own_end),
                         model: percent(own_end, *exact),
                     },
@@ -294,6 +342,7 @@ impl Study {
                 });
             }
         }
+        self.measurements.append(&mut measurements);
         self.mark_pareto();
         Ok(())
     }
@@ -313,10 +362,16 @@ impl Study {
         front
     }
 
-    /// The cheapest measurement whose error is bounded by so many percent.
+    /// Bound of the error of a measurement, percent of the displacement: its own parts, and the error of the reference.
+    #[must_use]
+    pub fn error_bound(&self, measurement: &Measurement) -> f64 {
+        measurement.error.bound() + self.against.own_error_percent
+    }
+
+    /// The cheapest measurement whose error is at most so many percent.
     #[must_use]
     pub fn cheapest_within(&self, percent: f64) -> Option<&Measurement> {
-        self.front().into_iter().find(|m| m.error.bound() <= percent)
+        self.front().into_iter().find(|m| self.error_bound(m) <= percent)
     }
 }
 

@@ -30,11 +30,18 @@ impl std::fmt::Display for Demand {
 }
 
 impl Study {
-    /// Whether a measurement meets a demand; its error and the truth's own count together.
+    /// `true` if a measurement meets a demand; its error and that of the reference count together.
     #[must_use]
     pub fn meets(&self, measurement: &Measurement, demand: Demand) -> bool {
-        let error = measurement.error.bound() + self.reference.error_percent;
+        let error = self.error_bound(measurement);
         demand.max_error_percent.is_none_or(|most| error <= most) && demand.time_is_met(measurement)
+    }
+
+    /// `false` if the reference's own error is larger than what a demand asks for: of no setting is it known then whether it
+    /// meets the demand.
+    #[must_use]
+    pub fn can_judge(&self, demand: Demand) -> bool {
+        demand.max_error_percent.is_none_or(|most| self.against.own_error_percent < most)
     }
 
     /// The measurements that meet a demand, cheapest first.
@@ -54,8 +61,10 @@ pub struct Tuning {
     pub chosen: Measurement,
     /// What was asked.
     pub demand: Demand,
-    /// Whether the demand is met.
+    /// `true` if the demand is met.
     pub met: bool,
+    /// `true` if the search was cancelled before all meshes were measured.
+    pub is_partial: bool,
     /// Settings measured that end by themselves, and how many of them meet the demand.
     pub measured: usize,
     /// See [`Self::measured`].
@@ -73,14 +82,19 @@ impl Tuning {
     /// Measures a scene on finer and finer meshes until its demand is met, and chooses among the settings that end by
     /// themselves: a result that merely ran out of iterations is not called converged.
     ///
+    /// A search that is cancelled ends with what has been measured.
+    ///
     /// # Errors
-    /// [`StudyError`].
+    /// [`StudyError`]; [`StudyError::NotKnown`] where the reference is no better than what is asked.
     pub fn of(scene: &Scene, demand: Demand, observe: Observer<'_>) -> Result<Self, StudyError> {
         let mut meshes = meshes(scene, Extent::Full);
         meshes.sort_by(|a, b| a.weight.total_cmp(&b.weight));
         let all: f64 = meshes.iter().map(|m| m.weight).sum();
         let mut study = Study::begin(scene, observe)?;
-        let (mut enough, mut done) = (f64::INFINITY, 0.0);
+        if let Some(asked_percent) = demand.max_error_percent.filter(|_| !study.can_judge(demand)) {
+            return Err(StudyError::NotKnown { own_percent: study.against.own_error_percent, asked_percent });
+        }
+        let (mut enough, mut done, mut is_partial) = (f64::INFINITY, 0.0, false);
         for mesh in &meshes {
             if mesh.weight > enough {
                 break;
@@ -88,10 +102,15 @@ impl Tuning {
             let MeshChoice { weight, .. } = *mesh;
             let before = study.measurements.len();
             let ends = MeshEnds::find(scene, mesh)?;
-            study.measure(scene, mesh, &ends, &mut |part, now| {
+            let measured = study.measure(scene, mesh, &ends, &mut |part, now| {
                 let fraction = (done + part * weight) / all;
                 check(observe(Progress { fraction, now, so_far: None }))
-            })?;
+            });
+            is_partial = measured == Err(StudyError::Cancelled);
+            if is_partial {
+                break;
+            }
+            measured?;
             done += weight;
             let added = &study.measurements[before..];
             let met = demand.max_error_percent.is_some() && added.iter().any(|m| m.converged && study.meets(m, demand));
@@ -109,14 +128,18 @@ impl Tuning {
         };
         let in_time: Vec<&Measurement> = ended.iter().copied().filter(|m| demand.time_is_met(m)).collect();
         let best = if demand.max_error_percent.is_some() { fastest(&meeting) } else { closest(&meeting) };
-        let chosen = best.or_else(|| closest(&in_time)).or_else(|| fastest(&ended)).ok_or(StudyError::NoTruth)?;
-        Ok(Self { chosen, demand, met: best.is_some(), measured: ended.len(), meeting: meeting.len(), study })
+        let chosen = best.or_else(|| closest(&in_time)).or_else(|| fastest(&ended)).ok_or(match is_partial {
+            true => StudyError::Cancelled,
+            false => StudyError::NoReference,
+        })?;
+        let (measured, meeting) = (ended.len(), meeting.len());
+        Ok(Self { chosen, demand, met: best.is_some(), is_partial, measured, meeting, study })
     }
 }
 
 impl std::fmt::Display for Tuning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { chosen, demand, met, measured, meeting, study } = self;
+        let Self { chosen, demand, met, measured, meeting, study, .. } = self;
         let which = match (met, demand.max_error_percent.is_some(), demand.time_is_met(chosen)) {
             (true, true, _) => "the fastest",
             (true, false, _) => "the closest",
@@ -128,13 +151,19 @@ impl std::fmt::Display for Tuning {
         } else {
             format!("none of {measured} settings measured here meets {demand}; {which}")
         };
-        let (e, truth) = (&chosen.error, study.reference.error_percent);
+        let (e, own) = (&chosen.error, study.against.own_error_percent);
         writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference)?;
         writeln!(f, "{words}:")?;
-        writeln!(f, "  {}: {:.4} ms, error at most {:.4} %", chosen.setting, chosen.milliseconds(), e.bound() + truth)?;
+        writeln!(
+            f,
+            "  {}: {:.4} ms, error at most {:.4} %",
+            chosen.setting,
+            chosen.milliseconds(),
+            study.error_bound(chosen)
+        )?;
         write!(
             f,
-            "  of which mesh {:.4} %, stopped early {:.4} %, linear theory {:.4} %, the truth's own {truth:.4} %",
+            "  of which mesh {:.4} %, stopped early {:.4} %, linear theory {:.4} %, the reference's own {own:.4} %",
             e.discretization, e.iteration, e.model
         )
     }

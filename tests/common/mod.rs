@@ -11,6 +11,7 @@ pub mod motion;
 pub mod pictures;
 #[cfg(target_os = "linux")]
 pub mod process;
+pub mod random;
 
 use std::path::Path;
 use std::process::{Command, Output};

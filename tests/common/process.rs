@@ -1,15 +1,33 @@
 //! Programs that are interrupted. Conditions are waited for, not durations.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::Read as _;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Output, Stdio};
 use std::time::{Duration, Instant};
+
+use nix::pty::openpty;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
 use super::program;
 
+/// A running program; ended with the test that started it, however that ends.
+#[derive(Debug)]
+pub struct Running(Option<Child>);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.0 {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
 /// Starts the program.
-pub fn start(folder: &Path, args: &[&str]) -> Child {
-    program(folder, args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+pub fn start(folder: &Path, args: &[&str]) -> Running {
+    Running(Some(program(folder, args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()))
 }
 
 /// Waits until something is so; fails where it never will be.
@@ -22,17 +40,45 @@ pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
     }
 }
 
-/// Whether a process has a handler of its own for SIGINT.
-pub fn listens(child: &Child) -> bool {
-    const SIGINT_BIT: u64 = 1 << 1;
-    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
-    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
-    u64::from_str_radix(caught.trim(), 16).unwrap() & SIGINT_BIT != 0
+impl Running {
+    fn id(&self) -> u32 {
+        self.0.as_ref().unwrap().id()
+    }
+
+    /// `true` if the process handles SIGINT itself.
+    pub fn listens(&self) -> bool {
+        const SIGINT_BIT: u64 = 1 << 1;
+        let status = fs::read_to_string(format!("/proc/{}/status", self.id())).unwrap();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+        u64::from_str_radix(caught.trim(), 16).unwrap() & SIGINT_BIT != 0
+    }
+
+    /// Presses Ctrl-C, and waits for the end.
+    pub fn interrupt(self) -> Output {
+        self.end_by(Signal::SIGINT)
+    }
+
+    /// Sends a signal, and waits for the end.
+    pub fn end_by(mut self, signal: Signal) -> Output {
+        kill(Pid::from_raw(self.id() as i32), signal).unwrap();
+        self.0.take().unwrap().wait_with_output().unwrap()
+    }
 }
 
-/// Presses Ctrl-C, and waits for the end.
-pub fn interrupt(child: Child) -> Output {
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(sent.success());
-    child.wait_with_output().unwrap()
+/// Runs the program with a terminal for standard error; returns its exit code and what it wrote there.
+pub fn on_a_terminal(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
+    let terminal = openpty(None, None).unwrap();
+    let child = program(folder, args)
+        .env("TERM", "xterm")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(terminal.slave)
+        .spawn()
+        .unwrap();
+    let mut running = Running(Some(child));
+    // The end of the program is an error of the terminal's reader.
+    let (mut screen, mut text) = (File::from(terminal.master), Vec::new());
+    let _ = screen.read_to_end(&mut text);
+    let code = running.0.take().unwrap().wait().unwrap().code();
+    (code, String::from_utf8_lossy(&text).into_owned())
 }

@@ -465,7 +465,7 @@ impl Pane {
     /// How far off it is, once that is known.
     pub(super) fn judge(&mut self, truth: Option<&Reference>) {
         let probe = self.answer().filter(|(_, good)| *good);
-        self.error = truth.zip(probe).and_then(|(truth, (probe, _))| truth.first().error_percent(&probe));
+        self.error = truth.zip(probe).and_then(|(truth, (probe, _))| truth.first()?.error_percent(&probe));
     }
 }
 

@@ -184,8 +184,8 @@ impl Trace {
 
     /// Notes what is true of the present load.
     pub(super) fn record_truth(&mut self, truth: Option<&Reference>) {
-        let (Some(axis), Some(truth)) = (self.axis, truth) else { return };
-        let dot = [axis.magnitude, truth.first().displacement.norm()];
+        let (Some(axis), Some(truth)) = (self.axis, truth.and_then(Reference::first)) else { return };
+        let dot = [axis.magnitude, truth.displacement.norm()];
         self.truths.retain(|other| (other[0] - dot[0]).abs() > SAME_LOAD * dot[0]);
         self.truths.push(dot);
         if self.truths.len() > MOST_DOTS {

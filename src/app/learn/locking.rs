@@ -22,7 +22,7 @@ pub(super) struct ElementError {
 
 /// The errors of every element that the scene's cells can be, each at its own equilibrium.
 pub(super) fn errors(scene: &Scene) -> Option<Vec<ElementError>> {
-    let truth = Reference::of(scene).ok()?.first();
+    let truth = Reference::of(scene).ok()?.first()?;
     let error = |element: ElementKind| {
         let mut scene = scene.clone();
         scene.set_element(element);
@@ -64,8 +64,11 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         ui.add_space(2.0);
     }
     if known.is_none() {
-        let words =
-            if learn.is_looking() { "Looking for the errors." } else { "The truth of this scene is not known." };
+        let words = if learn.is_looking() {
+            "Looking for the errors."
+        } else {
+            "No reference solution of this scene is known."
+        };
         ui.label(RichText::new(tr(words)).size(SMALL).color(palette.secondary));
     }
 }

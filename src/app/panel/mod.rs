@@ -17,7 +17,7 @@ use super::verdict::Errors;
 use crate::method::METHODS;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::Simulation;
-use crate::study::{Jump, Reference};
+use crate::study::{PathSummary, Reference};
 use crate::timings::Timings;
 
 mod body;
@@ -55,7 +55,7 @@ pub(super) struct PanelInput<'a> {
     /// What errors are measured against, once it is known.
     pub truth: Option<&'a Reference>,
     /// Where the body jumps on its way from rest, once it is known.
-    pub jump: Option<&'a Jump>,
+    pub jump: Option<&'a PathSummary>,
     /// ρ of the warped iteration at the equilibrium, where it has been looked for, whatever the body's state.
     pub equilibrium_rho: Option<f64>,
     /// How far the result is to be trusted.

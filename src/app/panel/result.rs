@@ -9,6 +9,7 @@ use crate::app::palette::Palette;
 use crate::app::verdict::{Errors, rho, stability};
 use crate::method::rho_words;
 use crate::simulation::{Motion, Simulation, Status, energy};
+use crate::study::Reference;
 use crate::words::{engineering, engineering_pair, three_digits};
 
 /// Room for what a row is, points.
@@ -56,10 +57,10 @@ fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
         "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
     );
     probe_row(row, simulation);
-    let words = errors.own.zip(input.truth).map_or_else(
+    let words = errors.own.zip(input.truth.and_then(Reference::first)).map_or_else(
         || UNKNOWN.to_owned(),
         |(error, truth)| {
-            let whole = engineering(truth.first().displacement.norm(), "m");
+            let whole = engineering(truth.displacement.norm(), "m");
             fill!("%{error} of %{whole}", error = percent(error), whole = whole)
         },
     );

@@ -101,6 +101,27 @@ struct Gif {
     now: Vec<u8>,
 }
 
+/// Removes the numbered pictures of an earlier recording from a folder.
+///
+/// # Errors
+/// [`RecordError::HasPictures`] where there are some and `overwrite` is `false`.
+pub(super) fn clear(folder: &Path, overwrite: bool) -> Result<(), RecordError> {
+    let is_picture = |path: &PathBuf| {
+        let number = path.file_name().and_then(|name| name.to_str()?.strip_prefix("frame-")?.strip_suffix(".png"));
+        number.is_some_and(|number| number.len() >= 4 && number.bytes().all(|b| b.is_ascii_digit()))
+    };
+    // A folder that is not there has none.
+    let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
+    let pictures: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_picture).collect();
+    if !pictures.is_empty() && !overwrite {
+        return Err(RecordError::HasPictures { folder: folder.to_owned(), count: pictures.len() });
+    }
+    for picture in &pictures {
+        std::fs::remove_file(picture).map_err(|error| failed(picture, &error))?;
+    }
+    Ok(())
+}
+
 impl Film {
     /// Begins a recording of so many pictures, which look like `samples`.
     pub(super) fn create(

@@ -52,6 +52,14 @@ pub enum RecordError {
     /// There is no folder to write the file to.
     #[error("{}: no such folder", .0.display())]
     NoFolder(PathBuf),
+    /// A folder has numbered pictures already.
+    #[error("{}: has {count} numbered pictures; --overwrite replaces them", folder.display())]
+    HasPictures {
+        /// The folder.
+        folder: PathBuf,
+        /// Its numbered pictures.
+        count: usize,
+    },
     /// A time was asked of a body at rest.
     #[error("expected no --seconds and no --speed: this scene is static, and each picture is an iteration")]
     NotInMotion,
@@ -84,6 +92,8 @@ pub struct RecordOptions {
     pub speed: Option<f64>,
     /// Pictures a second; else 25, and 4 of a search.
     pub fps: Option<u16>,
+    /// Replaces the numbered pictures that the folder has.
+    pub overwrite: bool,
     /// Light or dark.
     pub theme: ThemeChoice,
     /// Of the words.
@@ -147,6 +157,10 @@ pub fn record(
     observe: RecordObserver<'_>,
 ) -> Result<Recorded, AppError> {
     let format = MovieFormat::of(output)?;
+    if format == MovieFormat::Folder && !options.overwrite {
+        // Before the work, not after.
+        film::clear(output, false)?;
+    }
     let moves = scene.analysis == Analysis::Dynamic;
     if !moves && (options.seconds.is_some() || options.speed.is_some()) {
         return Err(RecordError::NotInMotion.into());
@@ -186,6 +200,9 @@ pub fn record(
     }
 
     let mut lab = new_lab()?;
+    if format == MovieFormat::Folder {
+        film::clear(output, options.overwrite)?;
+    }
     let mut film = Film::create(output, format, delay, preview.pictures, &samples, options.size)?;
     for k in 0..preview.pictures {
         let told = |time: f64| RecordProgress {

@@ -145,7 +145,8 @@ fn meshes(scene: &Scene, quick: bool) -> Vec<Scene> {
 /// Measures both solvers on the scene's three-node meshes.
 fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
     let reference = Reference::of(scene)?;
-    let truth = reference.first().displacement;
+    let reference = reference.first().ok_or(StudyError::NoBound)?;
+    let truth = reference.displacement;
     let mut rivals = Vec::new();
     for scene in meshes(scene, quick) {
         let system = Arc::new(System::new(&scene).map_err(SimulationError::from)?);

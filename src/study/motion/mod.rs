@@ -231,8 +231,8 @@ const RUNS: usize = 5;
 /// Steps after which the time of a motion that is cut short is known.
 const ENOUGH_STEPS: u32 = 500;
 
-/// About the parts of a study's time that go by before its meshes are measured: for the truth …
-const TRUTH_SHARE: f64 = 0.1;
+/// About the parts of a study's time that go by before its meshes are measured: for the reference solution …
+const REFERENCE_SHARE: f64 = 0.1;
 /// … and for every mesh's own motion.
 const OWN_SHARE: f64 = 0.1;
 /// About the part of a mesh's time that goes by before its settings are timed.
@@ -247,13 +247,13 @@ impl MotionStudy {
         let plan = extent.plan();
         let samples = Samples::of(scene, plan);
         let studied = Studied { scene, samples, plan };
-        let reference = MotionReference::new(scene, extent, &mut |truth| {
-            observe(Progress { fraction: TRUTH_SHARE * truth.fraction, ..truth })
+        let reference = MotionReference::new(scene, extent, &mut |progress| {
+            observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress })
         })?;
         let meshes = MeshPlan::all(scene, extent);
         let own = |mesh: &MeshPlan, called_off: &CalledOff| Meshed::new(studied, mesh, called_off);
         let meshed = all_done(parallel::map(&meshes, own, |done| {
-            let fraction = TRUTH_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
+            let fraction = REFERENCE_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
             observe(Progress { fraction, now: "the meshes' own motions", so_far: None })
         }))?;
         let mut study = Self {
@@ -266,7 +266,7 @@ impl MotionStudy {
             is_partial: false,
         };
         let all: f64 = meshes.iter().map(MeshPlan::weight).sum();
-        let before = TRUTH_SHARE + OWN_SHARE;
+        let before = REFERENCE_SHARE + OWN_SHARE;
         let mut done = 0.0;
         for (mesh, meshed) in meshes.iter().zip(&meshed) {
             let fraction = |part: f64| before + (1.0 - before) * (done + part * mesh.weight()) / all;

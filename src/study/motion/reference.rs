@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::parallel::{self, CalledOff};
-use crate::study::reference::{MOST_ELEMENTS, finest_element, system_of};
+use crate::study::reference::{finest_element, system_of};
 use crate::study::trade::{Extent, Observer, Progress, StudyError, all_done, mesh_words};
 
 /// The path of the first probe as the finest motion has it.
@@ -51,6 +51,9 @@ impl std::fmt::Display for MotionReference {
     }
 }
 
+/// Elements of a mesh from a file beyond which motions on the refined mesh take too long.
+const MOST_ELEMENTS: usize = 4000;
+
 impl MotionReference {
     /// Finds it, for a study of this extent.
     ///
@@ -77,7 +80,11 @@ impl MotionReference {
             fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, called_off)
         };
         let paths = all_done(parallel::map(&paths, follow, |done| {
-            observe(Progress { fraction: done as f64 / paths.len() as f64, now: "the truth", so_far: None })
+            observe(Progress {
+                fraction: done as f64 / paths.len() as f64,
+                now: "the reference solution",
+                so_far: None,
+            })
         }))?;
         let [coarser, longer, best] = <[_; 3]>::try_from(paths).unwrap_or_default();
         let size = best.iter().map(|u| u.norm()).fold(0.0, f64::max);

@@ -107,7 +107,12 @@ impl MotionStudy {
         }
         let real = self.fastest_of(1.0, |m| m.milliseconds <= REAL_TIME);
         let words = real.map_or_else(
-            || "within 1 %, nothing measured is as fast as real time".to_owned(),
+            || match self.fastest_within(1.0) {
+                None => "nothing measured is within 1 %".to_owned(),
+                Some(fastest) => {
+                    format!("within 1 %, nothing measured is as fast as real time: {}", time_words(fastest))
+                }
+            },
             |m| {
                 let times = REAL_TIME / m.milliseconds;
                 format!("within 1 %, the fastest in real time, {times:.0} times as fast as it: {}", m.setting)

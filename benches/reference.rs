@@ -1,0 +1,75 @@
+//! The reference solution of every built-in scene: its source, its own error, and the time that it takes over the time of one
+//! solve of the scene. Prints the table of `docs/accuracy.md`: `cargo bench --bench reference`.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use warpbeam::Simulation;
+use warpbeam::scene::{Analysis, Source, open, registry};
+use warpbeam::study::motion::MotionReference;
+use warpbeam::study::{Effort, Extent, Reference, StudyError};
+use warpbeam::words;
+
+/// Rounds whose median is taken.
+const ROUNDS: usize = 5;
+
+fn main() {
+    if std::env::args().any(|argument| argument == "--test") {
+        return;
+    }
+    println!("| scene | unknowns | reference | its own error | its time | one solve | ratio |");
+    println!("|---|---|---|---|---|---|---|");
+    for built_in in registry::BUILT_IN {
+        let scene = open(&Source { name: built_in.id.into(), assignments: Vec::new() }).unwrap();
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let solve = median(|| {
+            simulation.reset();
+            simulation.solve();
+        });
+        let start = Instant::now();
+        let go_on = &mut |_: warpbeam::study::Progress<'_>| ControlFlow::Continue(());
+        let (source, own_error) = match scene.analysis {
+            Analysis::Dynamic => match MotionReference::new(&scene, Extent::Quick, go_on) {
+                Ok(found) => {
+                    let step = words::engineering(found.time_step, "s");
+                    (format!("{} with steps of {step}", found.element.id()), Some(found.error_percent))
+                }
+                Err(error) => (error.to_string(), None),
+            },
+            _ => match Reference::find(&scene, Some(&simulation), Effort::Bounded, go_on) {
+                Ok(found) => match found.first() {
+                    Some(first) => {
+                        (format!("{}, {} unknowns", first.source, found.unknowns), Some(first.own_error_percent))
+                    }
+                    None => ("not known".to_owned(), None),
+                },
+                Err(StudyError::Unstable) => ("none: the equilibrium is unstable".to_owned(), None),
+                Err(error) => (error.to_string(), None),
+            },
+        };
+        let taken = start.elapsed();
+        println!(
+            "| `{}` | {} | {source} | {} | {} | {} | {} |",
+            built_in.id,
+            simulation.system().dofs(),
+            own_error
+                .map_or_else(|| "—".to_owned(), |percent| format!("{} %", words::number(words::two_digits(percent)))),
+            words::engineering(words::two_digits(taken.as_secs_f64()), "s"),
+            words::engineering(words::two_digits(solve.as_secs_f64()), "s"),
+            words::number(words::two_digits(taken.as_secs_f64() / solve.as_secs_f64())),
+        );
+    }
+}
+
+fn median(mut run: impl FnMut()) -> Duration {
+    let mut times: Vec<Duration> = (0..ROUNDS)
+        .map(|_| {
+            let start = Instant::now();
+            run();
+            start.elapsed()
+        })
+        .collect();
+    times.sort();
+    times[ROUNDS / 2]
+}

@@ -1,0 +1,161 @@
+//! Places where the stress of linear elasticity has no bound, so that a finer mesh only finds a larger one.
+
+use nalgebra::Vector2;
+
+use crate::assembly::Problem;
+use crate::mesh::{Mesh, Segment};
+use crate::scene::{Load, Material, Place, Plane};
+
+/// Cause of a stress without bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Singularity {
+    /// A force on a single node.
+    PointForce,
+    /// A support of a single node.
+    PointSupport,
+    /// The end of a support's edge.
+    SupportEnd,
+    /// A corner that points into the body.
+    ReentrantCorner,
+}
+
+impl std::fmt::Display for Singularity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let place = match self {
+            Self::PointForce => "at a point force",
+            Self::PointSupport => "at a point support",
+            Self::SupportEnd => "at the end of a support",
+            Self::ReentrantCorner => "at a re-entrant corner",
+        };
+        write!(f, "the largest stress is {place}, where it grows without limit as the mesh is refined")
+    }
+}
+
+/// Conditions on a side of the outline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Hold {
+    Free,
+    /// Fixed in one direction.
+    Roller,
+    Clamped,
+}
+
+/// A corner this much larger than a straight angle, rad, is one: less comes of curved outlines made of straight sides.
+const CORNER: f64 = 0.6;
+
+impl Singularity {
+    /// The cause of an unbounded stress at a node; `None` where the stress is bounded.
+    #[must_use]
+    pub fn at(problem: &Problem, node: u32) -> Option<Self> {
+        let mesh = problem.system().mesh();
+        let is_there = |place: &Place| matches!(place, Place::At(at) if mesh.nearest_node((*at).into()) == node);
+        if problem.supports().all().iter().any(|s| is_there(&s.place)) {
+            return Some(Self::PointSupport);
+        }
+        let acts =
+            |load: &Load| matches!(load, Load::Force { place, force, .. } if is_there(place) && *force != [0.0; 2]);
+        if problem.scene_loads().iter().any(acts) {
+            return Some(Self::PointForce);
+        }
+        let holds: Vec<Hold> = mesh
+            .outline()
+            .iter()
+            .filter(|side| side.ends().contains(&node))
+            .map(|side| Hold::of(problem, side))
+            .collect();
+        let [a, b] = *holds.as_slice() else { return None };
+        let angle = interior_angle(mesh, node);
+        let straight = std::f64::consts::PI;
+        match (a, b) {
+            (Hold::Clamped, Hold::Free) | (Hold::Free, Hold::Clamped) => {
+                is_singular_clamp(angle, problem.material()).then_some(Self::SupportEnd)
+            }
+            // The mirror image continues the body beyond a roller.
+            (Hold::Roller, Hold::Free) | (Hold::Free, Hold::Roller) => {
+                (2.0 * angle > straight + CORNER).then_some(Self::SupportEnd)
+            }
+            _ => (angle > straight + CORNER).then_some(Self::ReentrantCorner),
+        }
+    }
+}
+
+impl Hold {
+    fn of(problem: &Problem, side: &Segment) -> Self {
+        let fixed = [0, 1].map(|axis| {
+            side.nodes().iter().all(|node| {
+                let own = problem.supports().all().iter().flat_map(|s| &s.nodes);
+                own.into_iter().any(|(held, axes)| held == node && axes[axis])
+            })
+        });
+        match fixed {
+            [true, true] => Self::Clamped,
+            [false, false] => Self::Free,
+            _ => Self::Roller,
+        }
+    }
+}
+
+/// The angle that the elements around a node fill, rad; a straight one around a node between corners.
+fn interior_angle(mesh: &Mesh, node: u32) -> f64 {
+    let entry = mesh.element().entry();
+    let corners = entry.cell.corners;
+    let mut angle = 0.0;
+    for own in mesh.elements() {
+        let Some(corner) = own.iter().take(corners.len()).position(|&n| n == node) else { continue };
+        let rest: Vec<Vector2<f64>> = own.iter().map(|&n| mesh.node(n)).collect();
+        let jacobian = entry.jacobian(&rest, corners[corner]);
+        let towards = |other: usize| {
+            let [to, from] = [other % corners.len(), corner].map(|c| Vector2::from(corners[c]));
+            jacobian * (to - from)
+        };
+        let (next, previous) = (towards(corner + 1), towards(corner + corners.len() - 1));
+        angle += next.perp(&previous).atan2(next.dot(&previous));
+    }
+    if angle == 0.0 { std::f64::consts::PI } else { angle }
+}
+
+/// `true` if stresses at a corner of this angle, one side clamped and the other free, have no bound: if
+/// sin²(λω) = ((κ + 1)² − 4 λ² sin² ω) / 4κ has a root with a real part below 1 (Williams 1952, *Stress singularities resulting
+/// from various boundary conditions in angular corners of plates in extension*). Displacements go with the distance to the power
+/// λ. Beyond a right angle there is always one, complex or not.
+fn is_singular_clamp(angle: f64, material: &Material) -> bool {
+    const STEPS: u32 = 200;
+    /// A right angle and some rounding, rad.
+    const OBTUSE: f64 = 1.6;
+    if angle > OBTUSE {
+        return true;
+    }
+    let nu = material.poisson;
+    let kappa = match material.plane {
+        Plane::Stress => (3.0 - nu) / (1.0 + nu),
+        Plane::Strain => 3.0 - 4.0 * nu,
+    };
+    let gap = |lambda: f64| {
+        let (turned, own) = ((lambda * angle).sin(), lambda * angle.sin());
+        turned * turned - ((kappa + 1.0).powi(2) - 4.0 * own * own) / (4.0 * kappa)
+    };
+    // At λ = 0 the gap is negative.
+    (1..STEPS).any(|i| gap(f64::from(i) / f64::from(STEPS)) > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn clamps_are_singular_as_williams_found() {
+        let material = |poisson, plane| Material { plane, ..Material::new(1.0, poisson) };
+        for (angle, poisson, plane, singular) in [
+            (FRAC_PI_2, 0.0, Plane::Stress, false),
+            (FRAC_PI_2, 0.3, Plane::Stress, true),
+            (FRAC_PI_2, 0.0, Plane::Strain, false),
+            (FRAC_PI_2, 0.45, Plane::Strain, true),
+            (PI, 0.0, Plane::Stress, true),
+            (0.5 * FRAC_PI_2, 0.3, Plane::Stress, false),
+        ] {
+            assert_eq!(is_singular_clamp(angle, &material(poisson, plane)), singular, "{angle} {poisson} {plane:?}");
+        }
+    }
+}

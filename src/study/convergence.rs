@@ -1,0 +1,117 @@
+//! The error that is left in solutions on meshes whose elements are halved from one to the next.
+
+use nalgebra::Vector2;
+
+/// Slowest rate at which a mean displacement of finite energy converges when elements are halved: around the tip of a crack,
+/// where the error goes with the element size. Clamped and re-entrant corners are faster (Szabó and Babuška 1991, *Finite
+/// Element Analysis*, chapter 10).
+const SLOWEST: f64 = 0.5;
+/// Rate of an element that bends, or is constant, exactly: the error goes with the square of the element size.
+const ORDINARY: f64 = 0.25;
+/// Bound over estimate.
+const SAFETY: f64 = 2.0;
+/// Ratio of two changes from which on a sequence is not seen to converge …
+const STALLED: f64 = 0.85;
+/// … and the ratio it is given where the change before those was larger: by chance errors of two kinds cancelled there.
+const ERRATIC: f64 = 0.75;
+/// Changes smaller than this part of a displacement are rounding.
+const ROUNDING: f64 = 1e-7;
+/// Halvings for which a bound holds where each changes a displacement by the same amount.
+const HALVINGS: f64 = 8.0;
+
+/// Bound of the distance from the last of these displacements, m, to the limit that they converge to on finer and finer
+/// meshes, m. `None` for a single displacement.
+///
+/// The changes d₁, d₂, … of a converging sequence fall by a ratio q, and the rest of them sums to d q/(1 − q). One change tells
+/// nothing of the ratio: the slowest is taken.
+///
+/// Where the changes do not fall there may be no limit: under a force on a point (`has_point`) each halving adds the same
+/// displacement (Flamant 1892), and strains become large around it, so that a fast rate is not trusted. The bound then holds
+/// for meshes of elements down to 1/256 as large.
+pub(super) fn remaining_error(displacements: &[Vector2<f64>], has_point: bool) -> Option<f64> {
+    let size = displacements.last()?.norm();
+    let changes: Vec<f64> = displacements.windows(2).map(|w| (w[1] - w[0]).norm()).collect();
+    let (last, before, earlier) = match *changes.as_slice() {
+        [] => return None,
+        [only] => (only, only / SLOWEST, only / SLOWEST),
+        [before, last] => (last, before, before),
+        [.., earlier, before, last] => (last, before, earlier),
+    };
+    if last.max(before) <= ROUNDING * size {
+        return Some(SAFETY * ROUNDING * size);
+    }
+    // A change that is small by chance says little of the next.
+    let change = last.max(ORDINARY * before);
+    let ratio = last / before;
+    let (ratio, constant) = if has_point {
+        let constant = ((last - ORDINARY * before) / (1.0 - ORDINARY)).max(0.0);
+        (SLOWEST, constant)
+    } else if ratio <= STALLED {
+        (ratio.max(ORDINARY), 0.0)
+    } else if last <= SLOWEST * earlier {
+        (ERRATIC, 0.0)
+    } else {
+        (SLOWEST, last)
+    };
+    Some(SAFETY * (change * ratio / (1.0 - ratio) + HALVINGS * constant))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+    use super::*;
+
+    /// Displacements 1 + c qᵏ for k = 0, 1, ….
+    fn sequence(c: f64, q: f64, count: i32) -> Vec<Vector2<f64>> {
+        (0..count).map(|k| Vector2::new(1.0 + c * q.powi(k), 0.0)).collect()
+    }
+
+    #[test]
+    fn the_bound_holds_and_is_not_much_larger_than_the_error() {
+        for q in [0.0625, 0.25, 0.4, 0.5, 0.7] {
+            for count in 3..6 {
+                let (u, error) = (sequence(0.1, q, count), 0.1 * q.powi(count - 1));
+                let bound = remaining_error(&u, false).unwrap();
+                assert!(bound >= error && bound <= 50.0 * error, "{q}, {count}: {bound} for {error}");
+            }
+        }
+        // Of two meshes the rate is not known.
+        let bound = remaining_error(&sequence(0.1, 0.5, 2), false).unwrap();
+        assert!((bound - SAFETY * 0.05).abs() < 1e-12, "{bound}");
+    }
+
+    #[test]
+    fn what_does_not_converge_has_a_large_bound_or_none() {
+        assert_eq!(remaining_error(&sequence(0.1, 0.5, 1), false), None);
+        for q in [0.95, 1.0, 1.1] {
+            let changes = 0.1 * q - 0.1 * q * q;
+            let bound = remaining_error(&sequence(0.1, q, 4), false).unwrap();
+            assert!(bound > 8.0 * changes.abs(), "{q}: {bound}");
+        }
+    }
+
+    #[test]
+    fn a_change_that_cancels_by_chance_is_not_trusted() {
+        let u = [1.0, 1.1, 1.1 + 1e-6].map(|x| Vector2::new(x, 0.0));
+        assert!(remaining_error(&u, false).unwrap() > 0.015);
+        let u = [1.0, 1.1, 1.105, 1.11].map(|x| Vector2::new(x, 0.0));
+        assert!((0.02..0.05).contains(&remaining_error(&u, false).unwrap()));
+    }
+
+    #[test]
+    fn rounding_is_not_taken_for_a_rate() {
+        let u = [1.0, 1.0 + 1e-12, 1.0 - 3e-12].map(|x| Vector2::new(x, 0.0));
+        assert!(remaining_error(&u, false).unwrap() < 1e-6);
+    }
+
+    /// A point force: the same change with every halving, for eight more of them.
+    #[test]
+    fn a_logarithm_is_bounded_for_some_more_halvings() {
+        let u: Vec<_> = (0..4).map(|k| Vector2::new(1.0 + 0.01 * f64::from(k), 0.0)).collect();
+        for has_point in [false, true] {
+            let bound = remaining_error(&u, has_point).unwrap();
+            assert!((0.08..0.25).contains(&bound), "{bound}");
+        }
+    }
+}

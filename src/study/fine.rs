@@ -1,0 +1,480 @@
+//! Solutions of a scene on finer and finer meshes, up to one whose own error is small.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use super::StudyError;
+use super::convergence::remaining_error;
+use super::reference::finest_element;
+use super::trade::{Observer, Progress, check};
+use crate::assembly::{Forces, System};
+use crate::element::ElementType;
+use crate::mesh::{Mesh, Segment, bent, straightened};
+use crate::method::{Workspace, is_stable};
+use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
+use crate::simulation::{Simulation, SimulationError, Status};
+use crate::words::{count, engineering, engineering_pair};
+
+/// Cost allowed for a reference solution.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// Meshes of at most about 10,000 unknowns, and the work of about 30 solves of them: a second or two.
+    #[default]
+    Bounded,
+    /// Meshes as fine as an own error of 0.01 % takes, up to 700,000 unknowns.
+    Full,
+}
+
+impl Effort {
+    /// Largest number of unknowns of a mesh.
+    pub(super) fn most_unknowns(self) -> usize {
+        match self {
+            Self::Bounded => 10_000,
+            Self::Full => 700_000,
+        }
+    }
+
+    /// Largest sum of unknowns over all solves.
+    fn most_work(self) -> f64 {
+        match self {
+            Self::Bounded => 3e5,
+            Self::Full => f64::INFINITY,
+        }
+    }
+
+    /// Own error, over the displacement, below which no finer mesh is tried.
+    fn good_enough(self) -> f64 {
+        match self {
+            Self::Bounded => 1e-3,
+            Self::Full => 1e-4,
+        }
+    }
+}
+
+/// A point of a scene at which a mesh has no node.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MovedPoint {
+    /// The table of the scene that names the point: `load.0`, `support.1`.
+    pub key: String,
+    /// The point at rest, m.
+    pub at: [f64; 2],
+    /// Distance to the node that stands for it, m.
+    pub distance: f64,
+}
+
+impl std::fmt::Display for MovedPoint {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [at, distance] = [engineering_pair(self.at, "m"), engineering(self.distance, "m")];
+        write!(f, "{} at {at} acts on the nearest node, {distance} away", self.key)
+    }
+}
+
+/// The solution on the finest mesh.
+pub(super) struct Fine {
+    /// Displacement of every probe, m.
+    pub probes: Vec<Vector2<f64>>,
+    /// Bound of the error of each, m; `None` where it is not known.
+    pub errors: Vec<Option<f64>>,
+    /// Closed lines around the body, m, node by node.
+    pub outline: Vec<Vec<Vector2<f64>>>,
+    /// Displacement of the first probe in linear theory on the same mesh, m.
+    pub linear: Option<Vector2<f64>>,
+    /// Points that are not where the scene has them.
+    pub moved: Vec<MovedPoint>,
+    /// `true` if the mesh comes from a file and all its sides are straight.
+    pub is_polygon: bool,
+    /// Unknowns of the finest mesh.
+    pub unknowns: usize,
+}
+
+/// Refinements of the coarsest mesh of a beam, which has as many cells as make the finest about as large as the budget.
+const REFINEMENTS: i32 = 3;
+/// Distances of lines from the ends of a slender beam, over its height: there sections do not stay plane.
+const LAYERS: [f64; 3] = [0.25, 1.0, 4.0];
+/// Meshes whose changes show a rate of convergence.
+const LEAST_MESHES: usize = 3;
+/// Distance between two lines of a grid, over the size of its cells in the other direction, below which they are one.
+const NARROWEST: f64 = 1e-4;
+/// Iterations of Newton's method that a mesh may take.
+const MOST_ITERATIONS: u32 = 500;
+/// Residual at which a solution on a mesh has converged.
+const TOLERANCE: f64 = 1e-11;
+
+/// Finds it. With `near`, a solution of the scene on a mesh of its own, the search begins there, so that of several
+/// equilibria it finds the same one.
+///
+/// # Errors
+/// [`StudyError`]: the mesh is too fine to be refined, no mesh has an equilibrium, or the search was cancelled.
+pub(super) fn fine(
+    scene: &Scene,
+    near: Option<&Simulation>,
+    effort: Effort,
+    observe: Observer<'_>,
+) -> Result<Fine, StudyError> {
+    let mut scene = scene.clone();
+    scene.set_element(element(&scene));
+    scene.solver.method = MethodKind::Newton;
+    scene.solver.max_iterations = MOST_ITERATIONS;
+    scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
+    let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
+    let has_point = has_point(&scene);
+    let mut search = Search { effort, work: 0.0, observe };
+    let mut solutions: Vec<Vec<Vector2<f64>>> = Vec::new();
+    let mut start: Option<Vec<Vector2<f64>>> = None;
+    let mut finest = None;
+    loop {
+        let system = Arc::new(System::with_mesh(&scene, meshes.mesh()?).map_err(SimulationError::from)?);
+        let mut simulation = Simulation::with_system(&scene, system)?;
+        match (&start, near) {
+            (Some(start), _) => simulation.start_from(start).map_err(|_| StudyError::NoReference)?,
+            (None, Some(near)) => start_near(&mut simulation, near),
+            (None, None) => {}
+        }
+        let converged = match search.solve(&mut simulation)? {
+            Status::Converged => true,
+            // Out of work: the meshes before have to do.
+            Status::Running if !solutions.is_empty() => break,
+            _ => false,
+        };
+        let unknowns = simulation.system().dofs();
+        if converged {
+            let u = simulation.displacement();
+            solutions.push(simulation.problem().probes().iter().map(|p| p.mean(u)).collect());
+        } else if !solutions.is_empty() {
+            // A finer mesh has no equilibrium near that of a coarser one: it was none of the body.
+            return Err(StudyError::NoReference);
+        }
+        let fine_enough = solutions.len() >= LEAST_MESHES && is_good_enough(&solutions, has_point, effort);
+        let next_fits = 4 * unknowns <= effort.most_unknowns() && search.has_work_for(4 * unknowns);
+        let carried = if fine_enough || !next_fits { None } else { Some(meshes.refine(simulation.displacement())) };
+        if converged {
+            finest = Some(simulation);
+        }
+        match carried {
+            Some(carried) => start = converged.then_some(carried),
+            None => break,
+        }
+    }
+    let simulation = finest.ok_or(StudyError::NoReference)?;
+    if !stands(&simulation)? {
+        return Err(StudyError::NoReference);
+    }
+    let errors = errors(&solutions, has_point);
+    scene.solver.method = MethodKind::Linear;
+    let mut linear = Simulation::with_system(&scene, simulation.system().clone())?;
+    linear.solve();
+    let first = linear.problem().probes().first().map(|p| p.mean(linear.displacement()));
+    Ok(Fine {
+        probes: solutions.pop().unwrap_or_default(),
+        errors,
+        outline: outline(&simulation),
+        linear: first,
+        moved,
+        is_polygon: scene.beam.is_none() && has_straight_sides(simulation.system().mesh()),
+        unknowns: simulation.system().dofs(),
+    })
+}
+
+/// `true` if an equilibrium is stable: descent of the energy can end in one that is not.
+fn stands(simulation: &Simulation) -> Result<bool, StudyError> {
+    let (problem, state) = (simulation.problem(), simulation.state());
+    let mut workspace = Workspace::new(simulation.system()).map_err(SimulationError::from)?;
+    let mut forces = Forces::new(state.displacement().len());
+    Ok(is_stable(problem, state, 1.0, &mut forces, &mut workspace))
+}
+
+/// The element of fine solutions of beams: four-node quadrilaterals, which lock neither in bending nor near
+/// incompressibility. Of a mesh from a file, the one of its shape that converges fastest.
+fn element(scene: &Scene) -> ElementKind {
+    if scene.beam.is_some() { ElementKind::Q4 } else { finest_element(scene) }
+}
+
+/// Bounds of the errors of the last solution, m, probe by probe.
+fn errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<Option<f64>> {
+    let probes = solutions.last().map_or(0, Vec::len);
+    let of = |probe: usize| solutions.iter().filter_map(|u| u.get(probe).copied()).collect::<Vec<_>>();
+    (0..probes).map(|probe| remaining_error(&of(probe), has_point)).collect()
+}
+
+/// `true` if the errors of all probes that move much are small enough for a search to end.
+fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effort) -> bool {
+    /// Displacement over the largest of all probes below which a probe does not count.
+    const LITTLE: f64 = 0.01;
+    let Some(last) = solutions.last() else { return false };
+    let largest = last.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let counts = last.iter().zip(errors(solutions, has_point)).filter(|(u, _)| u.norm() > LITTLE * largest);
+    counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= effort.good_enough() * u.norm()))
+}
+
+/// `true` if a force or a support acts on a single point.
+fn has_point(scene: &Scene) -> bool {
+    let at = |place: &Place| matches!(place, Place::At(_));
+    scene.supports.iter().any(|s| at(&s.place))
+        || scene.loads.iter().any(|load| matches!(load, Load::Force { place, .. } if at(place)))
+}
+
+/// Solves within a budget, and reports progress.
+struct Search<'a> {
+    effort: Effort,
+    /// Unknowns, summed over all solves.
+    work: f64,
+    observe: Observer<'a>,
+}
+
+impl Search<'_> {
+    /// Iterates until the status is final or the budget is spent; returns the status.
+    fn solve(&mut self, simulation: &mut Simulation) -> Result<Status, StudyError> {
+        let unknowns = simulation.system().dofs();
+        let now = format!("the reference solution, {}", count(unknowns as u64, "unknown"));
+        let fraction = (unknowns as f64 / self.effort.most_unknowns() as f64).min(1.0);
+        while *simulation.status() == Status::Running && self.work <= self.effort.most_work() {
+            check((self.observe)(Progress { fraction, now: &now, so_far: None }))?;
+            simulation.step();
+            self.work += unknowns as f64;
+        }
+        Ok(simulation.status().clone())
+    }
+
+    /// `true` if what is left of the budget is enough for a few solves of so many unknowns.
+    fn has_work_for(&self, unknowns: usize) -> bool {
+        const FEW: f64 = 4.0;
+        self.work + FEW * unknowns as f64 <= self.effort.most_work()
+    }
+}
+
+/// Starts a search from a solution on another mesh of the same body, unless it leads far away from it.
+fn start_near(simulation: &mut Simulation, near: &Simulation) {
+    let (mesh, from) = (simulation.system().mesh(), near.system().mesh());
+    let (outline, size) = (from.outline(), near.system().size());
+    let carried: Option<Vec<Vector2<f64>>> = mesh
+        .nodes()
+        .iter()
+        .map(|&at| {
+            let weights = from.weights(from.pick(from.nodes(), &outline, at, size)?)?;
+            Some(weights.iter().map(|&(node, w)| near.displacement()[node as usize] * w).sum())
+        })
+        .collect();
+    // From rest it leads somewhere as well.
+    if let Some(carried) = carried {
+        let _ = simulation.start_from(&carried);
+    }
+}
+
+/// Meshes that follow one another, each with every element of the one before cut into four.
+struct Meshes {
+    /// Of a beam, the mesh of the straight rectangle.
+    straight: Mesh,
+    /// The arch it is bent to.
+    arch: Option<Beam>,
+}
+
+impl Meshes {
+    /// The coarsest mesh of a scene. Points of the scene that it has no node at are moved to the nearest.
+    fn of(scene: &mut Scene, near: Option<&Simulation>, effort: Effort) -> Result<(Self, Vec<MovedPoint>), StudyError> {
+        match scene.beam.clone() {
+            Some(beam) => {
+                let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
+                let meshes = Self { straight, arch: (beam.rise != 0.0).then_some(beam) };
+                let moved = points_off_nodes(scene, &meshes.mesh()?);
+                Ok((meshes, moved))
+            }
+            None => {
+                let own = match near {
+                    Some(near) => near.system().mesh().clone(),
+                    None => System::mesh_of(scene).map_err(SimulationError::from)?,
+                };
+                // A mesh that the caller has given stays what it is.
+                let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
+                let entry = element.entry();
+                if 4 * unknowns_of(&own, entry) > effort.most_unknowns() {
+                    return Err(StudyError::TooFine { elements: own.element_count() });
+                }
+                // The same nodes stand for the points of the scene on every mesh, and on that of the scene.
+                let moved = points_off_nodes(scene, &own);
+                snap(scene, &own);
+                let straight = if own.element() == element {
+                    own
+                } else {
+                    System::mesh_of(scene).map_err(SimulationError::from)?
+                };
+                Ok((Self { straight, arch: None }, moved))
+            }
+        }
+    }
+
+    /// The present mesh.
+    fn mesh(&self) -> Result<Mesh, StudyError> {
+        match &self.arch {
+            None => Ok(self.straight.clone()),
+            Some(beam) => {
+                self.straight.moved(|x| bent(beam, x.x / beam.length, x.y)).map_err(|_| StudyError::NoReference)
+            }
+        }
+    }
+
+    /// Goes on to the next mesh; returns a displacement of the present one carried over to it.
+    fn refine(&mut self, displacement: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+        let carried = self.straight.prolonged(displacement);
+        self.straight = self.straight.refined();
+        carried
+    }
+}
+
+/// About how many unknowns a mesh has where its elements become others: Euler's formula for a mesh without holes.
+fn unknowns_of(mesh: &Mesh, element: &ElementType) -> usize {
+    let elements = mesh.element_count();
+    let corners = element.cell.corners.len();
+    // Every side belongs to two elements: as many sides as elements times half their corners.
+    let vertices = elements * (corners - 2) / 2;
+    let on_sides = element.sides[0].len() - 2;
+    2 * (vertices + on_sides * elements * corners / 2)
+}
+
+/// Every point at which a scene puts a support or a force, with the key of its table.
+fn points(scene: &Scene) -> Vec<(String, &[f64; 2])> {
+    fn of<'a>(kind: &str, i: usize, place: &'a Place) -> Option<(String, &'a [f64; 2])> {
+        match place {
+            Place::At(at) => Some((format!("{kind}.{i}"), at)),
+            Place::Edge(_) => None,
+        }
+    }
+    let supports = scene.supports.iter().enumerate().filter_map(|(i, s)| of("support", i, &s.place));
+    let loads = scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
+        Load::Force { place, .. } => of("load", i, place),
+        _ => None,
+    });
+    supports.chain(loads).collect()
+}
+
+/// Points of a simulation's scene, supports' and loads', at which its mesh has no node.
+#[must_use]
+pub fn moved_points(simulation: &Simulation) -> Vec<MovedPoint> {
+    points_off_nodes(simulation.scene(), simulation.system().mesh())
+}
+
+/// Points of a scene with the nearest node of a mesh farther away than rounding.
+fn points_off_nodes(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
+    const ROUNDING: f64 = 1e-9;
+    let (low, high) = mesh.bounds();
+    let distances = points(scene).into_iter().map(|(key, at)| {
+        let nearest = mesh.node(mesh.nearest_node((*at).into()));
+        MovedPoint { key, at: *at, distance: (nearest - Vector2::from(*at)).norm() }
+    });
+    distances.filter(|point| point.distance > ROUNDING * (high - low).norm()).collect()
+}
+
+/// Puts the points of a scene on the nearest nodes of a mesh.
+fn snap(scene: &mut Scene, mesh: &Mesh) {
+    let to_node = |place: &mut Place| {
+        if let Place::At(at) = place {
+            *at = mesh.node(mesh.nearest_node((*at).into())).into();
+        }
+    };
+    scene.supports.iter_mut().for_each(|support| to_node(&mut support.place));
+    for load in &mut scene.loads {
+        if let Load::Force { place, .. } = load {
+            to_node(place);
+        }
+    }
+}
+
+/// The coarsest mesh of the straight rectangle of a beam, cells about as long as high where there are enough, with lines
+/// through every point of the scene and finer cells at the ends of a slender beam. `None` where its cells are too thin.
+fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
+    let size = [beam.length, beam.height];
+    let probes = scene.probes.iter().filter_map(|p| if let Place::At(at) = &p.place { Some(at) } else { None });
+    let points = points(scene).into_iter().map(|(_, at)| at).chain(probes);
+    let points = points.map(|at| straightened(beam, (*at).into())).map(|[along, across]| [along * size[0], across]);
+    let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
+    let halvings = 2f64.powi(REFINEMENTS);
+    // The unknowns of the finest mesh are 2 (2³ nx + 1) (2³ ny + 1).
+    let nodes = 0.5 * Effort::Bounded.most_unknowns() as f64;
+    let cells = |short: f64, extra: usize| {
+        (((nodes / (halvings * short + 1.0) - 1.0) / halvings).floor() - extra as f64).max(1.0)
+    };
+    let square = (nodes / halvings.powi(2) * size[0].min(size[1]) / size[0].max(size[1])).sqrt().round().max(1.0);
+    let long = usize::from(size[1] > size[0]);
+    let wanted = if long == 0 { &mut columns } else { &mut rows };
+    if cells(square, 0) * size[1 - long] < 2.0 * size[long] {
+        wanted.extend(LAYERS.into_iter().flat_map(|layer| {
+            let layer = layer * size[1 - long];
+            [layer, size[long] - layer]
+        }));
+    }
+    let extra = wanted.len();
+    let mut counts = [square; 2];
+    counts[long] = cells(square, extra);
+    let lines = [(columns, 0), (rows, 1)]
+        .map(|(wanted, axis)| lines(size[axis], wanted, counts[axis], NARROWEST * size[1 - axis] / counts[1 - axis]));
+    let cells = [&lines[0], &lines[1]].map(|lines| lines.len() as u32 - 1);
+    let uniform = Mesh::beam(&Beam { cells, rise: 0.0, element: scene.element(), ..beam.clone() }).ok()?;
+    let graded = |x: Vector2<f64>| {
+        let [x, y] = [on_lines(&lines[0], x.x / size[0]), on_lines(&lines[1], x.y / size[1] + 0.5)];
+        Vector2::new(x, y - 0.5 * size[1])
+    };
+    uniform.moved(graded).ok()
+}
+
+/// Boundaries of about `cells` intervals of one size from 0 to `end`, with one at each of `wanted` that is not nearer than
+/// `narrowest` to another.
+fn lines(end: f64, mut wanted: Vec<f64>, cells: f64, narrowest: f64) -> Vec<f64> {
+    wanted.retain(|v| (narrowest..=end - narrowest).contains(v));
+    wanted.sort_by(f64::total_cmp);
+    wanted.dedup_by(|b, a| *b - *a < narrowest);
+    let mut lines = vec![0.0];
+    let mut from = 0.0;
+    for to in wanted.into_iter().chain([end]) {
+        let count = (cells * (to - from) / end).round().max(1.0);
+        lines.extend((1..count as u32).map(|i| from + (to - from) * f64::from(i) / count));
+        lines.push(to);
+        from = to;
+    }
+    lines
+}
+
+/// Where a part of the way, 0 to 1, through equal cells is on these lines.
+fn on_lines(lines: &[f64], part: f64) -> f64 {
+    // Nodes are at corners of cells and half way between: a line is hit without rounding.
+    let halves = (2.0 * part * (lines.len() - 1) as f64).round() as usize;
+    let (line, odd) = (halves / 2, halves % 2 == 1);
+    match lines.get(line..) {
+        Some([here, next, ..]) if odd => 0.5 * (here + next),
+        Some([here, ..]) => *here,
+        _ => lines.last().copied().unwrap_or(part),
+    }
+}
+
+/// `true` if no side of the outline is curved.
+fn has_straight_sides(mesh: &Mesh) -> bool {
+    const STRAIGHT: f64 = 1e-9;
+    mesh.outline().iter().all(|side| {
+        let [a, b] = side.ends().map(|n| mesh.node(n));
+        side.nodes().iter().all(|&n| (b - a).perp(&(mesh.node(n) - a)).abs() <= STRAIGHT * (b - a).norm_squared())
+    })
+}
+
+/// The closed lines around a body, m, node by node.
+fn outline(simulation: &Simulation) -> Vec<Vec<Vector2<f64>>> {
+    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
+    let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
+    for side in mesh.outline() {
+        sides.entry(side.ends()[0]).or_default().push(side);
+    }
+    let mut lines = Vec::new();
+    while let Some((&first, _)) = sides.first_key_value() {
+        let (mut line, mut corner) = (Vec::new(), first);
+        while let Some(own) = sides.get_mut(&corner) {
+            let Some(side) = own.pop() else { break };
+            if own.is_empty() {
+                sides.remove(&corner);
+            }
+            line.extend(side.nodes().iter().map(|&n| mesh.nodes()[n as usize] + u[n as usize]));
+            corner = side.ends()[1];
+        }
+        lines.push(line);
+    }
+    lines
+}

@@ -1,0 +1,163 @@
+//! Reference solutions against independent solutions: the error that is claimed is true to within the reference's own error.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+
+use common::random;
+use nalgebra::Vector2;
+use warpbeam::mesh::{Mesh, Segment};
+use warpbeam::scene::{Beam, Load, MethodKind, Place};
+use warpbeam::simulation::Status;
+use warpbeam::study::{Effort, Reference};
+use warpbeam::{ElementKind, Scene, Simulation};
+
+/// Six-node triangles on a grid that has a line at every point of a scene; cells from line to line are cut once, from lower
+/// left to upper right. Written for these tests: it shares nothing with the meshes of reference solutions.
+fn six_node_grid(scene: &Scene, beam: &Beam, cells: [usize; 2]) -> Mesh {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut add = |place: &Place| {
+        if let Place::At(at) = place {
+            points.push(*at);
+        }
+    };
+    scene.supports.iter().for_each(|s| add(&s.place));
+    scene.probes.iter().for_each(|p| add(&p.place));
+    for load in &scene.loads {
+        if let Load::Force { place, .. } = load {
+            add(place);
+        }
+    }
+    let ends = [[0.0, beam.length], [-0.5 * beam.height, 0.5 * beam.height]];
+    // Corners and midpoints in turn. Cells are smaller towards the ends, where slender beams are clamped.
+    let lines = [0, 1].map(|axis| {
+        let [low, high] = ends[axis];
+        let graded = |t: f64| 0.5 * (t + 0.5 * (1.0 - (std::f64::consts::PI * t).cos()));
+        let mut lines: Vec<f64> =
+            (0..=cells[axis]).map(|i| low + (high - low) * graded(i as f64 / cells[axis] as f64)).collect();
+        for point in &points {
+            // The nearest inner line moves to the point.
+            let at = point[axis];
+            let inner = 1..lines.len() - 1;
+            let near = |v: f64| (v - at).abs() < 1e-9 * (high - low);
+            if !lines.iter().any(|&v| near(v)) {
+                let nearest = inner.clone().min_by(|&a, &b| (lines[a] - at).abs().total_cmp(&(lines[b] - at).abs()));
+                let taken =
+                    nearest.is_none_or(|n| points.iter().any(|p| p[axis] != at && (lines[n] - p[axis]).abs() < 1e-12));
+                match nearest.filter(|_| !taken) {
+                    Some(n) => lines[n] = at,
+                    None => lines.push(at),
+                }
+            }
+        }
+        lines.sort_by(f64::total_cmp);
+        let middles: Vec<f64> = lines.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
+        lines
+            .iter()
+            .zip(middles.iter().map(Some).chain([None]))
+            .flat_map(|(&a, m)| [Some(a), m.copied()])
+            .flatten()
+            .collect::<Vec<f64>>()
+    });
+    let [nx, ny] = [lines[0].len(), lines[1].len()];
+    let node = |i: usize, j: usize| (i * ny + j) as u32;
+    let nodes = lines[0].iter().flat_map(|&x| lines[1].iter().map(move |&y| Vector2::new(x, y))).collect();
+    let mut connectivity = Vec::new();
+    for (i, j) in (0..nx - 1).step_by(2).flat_map(|i| (0..ny - 1).step_by(2).map(move |j| (i, j))) {
+        let [a, b, c, d] = [node(i, j), node(i + 2, j), node(i + 2, j + 2), node(i, j + 2)];
+        let middle = node(i + 1, j + 1);
+        connectivity.extend([a, b, c, node(i + 1, j), node(i + 2, j + 1), middle]);
+        connectivity.extend([a, c, d, middle, node(i + 1, j + 2), node(i, j + 1)]);
+    }
+    let edge = |points: Vec<u32>| points.windows(3).step_by(2).filter_map(Segment::new).collect::<Vec<_>>();
+    let edges = BTreeMap::from([
+        ("left".to_owned(), edge((0..ny).map(|j| node(0, j)).collect())),
+        ("right".to_owned(), edge((0..ny).map(|j| node(nx - 1, j)).collect())),
+        ("bottom".to_owned(), edge((0..nx).map(|i| node(i, 0)).collect())),
+        ("top".to_owned(), edge((0..nx).map(|i| node(i, ny - 1)).collect())),
+    ]);
+    Mesh::new(nodes, ElementKind::T6, connectivity, edges).unwrap()
+}
+
+/// Displacement of the first probe of a scene on a mesh of about so many nodes.
+fn independent(scene: &Scene, nodes: f64) -> Option<Vector2<f64>> {
+    let beam = scene.beam.clone().unwrap();
+    let ratio = beam.length / beam.height;
+    // (2 nx + 1) (2 ny + 1) nodes, cells as long as high where there are enough.
+    let across = (0.25 * nodes / ratio.max(1.0 / ratio)).sqrt().round().max(2.0);
+    let along = (0.25 * nodes / across).round();
+    let cells = if ratio >= 1.0 { [along, across] } else { [across, along] }.map(|n| n as usize);
+    let mut scene = scene.clone();
+    (scene.solver.method, scene.solver.max_iterations) = (MethodKind::Newton, 300);
+    let mesh = six_node_grid(&scene, &beam, cells);
+    let mut simulation = Simulation::with_mesh(&scene, mesh).unwrap();
+    (*simulation.solve() == Status::Converged).then(|| simulation.probe("probe").unwrap())
+}
+
+/// What a comparison of one scene shows.
+#[derive(Debug, Default)]
+struct Tally {
+    judged: usize,
+    /// References whose own error is below 0.3 %.
+    sharp: usize,
+    /// Scenes in which the independent solutions are surer than the reference.
+    severe: usize,
+    none: usize,
+    wrong: Vec<String>,
+}
+
+/// Over random scenes, |claimed − true error| is at most the own error claimed, the true one being that from the finer of two
+/// independent solutions; to those their distance from each other is granted, and half of it again.
+fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
+    let mut tally = Tally::default();
+    for seed in seeds {
+        let scene = random::scene(seed);
+        let mut own = Simulation::new(&scene).unwrap();
+        own.solve();
+        let reference = Reference::find(&scene, Some(&own), Effort::Bounded, &mut |_| ControlFlow::Continue(()));
+        let why = reference.as_ref().err().map(ToString::to_string);
+        let Some(first) = reference.ok().and_then(|r| r.first()) else {
+            println!("{seed}: {}, own result {:?}", why.unwrap_or_else(|| "no bound".to_owned()), own.status());
+            tally.none += 1;
+            continue;
+        };
+        let (Some(coarse), Some(fine)) = (independent(&scene, 5e3), independent(&scene, 14e3)) else { continue };
+        let claimed = first.error_percent(&own.solution().probes[0]).unwrap();
+        let percent = |a: Vector2<f64>, b: Vector2<f64>| 100.0 * (a - b).norm() / fine.norm();
+        let apart = percent(coarse, fine);
+        if apart > 5.0 {
+            // They know no better.
+            continue;
+        }
+        let error = percent(own.probe("probe").unwrap(), fine);
+        let words = format!(
+            "{seed}: claimed {claimed:.4} %, true {error:.4} %, own {:.4} %, independent ones {apart:.4} % apart, {}",
+            first.own_error_percent, first.source
+        );
+        println!("{words}");
+        // Percent of different displacements: a large error has a large difference of them.
+        let scale = 1.0 + 0.01 * error;
+        if (claimed - error).abs() > (first.own_error_percent + 1.5 * apart) * scale + 1e-5 {
+            tally.wrong.push(words);
+        }
+        tally.judged += 1;
+        tally.sharp += usize::from(first.own_error_percent < 0.3);
+        tally.severe += usize::from(apart < first.own_error_percent);
+    }
+    tally
+}
+
+#[test]
+fn claimed_errors_are_true_within_the_own_error_of_the_reference() {
+    // All 300 take a quarter of an hour; without being asked for, every fifth is taken.
+    let all = std::env::var_os("WARPBEAM_ALL_SCENES").is_some();
+    let tally = judge((0..300).step_by(if all { 1 } else { 5 }));
+    println!("{tally:?}");
+    assert!(tally.wrong.is_empty(), "{:#?}", tally.wrong);
+    let scenes = if all { 300 } else { 60 };
+    assert!(tally.judged * 10 >= scenes * 7, "{tally:?}");
+    assert!(tally.severe * 2 >= tally.judged, "{tally:?}");
+    assert!(tally.sharp * 5 >= tally.judged * 2, "{tally:?}");
+}
