@@ -451,7 +451,7 @@ fn what_takes_long_shows_a_bar_on_a_terminal() {
     let (code, text) = on_a_terminal(Path::new("."), &args);
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains(" of 60 s, ") && text.contains(" s a second") && text.contains(" left"), "{text}");
-    // Interrupted output says that it is partial, not that nothing is close enough.
+    // The bar shows a remaining time only once it can estimate one.
     assert!(!text.contains("0s left"), "{text}");
 }
 
