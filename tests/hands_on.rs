@@ -94,7 +94,8 @@ fn dragging_the_tip_of_the_arrow_sets_the_force() {
     let wanted = f64::from(-way.y).atan2(f64::from(way.x)).to_degrees();
     let direction = fy.atan2(fx).to_degrees();
     assert!((direction - wanted).abs() < 0.6, "the arrow points to {wanted}°, the force to {direction}°");
-    assert!(fx.hypot(fy) < 0.9 * 1000.0, "a shorter arrow is a smaller force: {fx} {fy}");
+    let shorter = f64::from(way.length() / (before - start).length());
+    assert!((fx.hypot(fy) / 1000.0 - shorter).abs() < 0.02, "an arrow of {shorter} times the length: {fx} {fy}");
     assert_eq!(*lab.simulation().status(), Status::Converged);
     let direction_shown = shown(&harness, "Direction");
     assert!(direction_shown.starts_with(&format!("{direction:.0}")), "{direction_shown} {direction}");
@@ -106,6 +107,84 @@ fn dragging_the_tip_of_the_arrow_sets_the_force() {
     let length = (tip(lab) - on_body(lab, Vector2::new(10.0, 0.0))).length();
     assert!((length - way.length()).abs() < 1.5, "{length} {}", way.length());
     assert_ne!(lab.camera(), camera, "the view did not follow the body afterwards");
+}
+
+/// On opening, a tip that is dragged by the length of its arrow doubles the force; a pixel changes it by 1 to 2 %, a tenth of
+/// that with Ctrl. A drag of 10 points on the article's beam bends it a little more, and no more than that.
+#[test]
+fn an_arrow_of_twice_the_length_is_twice_the_force() {
+    for id in ["article", "cantilever", "elastica", "clip", "jump"] {
+        let mut harness = harness(id);
+        let size = |harness: &Harness<'_, Lab>| {
+            let [x, y] = force(harness.state());
+            x.hypot(y)
+        };
+        let own = size(&harness);
+        let (from, to) = (harness.state().arrow_feet()[0], tip(harness.state()));
+        let way = to - from;
+        drag(&mut harness, to, to + way, Modifiers::NONE);
+        assert!((size(&harness) / (2.0 * own) - 1.0).abs() < 0.02, "{id}: {own} N, then {} N", size(&harness));
+        key(&mut harness, Modifiers::COMMAND, Key::Z);
+        for (modifiers, part) in [(Modifiers::NONE, 1.0), (Modifiers::CTRL, 0.1)] {
+            let to = tip(harness.state());
+            drag(&mut harness, to, to + way.normalized() * 10.0, modifiers);
+            let rate = (size(&harness) / own - 1.0) / 10.0;
+            assert!((0.01 * part..=0.0205 * part).contains(&rate), "{id}: {rate} a point, {modifiers:?}");
+            assert!(harness.state().simulation().status().is_success(), "{id}");
+            key(&mut harness, Modifiers::COMMAND, Key::Z);
+        }
+    }
+}
+
+/// No message lies over the tip of an arrow, in any window that is allowed and wherever the tip is dragged.
+#[test]
+fn messages_stay_off_the_tips_of_arrows() {
+    for size in [[640.0, 480.0], [900.0, 600.0], [1280.0, 800.0]] {
+        let mut harness = harness("article");
+        harness.set_size(size.into());
+        harness.run();
+        for way in [vec2(0.0, 0.0), vec2(-60.0, 50.0), vec2(-40.0, 30.0), vec2(-120.0, 10.0), vec2(60.0, 0.0)] {
+            let from = tip(harness.state());
+            drag(&mut harness, from, from + way, Modifiers::NONE);
+            let at = tip(harness.state());
+            harness.hover_at(at);
+            harness.run();
+            let top = harness.ctx.layer_id_at(at).map(|layer| layer.order);
+            assert_eq!(top, Some(egui::Order::Background), "{size:?}: a message lies over the tip at {at}");
+        }
+    }
+}
+
+/// A load that the method cannot follow keeps the last equilibrium where it was, in a view that has not moved, and says so;
+/// the remedy is one click away.
+#[test]
+fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
+    let mut harness = harness("article");
+    let camera = harness.state().camera();
+    let to = tip(harness.state());
+    harness.hover_at(to);
+    harness.run();
+    harness.drag_at(to);
+    harness.step();
+    for i in 1..=40_u8 {
+        harness.hover_at(to + vec2(0.0, 5.0 * f32::from(i)));
+        for _ in 0..4 {
+            harness.step();
+            assert_eq!(harness.state().camera(), camera, "the view moved under the pointer");
+            let load_point = harness.state().arrow_feet()[0];
+            let view = harness.state().view_rect();
+            assert!(view.contains(load_point), "{load_point} is not within {view}");
+        }
+    }
+    harness.run();
+    assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
+    assert!(harness.state().view_rect().contains(harness.state().arrow_feet()[0]));
+    harness.drop_at(to + vec2(0.0, 200.0));
+    harness.run();
+    assert!(harness.query_all_by_label_contains("Shown is the last equilibrium").next().is_some());
+    harness.get_by_label("Use newton").click();
+    harness.run();
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
 }
 
 /// What is taken is what was pressed, also where the pointer has moved on before the next frame.
@@ -381,7 +460,7 @@ fn the_end_of_a_moments_arrow_sets_it() {
     };
     turn(&mut harness, 30.0, Modifiers::NONE);
     let less = moment(harness.state());
-    assert!((0.2..0.5).contains(&(less / before)), "{before} {less}: half a decade less");
+    assert!((0.75..0.82).contains(&(less / before)), "{before} {less}: 30° of 135° less");
     unfold(&mut harness, "Moment");
     let shown = harness.get_by_role_and_label(Role::SpinButton, "Moment").accesskit_node().value().unwrap();
     assert_eq!(shown, warpbeam::words::editable(less, "N m"));
@@ -396,7 +475,7 @@ fn the_end_of_a_moments_arrow_sets_it() {
     assert!(harness.state().simulation().solution().probes[0].u.y < 0.0);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(moment(harness.state()), less);
-    turn(&mut harness, -11.0, Modifiers::SHIFT);
+    turn(&mut harness, 20.0, Modifiers::SHIFT);
     assert_eq!(moment(harness.state()), 5e3);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
@@ -431,8 +510,9 @@ fn the_force_slider_spans_what_a_slender_body_can_bear() {
             x.hypot(y)
         };
         let [little, middle, much] = [0.12, 0.5, 0.97].map(&mut press);
-        assert!(little < 0.2 * own, "{id}: {own} N is among the first points: {little} N are");
-        assert!((0.02..50.0).contains(&(middle / own)), "{id}: {middle} N in the middle, for {own} N");
+        assert!(little < 0.4 * own, "{id}: {own} N is among the first points: {little} N are");
+        assert!((1.0..2.0).contains(&(middle / own)), "{id}: {middle} N in the middle, for {own} N");
+        assert!(press(1.0 / 3.0) < own && own < press(2.0 / 3.0), "{id}: {own} N is not in the middle third");
         assert!(much > 10.0 * own, "{id}: at most {much} N, for {own} N");
         assert!(press(0.0) == 0.0, "{id}: no force at the left end");
     }

@@ -3,22 +3,23 @@
 use egui::{Align, Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 use nalgebra::Vector2;
 
+use super::load_scale::{LoadScale, OpeningLoads};
 use super::overlay::{Projection, boxed_text};
 use crate::assembly::System;
 use crate::mesh::Mesh;
 use crate::scene::{Load, Material, Place, Scene};
-use crate::words::{engineering, three_digits};
+use crate::words::{engineering, round_down, three_digits};
 
 /// Length of an arrow without force, points: something to take hold of.
-const STUB: f64 = 22.0;
-/// Length of a decade of forces, points, where there is room for it, and in the smallest of views.
-const DECADE: [f64; 2] = [26.0, 5.0];
-/// The part of a view's shorter side that the arrow of the largest force may take.
-const SHARE: f64 = 0.3;
-/// Decades between the smallest force and the largest.
-const DECADES: f64 = 5.0;
-/// The smallest force over the largest that slider and arrow tell from zero.
-pub(super) const SMALLEST: f64 = 1e-5;
+const STUB: f64 = 16.0;
+/// Length of the arrow of the force that the scene opens with, points, in small views and in large ones: a pixel is 1 to 2 %.
+const OPENING: [f64; 2] = [50.0, 72.0];
+/// Length of a tenfold force beyond twice that, points, in small views and in large ones.
+const DECADE: [f64; 2] = [20.0, 60.0];
+/// The same lengths over the shorter side of a view, where that lies between.
+const SHARE: [f64; 2] = [0.12, 0.09];
+/// Least ratio between the largest force of a slider and the one that the scene opens with.
+pub(super) const LEAST_SPAN: f64 = 4.0;
 /// So near to a tip, points, a press takes hold of it.
 pub(super) const NEAR: f32 = 13.0;
 /// Directions snap to multiples of this while Shift is down, degrees.
@@ -48,11 +49,16 @@ pub(super) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
 /// what is slender, a thousand times the one that bends it by its length under linear theory.
 pub(super) fn largest_force(material: &Material, system: &System) -> f64 {
     const TIMES: f64 = 1e3;
+    let [bending, axial] = bending_force(material, system);
+    power_of_ten_above(axial.min(TIMES * bending))
+}
+
+/// Force that bends a body by its length under linear theory, and force that strains its section by 1, N.
+fn bending_force(material: &Material, system: &System) -> [f64; 2] {
     let [length, height] = system.strip();
     let axial = material.young * material.thickness * height;
     // 3EI/L² with I = t h³/12.
-    let bending = 0.25 * axial * (height / length).powi(2);
-    power_of_ten_above(axial.min(TIMES * bending))
+    [0.25 * axial * (height / length).powi(2), axial]
 }
 
 /// The power of ten that is not below a value; never too small or too large to count with.
@@ -62,32 +68,18 @@ pub(super) fn power_of_ten_above(value: f64) -> f64 {
     10f64.powf((value.clamp(1e-6, 1e14).log10() - ROUNDING).ceil())
 }
 
-/// Between a force and the length of its arrow: logarithmic, with a stub for no force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
-    /// The force, N, from which on lengths are logarithmic.
-    smallest: f64,
-    /// Length of ten times the force, points.
-    decade: f64,
+/// Scale of the arrows of a scene that opens with forces up to `usual`, N, in a view of this size, points.
+pub(super) fn scale(usual: f64, view: Vec2) -> LoadScale {
+    let side = f64::from(view.min_elem());
+    let within = |[low, high]: [f64; 2], share: f64| (share * side).clamp(low, high);
+    let [opening, decade] = SHARE;
+    LoadScale { usual, stub: STUB, opening: within(OPENING, opening), decade: within(DECADE, decade) }
 }
 
-impl Scale {
-    /// The scale of forces up to `largest`, N, in a view of this size, points; those beyond have longer arrows still.
-    pub(super) fn up_to(largest: f64, view: Vec2) -> Self {
-        let room = SHARE * f64::from(view.min_elem());
-        let [widest, narrowest] = DECADE;
-        Self { smallest: SMALLEST * largest, decade: ((room - STUB) / DECADES).clamp(narrowest, widest) }
-    }
-
-    /// Length, points, of the arrow of a force, N.
-    pub(super) fn length(self, magnitude: f64) -> f64 {
-        STUB + self.decade * (magnitude / self.smallest).ln_1p() / std::f64::consts::LN_10
-    }
-
-    /// The force, N, of an arrow that is so long, points.
-    pub(super) fn magnitude(self, length: f64) -> f64 {
-        self.smallest * ((length - STUB).max(0.0) * std::f64::consts::LN_10 / self.decade).exp_m1()
-    }
+/// Force, N, that arrows and sliders of a scene are scaled by: the largest it opens with, or, of a scene without forces, one
+/// that bends its body by a third of its length under linear theory.
+pub(super) fn usual_force(opening: OpeningLoads, material: &Material, system: &System) -> f64 {
+    opening.force.unwrap_or_else(|| round_down(0.3 * bending_force(material, system)[0]))
 }
 
 /// Where a load pulls: the middle of its edge, or its node; `None` where there is no such place.
@@ -109,9 +101,11 @@ pub(super) struct Arrow {
     pub from: Pos2,
     /// From there to the tip.
     pub way: Vec2,
-    scale: Scale,
+    scale: LoadScale,
     /// N.
     magnitude: f64,
+    /// Largest force that it can be dragged to, N.
+    largest: f64,
 }
 
 /// What arrows are of.
@@ -125,20 +119,25 @@ pub(super) struct Forces<'a> {
     pub time: f64,
     /// Direction of an arrow without force, degrees.
     pub direction: f64,
+    /// Loads that the scene opens with.
+    pub opening: OpeningLoads,
 }
 
 impl Forces<'_> {
     /// The arrows of all forces that pull at the present time.
     pub(super) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
         let mesh = self.system.mesh();
-        let scale = Scale::up_to(largest_force(&self.scene.material, self.system), projection.rect.size());
+        let material = &self.scene.material;
+        let usual = usual_force(self.opening, material, self.system);
+        let largest = largest_force(material, self.system).max(LEAST_SPAN * usual);
+        let scale = scale(usual, projection.rect.size());
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let arrows = shown.filter_map(|(load, of)| {
             let Load::Force { place, force, .. } = of else { return None };
             let from = projection.point(load_point(mesh, self.positions, place)?);
             let (magnitude, degrees) = polar_form(*force);
             let [x, y] = vector(scale.length(magnitude), degrees.unwrap_or(self.direction));
-            let arrow = Arrow { load, from, way: vec2(x as f32, -y as f32), scale, magnitude };
+            let arrow = Arrow { load, from, way: vec2(x as f32, -y as f32), scale, magnitude, largest };
             (arrow.from.is_finite() && arrow.way.is_finite()).then_some(arrow)
         });
         arrows.collect()
@@ -166,8 +165,8 @@ impl Arrow {
         // −0 and −180 are 0 and 180.
         let degrees = (degrees / step).round() * step + 0.0;
         // As far as the slider goes; a force beyond it, which was typed, can be made smaller only.
-        let most = self.magnitude.max(self.scale.smallest / SMALLEST);
-        let magnitude = three_digits(self.scale.magnitude(f64::from(way.length()))).min(most);
+        let most = self.magnitude.max(self.largest);
+        let magnitude = three_digits(self.scale.load(f64::from(way.length()))).min(most);
         (magnitude, if degrees == -180.0 { 180.0 } else { degrees })
     }
 
@@ -244,32 +243,15 @@ mod tests {
         assert_eq!(polar_form([0.0, 0.0]), (0.0, None));
     }
 
-    /// One mapping, both ways: every force has a length of its own, and ten times the force is a fixed piece longer.
+    /// The force that the scene opens with has an arrow whose pixels are 1 to 2 % each, in every view.
     #[test]
-    fn lengths_tell_forces_logarithmically() {
-        let scale = Scale::up_to(1e6, LARGE);
-        for magnitude in [0.0, 1e-3, 1.0, 12.0, 500.0, 3e4, 1e6, 1e9, 1e15] {
-            let back = scale.magnitude(scale.length(magnitude));
-            assert!((back - magnitude).abs() <= 1e-10 * (magnitude + 1.0), "{magnitude} {back}");
-        }
-        let decade = scale.length(1e5) - scale.length(1e4);
-        assert!((decade - DECADE[0]).abs() < 0.1, "{decade}");
-        assert_eq!((scale.length(0.0), scale.magnitude(STUB), scale.magnitude(0.0)), (STUB, 0.0, 0.0));
-        assert!(
-            (1..150).all(
-                |i| scale.length(10f64.powf(f64::from(i) * 0.1)) > scale.length(10f64.powf(f64::from(i - 1) * 0.1))
-            )
-        );
-    }
-
-    /// The largest force has an arrow that leaves room for the body, and differences that a pointer can make.
-    #[test]
-    fn small_views_have_short_arrows() {
-        let largest = 1e6;
-        for (side, most) in [(700.0, 155.0), (400.0, 121.0), (200.0, 61.0), (60.0, 50.0)] {
-            let scale = Scale::up_to(largest, vec2(2.0 * side, side));
-            assert!(scale.length(largest) < most, "{side}: {}", scale.length(largest));
-            assert!(scale.length(largest) - scale.length(0.1 * largest) > 4.0, "{side}");
+    fn a_pixel_is_one_or_two_percent_of_the_force() {
+        for side in [120.0, 340.0, 480.0, 700.0, 2000.0] {
+            let scale = scale(3e4, vec2(2.0 * side, side));
+            let rate = (scale.load(scale.opening + 1.0) - scale.load(scale.opening - 1.0)) / (2.0 * 3e4);
+            assert!((0.01..=0.0201).contains(&rate), "{side}: {rate}");
+            // The largest force of most sliders leaves room for the body.
+            assert!(scale.length(1e6) < 0.35 * f64::from(side).max(400.0), "{side}: {}", scale.length(1e6));
         }
     }
 
@@ -292,17 +274,18 @@ mod tests {
 
     #[test]
     fn a_dragged_tip_gives_round_numbers_and_shift_snaps() {
-        let scale = Scale::up_to(1e6, LARGE);
-        let arrow =
-            Arrow { load: 0, from: Pos2::ZERO, way: vec2(0.0, scale.length(1e3) as f32), scale, magnitude: 1e3 };
+        let scale = scale(1e3, LARGE);
+        let way = vec2(0.0, scale.length(1e3) as f32);
+        let arrow = Arrow { load: 0, from: Pos2::ZERO, way, scale, magnitude: 1e3, largest: 1e6 };
         assert_eq!(arrow.dragged(Vec2::ZERO, false), (1e3, DOWN));
-        let (more, direction) = arrow.dragged(vec2(0.0, DECADE[0] as f32), false);
-        assert!((more / 1e4 - 1.0).abs() < 0.02 && direction == DOWN, "{more} {direction}");
+        // Its own length further it is twice the force.
+        assert_eq!(arrow.dragged(way, false), (2e3, DOWN));
+        assert_eq!(arrow.dragged(vec2(0.0, 10.0), false), (1140.0, DOWN));
         let (_, direction) = arrow.dragged(vec2(20.0, 0.0), true);
         assert_eq!(direction, -75.0);
         assert_eq!(arrow.dragged(-arrow.way, false).0, 0.0);
         // As the slider, it ends at the largest force.
-        assert!((arrow.dragged(vec2(0.0, 500.0), false).0 / 1e6 - 1.0).abs() < 1e-9);
+        assert!((arrow.dragged(vec2(0.0, 900.0), false).0 / 1e6 - 1.0).abs() < 1e-9);
         // Straight to the left is +180, whichever side of it the tip is.
         let left = arrow.dragged(-arrow.way + vec2(-60.0, 1e-4), false);
         assert_eq!(left.1, 180.0);

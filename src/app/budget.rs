@@ -5,7 +5,7 @@ use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerSh
 
 use super::action::Action;
 use super::background::{Background, BackgroundError, News};
-use super::field::{Messages, NumberField};
+use super::field::{Messages, NumberField, SliderScale};
 use super::job::LISTEN;
 use super::language::{count, fill, joined, percent, tr, translated};
 use super::palette::Palette;
@@ -211,7 +211,7 @@ fn settings(
         tooltip: "At most so many milliseconds a solve from rest. A frame at 60 Hz has 16.",
         limit: limits::BUDGET_MS,
         slider: 1e-3..=1e3,
-        logarithmic: Some(1e-3),
+        scale: SliderScale::Logarithmic(1e-3),
         whole: false,
     };
     let error = NumberField {
@@ -219,7 +219,7 @@ fn settings(
         tooltip: "At most so many percent of the true displacement.",
         limit: limits::MAX_ERROR_PERCENT,
         slider: 1e-3..=100.0,
-        logarithmic: Some(1e-3),
+        scale: SliderScale::Logarithmic(1e-3),
         whole: false,
     };
     ui.columns_const(|[left, right]| {

@@ -60,6 +60,11 @@ impl Eye {
         self.whole
     }
 
+    /// `true` while it shows the whole body: nobody has moved it.
+    pub(super) fn shows_whole(&self) -> bool {
+        self.own.is_none()
+    }
+
     /// Back to the whole body.
     pub(super) fn fit(&mut self) {
         self.own = None;

@@ -8,6 +8,7 @@ use egui::{Align, DragValue, Id, Key, Layout, PointerButton, Response, Slider, S
 use thiserror::Error;
 
 use super::language::{fill, tr, translated};
+use super::load_scale::LoadScale;
 use crate::scene::OutOfRange;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
@@ -26,10 +27,21 @@ pub(super) struct NumberField {
     pub limit: Limit,
     /// What the slider spans. Typed values may lie outside, within the limit.
     pub slider: RangeInclusive<f64>,
-    /// Logarithmic, with the smallest value above zero that the slider can give.
-    pub logarithmic: Option<f64>,
+    /// Relation between its values and places on the slider.
+    pub scale: SliderScale,
     /// Whole numbers only.
     pub whole: bool,
+}
+
+/// Relation between the values of a slider and the places on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum SliderScale {
+    /// Proportional.
+    Linear,
+    /// Logarithmic from this smallest positive value on, and to the other side of zero.
+    Logarithmic(f64),
+    /// Proportional around this value, which is in the middle third, and logarithmic far beyond it: [`LoadScale`].
+    Around(f64),
 }
 
 /// Why a typed number is refused.
@@ -104,12 +116,8 @@ impl NumberField {
             })
             .inner;
         ui.spacing_mut().slider_width = ui.available_width();
-        let mut slid = value;
-        let mut slider = Slider::new(&mut slid, self.slider.clone()).clamping(SliderClamping::Never).show_value(false);
-        if let Some(smallest) = self.logarithmic {
-            slider = slider.logarithmic(true).smallest_positive(smallest);
-        }
-        let response = ui.add(slider).labelled_by(label.id);
+        let (response, slid) = self.show_slider(ui, value);
+        let response = response.labelled_by(label.id);
         if response.has_focus() && !response.dragged() {
             edited = self.stepped(ui, value).or(edited);
         } else if response.changed() {
@@ -142,6 +150,38 @@ impl NumberField {
         accepted.filter(|&new| new != value)
     }
 
+    /// Shows the slider; returns the value that it is moved to.
+    fn show_slider(&self, ui: &mut Ui, value: f64) -> (Response, f64) {
+        let mut slid = value;
+        let shown = |ui: &mut Ui, slider: Slider<'_>| ui.add(slider.clamping(SliderClamping::Never).show_value(false));
+        let (low, high) = (*self.slider.start(), *self.slider.end());
+        let response = match self.scale {
+            SliderScale::Linear => shown(ui, Slider::new(&mut slid, low..=high)),
+            SliderScale::Logarithmic(smallest) => {
+                shown(ui, Slider::new(&mut slid, low..=high).logarithmic(true).smallest_positive(smallest))
+            }
+            SliderScale::Around(usual) => {
+                let (start, scale) = match low < 0.0 {
+                    true => (-1.0, LoadScale::two_sided_slider(usual, high)),
+                    false => (0.0, LoadScale::slider(usual, high)),
+                };
+                let mut place = scale.length(value.abs()).copysign(value);
+                let response = shown(ui, Slider::new(&mut place, start..=1.0));
+                // Readers of the window name its value, not the place.
+                ui.ctx().accesskit_node_builder(response.id, |node| {
+                    node.set_numeric_value(value);
+                    node.set_min_numeric_value(low);
+                    node.set_max_numeric_value(high);
+                });
+                if response.changed() {
+                    slid = scale.load(place.abs()).copysign(place).clamp(low.min(value), high.max(value));
+                }
+                response
+            }
+        };
+        (response, slid)
+    }
+
     /// What it does, and how to have the original back.
     fn tip(&self, original: Option<f64>) -> String {
         let tip = tr(self.tooltip);
@@ -163,10 +203,11 @@ impl NumberField {
             return None;
         }
         let (low, high) = (*self.slider.start(), *self.slider.end());
-        let step = match self.logarithmic {
+        let step = match self.scale {
             _ if self.whole => 1.0,
-            Some(smallest) => (0.01 * value.abs()).max(smallest),
-            None => (high - low) / 360.0,
+            SliderScale::Logarithmic(smallest) => (0.01 * value.abs()).max(smallest),
+            SliderScale::Around(usual) => (0.01 * value.abs()).max(0.001 * usual),
+            SliderScale::Linear => (high - low) / 360.0,
         };
         let stepped = (value + steps * step).clamp(low.min(value), high.max(value));
         Some(if self.whole { stepped } else { three_digits(stepped) })

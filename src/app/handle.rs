@@ -4,7 +4,7 @@ use egui::{Color32, Painter, Pos2, Vec2};
 
 use super::arrow::{Arrow, Forces, NEAR, is_seen, load_point};
 use super::overlay::Projection;
-use super::turn::{Turn, largest_moment};
+use super::turn::{Turn, usual_moment};
 use crate::scene::{Load, Place};
 
 /// The end of a load's arrow.
@@ -56,6 +56,14 @@ impl Handle {
         }
     }
 
+    /// Place that the arrow begins at, or goes round.
+    pub(super) fn foot(&self) -> Pos2 {
+        match self {
+            Self::Force(arrow) => arrow.from,
+            Self::Moment(turn) => turn.center,
+        }
+    }
+
     /// What the load is to be after a drag.
     fn pull(&self, drag: Drag, snap: bool) -> Pull {
         match self {
@@ -88,19 +96,24 @@ pub(super) struct Grip {
     pub handle: Handle,
     pressed: Pos2,
     last: Pos2,
+    /// Way of the handle, points: shorter than that of the pointer while it is slow.
+    by: Vec2,
     turned: f64,
 }
 
 impl Grip {
     /// Taken here.
     pub(super) fn new(handle: Handle, pressed: Pos2) -> Self {
-        Self { handle, pressed, last: pressed, turned: 0.0 }
+        Self { handle, pressed, last: pressed, by: Vec2::ZERO, turned: 0.0 }
     }
 
-    /// The pointer goes on to here.
-    pub(super) fn follow(&mut self, at: Pos2) {
+    /// Moves it with the pointer, which is here now; a tenth of the way where it is `slow`.
+    pub(super) fn follow(&mut self, at: Pos2, slow: bool) {
+        const SLOW: f32 = 0.1;
+        let part = if slow { SLOW } else { 1.0 };
+        self.by += part * (at - self.last);
         if let Handle::Moment(turn) = self.handle {
-            self.turned += turn.angle_between(self.last, at);
+            self.turned += f64::from(part) * turn.angle_between(self.last, at);
         }
         self.last = at;
     }
@@ -109,8 +122,8 @@ impl Grip {
     pub(super) fn drag(&self) -> Option<Drag> {
         /// What has moved less than this, points, has not been dragged.
         const STILL: f32 = 2.0;
-        let by = self.last - self.pressed;
-        (by.length() >= STILL).then_some(Drag { by, turned: self.turned })
+        let way = self.last - self.pressed;
+        (way.length() >= STILL).then_some(Drag { by: self.by, turned: self.turned })
     }
 
     /// What the load is to be, where the handle has been dragged.
@@ -123,12 +136,12 @@ impl Forces<'_> {
     /// The circular arrows of all moments that act at the present time.
     pub(super) fn turns(&self, projection: &Projection) -> Vec<Turn> {
         let mesh = self.system.mesh();
-        let largest = largest_moment(&self.scene.material, self.system);
+        let usual = usual_moment(self.opening, &self.scene.material, self.system);
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let turns = shown.filter_map(|(load, of)| {
             let Load::Moment { edge, moment, .. } = of else { return None };
             let center = projection.point(load_point(mesh, self.positions, &Place::from(edge.as_str()))?);
-            center.is_finite().then(|| Turn::new(load, center, *moment, largest))
+            center.is_finite().then(|| Turn::new(load, center, *moment, usual))
         });
         turns.collect()
     }

@@ -24,6 +24,7 @@ use super::intro::Intro;
 use super::job::LISTEN;
 use super::language::{self, Language, fill, spaced, tr, translated};
 use super::learn::{self, Learn, Shown, Start};
+use super::load_scale::OpeningLoads;
 use super::mode::Mode;
 use super::overlay::{self, Overlay, Projection};
 use super::palette::{self, Palette};
@@ -126,6 +127,10 @@ pub struct Lab {
     /// The lowest natural frequency, Hz.
     frequency: Finder<f64>,
     playback: Playback,
+    /// Last equilibrium, shown in the place of what diverges.
+    converged: Option<Simulation>,
+    /// `true` while it is.
+    shows_converged: bool,
     /// Of a body in motion: all that it has swept, m.
     swept: Option<[Vector2<f64>; 2]>,
     recorder: Option<Recorder>,
@@ -190,6 +195,8 @@ impl Lab {
             compare: Compare::default(),
             frequency: Finder::new(natural_frequency),
             playback: Playback::default(),
+            converged: None,
+            shows_converged: false,
             swept: None,
             recorder: None,
             gallery: Gallery::default(),
@@ -355,6 +362,13 @@ impl Lab {
     pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
         let projection = Projection { camera: self.camera(), rect: self.view_rect };
         self.handles(&projection).iter().map(|handle| (handle.load(), handle.tip())).collect()
+    }
+
+    /// Places in the window, points, that the arrows of the loads begin at, or go round.
+    #[must_use]
+    pub fn arrow_feet(&self) -> Vec<egui::Pos2> {
+        let projection = Projection { camera: self.camera(), rect: self.view_rect };
+        self.handles(&projection).iter().map(Handle::foot).collect()
     }
 
     /// The camera of the last [`Self::ui`].
@@ -559,10 +573,44 @@ impl Lab {
     }
 
     fn update_shape(&mut self, visuals: &egui::Visuals) {
-        let simulation = self.intro.as_ref().map_or(&self.simulation, Intro::simulation);
+        self.keep_converged();
+        self.shows_converged = self.hides_divergence();
+        let own = self.converged.as_ref().filter(|_| self.shows_converged).unwrap_or(&self.simulation);
+        let simulation = self.intro.as_ref().map_or(own, Intro::simulation);
         // Colours that jump from frame to frame say nothing of a motion: its range only grows.
         self.shape.update(simulation, &self.drawing, &self.view, self.swept.is_some());
         self.shape.color(visuals, self.view.field);
+    }
+
+    /// Keeps a copy of a body that has come to rest.
+    fn keep_converged(&mut self) {
+        let simulation = &self.simulation;
+        let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
+        if *simulation.status() == Status::Converged && !self.converged.as_ref().is_some_and(is_kept) {
+            self.converged = simulation.snapshot();
+        }
+    }
+
+    /// `true` where the last equilibrium is to be drawn instead of a state that diverges. A card of the article shows the latter.
+    fn hides_divergence(&self) -> bool {
+        let simulation = &self.simulation;
+        let same_body = |kept: &Simulation| std::sync::Arc::ptr_eq(kept.system(), simulation.system());
+        if self.learn.is_some() || !self.converged.as_ref().is_some_and(same_body) {
+            return false;
+        }
+        match simulation.status() {
+            Status::Diverged(_) => true,
+            // Under the pointer it has not been given up yet.
+            Status::Running if !self.pointer.holds() || self.moves() => false,
+            Status::Running | Status::NotConverged(_) => {
+                let projection = Projection { camera: self.camera(), rect: self.view_rect };
+                let mut places =
+                    simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+                let leaves = |place| !self.view_rect.contains(projection.point(place));
+                simulation.residual() > 1.0 || self.eye.shows_whole() && places.any(leaves)
+            }
+            _ => false,
+        }
     }
 
     /// What toolbar, panel and headlines show.
@@ -572,6 +620,7 @@ impl Lab {
             jump: self.jump.get(),
             equilibrium_rho: self.learn.as_ref().and_then(|learn| learn.rho()),
             quality: &self.quality,
+            shows_converged: self.shows_converged,
             scene: &self.scene,
             original: &self.document.original,
             scene_name: self.document.source.name.to_str().unwrap_or_default(),
@@ -788,6 +837,7 @@ impl Lab {
             view,
             running: self.running,
             direction: self.panel.force_direction(),
+            opening: OpeningLoads::of(&self.document.original),
             eases: self.eases,
             chosen: budget.chosen(),
         };
@@ -926,7 +976,7 @@ impl Lab {
         }
         let painter = ui.painter_at(rect);
         let errors = verdict::errors(&self.input());
-        let (words, bad) = verdict::status_words(&self.simulation, true);
+        let (words, bad) = verdict::status_words(&self.simulation, true, self.shows_converged);
         let shown = self.intro.as_ref().map_or(&self.simulation, Intro::simulation);
         let moves = self.simulation.problem().supports().move_the_body();
         let reactions = if moves { self.simulation.support_reactions() } else { Vec::new() };
@@ -943,6 +993,7 @@ impl Lab {
             errors: if self.intro.is_some() { Errors::default() } else { errors },
             time: shown.state().time(),
             direction: self.panel.force_direction(),
+            opening: OpeningLoads::of(&self.document.original),
             hot: self.pointer.hot_handle(),
             hand: self.simulation.hand(),
             playback: &self.playback,
@@ -993,11 +1044,10 @@ impl Lab {
         let is_low = rect.height() < 220.0;
         let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
         let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
-        let area = egui::Area::new(egui::Id::unique("status"))
-            .order(egui::Order::Middle)
-            .fixed_pos(rect.left_bottom() + egui::vec2(14.0, -above))
-            .pivot(egui::Align2::LEFT_BOTTOM)
-            .constrain_to(rect);
+        let id = egui::Id::unique("status");
+        let size = egui::AreaState::load(ui.ctx(), id).and_then(|state| state.size).unwrap_or_default();
+        let (pivot, at) = self.place_off_handles(rect, above, size);
+        let area = egui::Area::new(id).order(egui::Order::Middle).fixed_pos(at).pivot(pivot).constrain_to(rect);
         area.show(ui.ctx(), |ui| {
             ui.set_max_width(WIDEST.min(rect.width() - 28.0));
             if self.view.why {
@@ -1039,6 +1089,25 @@ impl Lab {
                 });
             });
         });
+    }
+
+    /// Corner and place of a message of this size: the lower left of the view, or another corner where that hides the tip of
+    /// an arrow.
+    fn place_off_handles(&self, view: Rect, above: f32, size: egui::Vec2) -> (egui::Align2, egui::Pos2) {
+        const SIDE: f32 = 14.0;
+        const CLEAR: f32 = 16.0;
+        let low = overlay::LEGEND_HEIGHT + 10.0;
+        let tips: Vec<egui::Pos2> = self.arrow_tips().into_iter().map(|(_, tip)| tip).collect();
+        let corners = [
+            (egui::Align2::LEFT_BOTTOM, view.left_bottom() + egui::vec2(SIDE, -above)),
+            (egui::Align2::RIGHT_BOTTOM, view.right_bottom() + egui::vec2(-SIDE, -low)),
+            (egui::Align2::LEFT_TOP, view.left_top() + egui::vec2(SIDE, 44.0)),
+        ];
+        let is_clear = |(pivot, at): &(egui::Align2, egui::Pos2)| {
+            let message = pivot.anchor_size(*at, size).expand(CLEAR);
+            !tips.iter().any(|tip| message.contains(*tip))
+        };
+        corners.into_iter().find(is_clear).unwrap_or(corners[0])
     }
 
     /// The true outline, m, where it is known of what is shown.
@@ -1087,6 +1156,7 @@ impl Lab {
             positions: &self.shape.nodes,
             time: self.simulation.state().time(),
             direction: self.panel.force_direction(),
+            opening: OpeningLoads::of(&self.document.original),
         }
     }
 
@@ -1119,16 +1189,21 @@ impl Lab {
         (self.view.field, self.shape.value_at(&self.view, mesh, point))
     }
 
+    /// The body that is drawn, but for an intro.
+    fn shown(&self) -> &Simulation {
+        self.converged.as_ref().filter(|_| self.shows_converged).unwrap_or(&self.simulation)
+    }
+
     /// Shows the values under the pointer, and those at the point that is kept.
     fn show_values(&mut self, ui: &Ui, painter: &egui::Painter) {
         if let Some((point, at)) = self.pointer.over_body() {
             let mesh = self.simulation.system().mesh();
-            if let Some(u) = probe::place(mesh, self.simulation.displacement(), point) {
+            if let Some(u) = probe::place(mesh, self.shown().displacement(), point) {
                 probe::paint_hover(ui, painter, at, self.field_at(point), u);
             }
         }
         let Some(point) = self.probe else { return };
-        let (Some(state), Some(at)) = (self.simulation.point_state(point), self.in_view(point)) else { return };
+        let (Some(state), Some(at)) = (self.shown().point_state(point), self.in_view(point)) else { return };
         if probe::show_card(ui, painter, self.view_rect, at, self.field_at(point), &state) {
             self.probe = None;
         }
@@ -1142,7 +1217,11 @@ impl Lab {
             return;
         }
         let status = self.simulation.status();
-        let is_sound = if self.moves() { !matches!(status, Status::Stopped(_)) } else { *status == Status::Converged };
+        let is_sound = if self.moves() {
+            !matches!(status, Status::Stopped(_))
+        } else {
+            *status == Status::Converged || self.shows_converged
+        };
         if is_sound {
             let (mut low, mut high) = self.simulation.system().mesh().bounds();
             if let (Some([swept_low, swept_high]), true) = (self.swept, self.moves()) {

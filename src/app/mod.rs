@@ -33,6 +33,7 @@ pub mod lab;
 mod language;
 mod learn;
 mod legend;
+mod load_scale;
 mod mode;
 mod motion_plot;
 mod overlay;

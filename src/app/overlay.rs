@@ -9,6 +9,7 @@ use super::drawing::Drawing;
 use super::handle::HotHandle;
 use super::language::{percent, tr};
 use super::legend::Mark;
+use super::load_scale::OpeningLoads;
 use super::palette::{BODY, Palette, SMALL};
 use super::playback::Playback;
 use super::verdict::Errors;
@@ -40,6 +41,8 @@ pub(super) struct Overlay<'a> {
     pub time: f64,
     /// Direction of an arrow without force, degrees.
     pub direction: f64,
+    /// Loads that the scene opens with.
+    pub opening: OpeningLoads,
     /// The arrow whose tip the pointer is on, or has taken and dragged so far.
     pub hot: Option<HotHandle>,
     /// The hand that pulls, and its force, N.
@@ -315,7 +318,7 @@ fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
     /// Length of the arrow of a weight, which tells its direction only, points.
     const WEIGHT: f32 = 58.0;
     let Overlay { scene, system, positions, time, .. } = *overlay;
-    let forces = Forces { scene, system, positions, time, direction: overlay.direction };
+    let forces = Forces { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
     let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
     for arrow in forces.arrows(projection) {
         arrow.paint(painter, palette.load, visuals, is_hot(arrow.load));

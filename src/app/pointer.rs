@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{CursorIcon, Pos2, Response, Ui, Vec2};
+use egui::{CursorIcon, Modifiers, Pos2, Response, Ui, Vec2};
 use nalgebra::Vector2;
 
 use super::handle::{self, Grip, Handle, HotHandle, Pull};
@@ -124,7 +124,7 @@ impl Pointer {
 
     /// Follows the pointer over the view that `response` belongs to.
     pub(super) fn follow(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, mut body: Body<'_>) -> Wish {
-        let (pressed, origin, down, at, let_go_at, fingers, snap) = ui.input(|i| {
+        let (pressed, origin, down, at, let_go_at, fingers, keys) = ui.input(|i| {
             let pointer = &i.pointer;
             let fingers = i.multi_touch().map(|touch| touch.translation_delta);
             let (pressed, down) = (pointer.primary_pressed(), pointer.primary_down());
@@ -134,7 +134,7 @@ impl Pointer {
                 }
                 _ => None,
             });
-            (pressed, pointer.press_origin(), down, pointer.interact_pos(), let_go_at, fingers, i.modifiers.shift)
+            (pressed, pointer.press_origin(), down, pointer.interact_pos(), let_go_at, fingers, i.modifiers)
         });
         self.at = at;
         let mut wish = Wish::default();
@@ -148,7 +148,7 @@ impl Pointer {
         }
         // After it was let go the pointer may have moved on, too.
         if let Some(at) = let_go_at.or(at) {
-            self.drag(response, reach, &mut body, (at, snap), &mut wish);
+            self.drag(response, reach, &mut body, (at, keys), &mut wish);
         }
         if response.double_clicked() {
             match self.held {
@@ -198,13 +198,13 @@ impl Pointer {
         response: &Response,
         reach: &Reach<'_>,
         body: &mut Body<'_>,
-        (at, snap): (Pos2, bool),
+        (at, keys): (Pos2, Modifiers),
         wish: &mut Wish,
     ) {
         match &mut self.held {
             Held::Tip(grip) => {
-                grip.follow(at);
-                wish.load = grip.pull(snap).map(|pull| (grip.handle.load(), pull));
+                grip.follow(at, keys.alt || keys.ctrl);
+                wish.load = grip.pull(keys.shift).map(|pull| (grip.handle.load(), pull));
             }
             Held::Body(_) => {
                 let Body::InHand(simulation, playback) = body else { return };

@@ -1,10 +1,11 @@
 //! The circular arrow of a moment: how far it goes round, where its end is, and which moment a dragged end asks for.
 
-use std::f64::consts::{LN_10, TAU};
+use std::f64::consts::TAU;
 
 use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 
 use super::arrow::{NEAR, power_of_ten_above};
+use super::load_scale::{LoadScale, OpeningLoads};
 use super::overlay::boxed_text;
 use crate::assembly::System;
 use crate::scene::Material;
@@ -13,20 +14,32 @@ use crate::words::{engineering, round_down, three_digits};
 /// Radius where it begins, points; it grows by the pitch with every turn, so that no turn covers another.
 const RADIUS: f64 = 24.0;
 const PITCH: f64 = 9.0;
-/// How far the arrow without moment goes round, and a decade of moments, rad.
+/// Angle of the arrow without moment, rad.
 const STUB: f64 = TAU / 12.0;
-const DECADE: f64 = TAU / 6.0;
+/// Angle of the arrow of the moment that the scene opens with, rad: a pixel of its arc is 1.5 %.
+const OPENING: f64 = 0.375 * TAU;
+/// Angle of a tenfold moment beyond twice that, rad.
+const DECADE: f64 = TAU / 4.0;
 /// Where it begins, as an angle in the plane, rad.
 const START: f64 = TAU / 8.0;
-/// The smallest moment over the largest that slider and arrow tell from zero.
-pub(super) const SMALLEST: f64 = 1e-4;
 /// So near to the middle, points, a pointer says nothing of an angle.
 const MIDDLE: f32 = 5.0;
 
 /// What rolls the rest shape up once, 2πEI/L, N m, rounded up to a power of ten.
 pub(super) fn largest_moment(material: &Material, system: &System) -> f64 {
+    power_of_ten_above(rolling_moment(material, system))
+}
+
+/// Moment that rolls a straight body up once, N m.
+fn rolling_moment(material: &Material, system: &System) -> f64 {
     let [length, height] = system.strip();
-    power_of_ten_above(TAU * material.young * material.thickness * height.powi(3) / (12.0 * length))
+    TAU * material.young * material.thickness * height.powi(3) / (12.0 * length)
+}
+
+/// Moment, N m, that arrows and sliders of a scene are scaled by: the largest it opens with, or, of a scene without moments, a
+/// tenth of what rolls the body up.
+pub(super) fn usual_moment(opening: OpeningLoads, material: &Material, system: &System) -> f64 {
+    opening.moment.unwrap_or_else(|| round_down(0.1 * rolling_moment(material, system)))
 }
 
 /// The circular arrow of a moment, in the window.
@@ -37,25 +50,24 @@ pub(super) struct Turn {
     pub center: Pos2,
     /// N m, counter-clockwise.
     moment: f64,
-    /// The moment, N m, from which on angles are logarithmic.
-    smallest: f64,
+    scale: LoadScale,
 }
 
 impl Turn {
-    /// That of a moment, N m, on a body whose moments go up to `largest`.
-    pub(super) fn new(load: usize, center: Pos2, moment: f64, largest: f64) -> Self {
-        Self { load, center, moment, smallest: SMALLEST * largest }
+    /// Arrow of a moment, N m, in a scene that opens with moments up to `usual`.
+    pub(super) fn new(load: usize, center: Pos2, moment: f64, usual: f64) -> Self {
+        Self { load, center, moment, scale: LoadScale { usual, stub: STUB, opening: OPENING, decade: DECADE } }
     }
 
     /// How far it goes round, rad, counter-clockwise.
     fn sweep(&self) -> f64 {
-        let size = STUB + DECADE * (self.moment.abs() / self.smallest).ln_1p() / LN_10;
+        let size = self.scale.length(self.moment.abs());
         if self.moment < 0.0 { -size } else { size }
     }
 
     /// The moment, N m, of an arrow that goes so far round, rad.
     fn moment_of(&self, sweep: f64) -> f64 {
-        sweep.signum() * self.smallest * ((sweep.abs() - STUB).max(0.0) * LN_10 / DECADE).exp_m1()
+        sweep.signum() * self.scale.load(sweep.abs())
     }
 
     /// Where it is after going so far round, rad, and the direction it goes on in, for one counter-clockwise.
@@ -141,27 +153,35 @@ mod tests {
     use super::*;
 
     fn turn(moment: f64) -> Turn {
-        Turn::new(0, egui::pos2(100.0, 100.0), moment, 1e5)
+        Turn::new(0, egui::pos2(100.0, 100.0), moment, 1e4)
     }
 
-    /// One mapping, both ways: every moment has an angle of its own, and ten times the moment is a fixed angle further.
+    /// One mapping, both ways and in both senses; twice the opening angle is twice the moment.
     #[test]
-    fn angles_tell_moments_logarithmically() {
+    fn angles_tell_moments() {
         for moment in [0.0, 1e-3, -1.0, 12.0, -500.0, 3e4, 1e5, -1e7] {
             let back = turn(moment).moment_of(turn(moment).sweep());
             assert!((back - moment).abs() <= 1e-9 * (moment.abs() + 1e-3), "{moment} {back}");
         }
-        let decade = turn(1e5).sweep() - turn(1e4).sweep();
-        assert!((decade - DECADE).abs() < 1e-3, "{decade}");
+        assert!((turn(2e4).sweep() - 2.0 * turn(1e4).sweep()).abs() < 1e-12);
         assert!((turn(-1e4).sweep() + turn(1e4).sweep()).abs() < 1e-12);
         assert_eq!(turn(0.0).moment_of(0.0), 0.0);
+    }
+
+    /// A pixel along the arc of the moment that the scene opens with is 1 to 2 % of it.
+    #[test]
+    fn a_pixel_is_one_or_two_percent_of_the_moment() {
+        let arrow = turn(1e4);
+        let radius = RADIUS + PITCH * arrow.sweep() / TAU;
+        let rate = (arrow.moment_of(arrow.sweep() + 1.0 / radius) / 1e4) - 1.0;
+        assert!((0.01..=0.02).contains(&rate), "{rate}");
     }
 
     #[test]
     fn a_dragged_end_gives_round_numbers_and_shift_snaps() {
         let arrow = turn(1e4);
         assert_eq!(arrow.dragged(0.0, false), 1e4);
-        assert!((arrow.dragged(DECADE, false) / 1e5 - 1.0).abs() < 0.01);
+        assert_eq!(arrow.dragged(arrow.sweep(), false), 2e4);
         // Back through nothing to the other sense.
         assert_eq!(arrow.dragged(-arrow.sweep(), false), 0.0);
         assert!((arrow.dragged(-2.0 * arrow.sweep(), false) / -1e4 - 1.0).abs() < 0.01);

@@ -79,8 +79,8 @@ pub(super) fn is_stale(input: &PanelInput<'_>) -> bool {
         && simulation.displacement().iter().any(|u| u.norm() > 0.0)
 }
 
-/// The status as a sentence, and whether it is a bad one.
-pub(super) fn status_words(simulation: &Simulation, running: bool) -> (String, bool) {
+/// The status as a sentence, and whether it is a bad one. The last equilibrium is drawn where it `shows_converged`.
+pub(super) fn status_words(simulation: &Simulation, running: bool, shows_converged: bool) -> (String, bool) {
     let moves = simulation.motion().is_some();
     let said = |reason: &dyn std::fmt::Display| translated(&reason.to_string());
     match simulation.status() {
@@ -90,7 +90,13 @@ pub(super) fn status_words(simulation: &Simulation, running: bool) -> (String, b
         Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
         Status::Running | Status::Finished => (tr("Iterating").to_owned(), false),
         Status::Converged => (tr("Converged").to_owned(), false),
+        Status::NotConverged(reason) if shows_converged => {
+            (fill!("Not converged: %{reason}. Shown is the last equilibrium.", reason = said(reason)), true)
+        }
         Status::NotConverged(reason) => (fill!("Not converged: %{reason}.", reason = said(reason)), true),
+        Status::Diverged(reason) if shows_converged => {
+            (fill!("Diverged: %{reason}. Shown is the last equilibrium.", reason = said(reason)), true)
+        }
         Status::Diverged(reason) => {
             (fill!("Diverged: %{reason}. Shown is the last finite state.", reason = said(reason)), true)
         }
@@ -103,7 +109,7 @@ pub(super) fn status_words(simulation: &Simulation, running: bool) -> (String, b
 /// The status in a line: `Converged · stable · 21 iterations`; and whether it is a bad one.
 pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
     let simulation = input.simulation;
-    let (mut words, bad) = status_words(simulation, input.running);
+    let (mut words, bad) = status_words(simulation, input.running, input.shows_converged);
     if bad {
         return (words, true);
     }

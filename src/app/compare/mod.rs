@@ -19,6 +19,7 @@ use super::headline::{semibold, truth_words};
 use super::job::LISTEN;
 use super::language::{count, fill, percent, sentence, tr, translated};
 use super::legend::Mark;
+use super::load_scale::OpeningLoads;
 use super::overlay::{self, Overlay, Projection};
 use super::palette::{BODY, HEADLINE, Palette, SMALL};
 use super::playback::Playback;
@@ -69,6 +70,8 @@ pub(super) struct CompareInput<'a> {
     pub running: bool,
     /// Direction of a force's arrow without force, degrees.
     pub direction: f64,
+    /// Loads that the scene opens with.
+    pub opening: OpeningLoads,
     /// Whether the view takes its time on the way to where it looks.
     pub eases: bool,
     /// What the budget has chosen.
@@ -394,7 +397,7 @@ impl Compare {
     /// Points kept free around the bodies when the view is fitted: room for supports, the loads' arrows and their words.
     fn margins(&self, input: &CompareInput<'_>, [width, height]: [f64; 2]) -> Margins {
         let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
-        let forces = self.panes.first().and_then(|pane| pane.forces(input.direction));
+        let forces = self.panes.first().and_then(|pane| pane.forces(input.direction, input.opening));
         let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
         let longest = |along: fn(egui::Vec2) -> f32| {
             arrows.iter().flatten().map(|arrow| f64::from(along(arrow.way))).fold(0.0, f64::max)
@@ -509,7 +512,7 @@ impl Compare {
         let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
         // What is no answer has no values.
         let system = pane.system().filter(|_| pane.is_sound() && !pane.is_outdated()).cloned();
-        let forces = pane.forces(input.direction);
+        let forces = pane.forces(input.direction, input.opening);
         let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&Projection { camera, rect: place }));
         let reach = Reach {
             mesh: system.as_ref().map(|system| system.mesh()),
@@ -545,6 +548,7 @@ impl Compare {
                 errors: Errors::default(),
                 time: 0.0,
                 direction: input.direction,
+                opening: input.opening,
                 hot: pane.pointer.hot_handle(),
                 hand: None,
                 reactions: &[],

@@ -13,6 +13,7 @@ use crate::app::action::ViewOptions;
 use crate::app::arrow::Forces;
 use crate::app::drawing::Drawing;
 use crate::app::job::{Heard, Job};
+use crate::app::load_scale::OpeningLoads;
 use crate::app::overlay::Projection;
 use crate::app::pointer::Pointer;
 use crate::app::probe;
@@ -233,9 +234,9 @@ impl Pane {
     }
 
     /// Its loads, as last drawn.
-    pub(super) fn forces(&self, direction: f64) -> Option<Forces<'_>> {
+    pub(super) fn forces(&self, direction: f64, opening: OpeningLoads) -> Option<Forces<'_>> {
         let (scene, system) = (self.wanted.as_ref()?, self.system.as_ref()?);
-        Some(Forces { scene, system, positions: &self.shape.nodes, time: 0.0, direction })
+        Some(Forces { scene, system, positions: &self.shape.nodes, time: 0.0, direction, opening })
     }
 
     /// Where at rest, m, the point of the body under the pointer is, and where the pointer is.

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use super::{Learn, Shown, triangle};
 use crate::app::action::Action;
-use crate::app::field::NumberField;
+use crate::app::field::{NumberField, SliderScale};
 use crate::app::language::{fill, percent, tr};
 use crate::app::palette::{HEADLINE, Palette, SMALL};
 use crate::scene::limits::Limit;
@@ -47,7 +47,7 @@ fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Ac
         tooltip: "The size of the force on the tip",
         limit: Limit { unit: "N", min: 1.0, max: 1e6 },
         slider: 1e3..=4e4,
-        logarithmic: None,
+        scale: SliderScale::Linear,
         whole: false,
     };
     let size = x.hypot(y);

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, number_row};
 use crate::app::action::MOST_ITERATIONS;
-use crate::app::field::{NumberField, show_message};
+use crate::app::field::{NumberField, SliderScale, show_message};
 use crate::app::language::{count, joined, tr};
 use crate::app::toolbar::option_button;
 use crate::scene::{Analysis, Material, Plane, Scene, limits};
@@ -72,7 +72,7 @@ pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelSta
             tooltip: "Young's modulus, Pa: the stiffness. Rubber 1e6, wood 1e10, steel 2e11.",
             limit: limits::YOUNG,
             slider: 1e3..=1e12,
-            logarithmic: Some(1e3),
+            scale: SliderScale::Logarithmic(1e3),
             whole: false,
         },
         |s| s.material.young,
@@ -84,7 +84,7 @@ pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelSta
             tooltip: "Poisson ratio: how much it thins when pulled. 0.5 keeps the volume; plane strain stops before it.",
             limit: m.plane.poisson_limit(),
             slider: -0.5..=0.499,
-            logarithmic: None,
+            scale: SliderScale::Linear,
             whole: false,
         },
         |s| s.material.poisson,
@@ -96,7 +96,7 @@ pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelSta
             tooltip: "Density, kg/m³: weight, and inertia in motion.",
             limit: limits::DENSITY,
             slider: 0.0..=20_000.0,
-            logarithmic: Some(1.0),
+            scale: SliderScale::Logarithmic(1.0),
             whole: false,
         },
         |s| s.material.density,
@@ -108,7 +108,7 @@ pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelSta
             tooltip: "Thickness out of the plane, m: stiffness and weight grow with it.",
             limit: limits::THICKNESS,
             slider: 1e-3..=10.0,
-            logarithmic: Some(1e-3),
+            scale: SliderScale::Logarithmic(1e-3),
             whole: false,
         },
         |s| s.material.thickness,
@@ -141,7 +141,7 @@ pub(super) fn mesh(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             tooltip,
             limit: limits::CELLS,
             slider: 1.0..=most,
-            logarithmic: Some(1.0),
+            scale: SliderScale::Logarithmic(1.0),
             whole: true,
         };
         let Some(beam) = &scene.beam else { continue };
@@ -162,7 +162,7 @@ pub(super) fn mesh(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
         tooltip: "Iterations a displayed frame: more converge in fewer frames, which take longer.",
         limit: limits::Limit { unit: "", min: 1.0, max: f64::from(MOST_ITERATIONS) },
         slider: 1.0..=20.0,
-        logarithmic: None,
+        scale: SliderScale::Linear,
         whole: true,
     };
     if let Some(new) = field.show(ui, &mut state.messages, f64::from(input.iterations)) {

@@ -3,13 +3,17 @@
 use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, edges};
-use crate::app::arrow::{DOWN, SMALLEST, largest_force, polar_form, vector};
-use crate::app::field::NumberField;
+use crate::app::arrow::{DOWN, LEAST_SPAN, largest_force, polar_form, usual_force, vector};
+use crate::app::field::{NumberField, SliderScale};
 use crate::app::language::{joined, tr};
-use crate::app::turn::{self, largest_moment};
+use crate::app::load_scale::OpeningLoads;
+use crate::app::turn::{largest_moment, usual_moment};
 use crate::assembly::System;
 use crate::scene::{Load, Scene, limits};
 use crate::words::engineering;
+
+/// Acceleration of free fall on earth, m/s².
+const EARTH: f64 = 9.81;
 
 fn force_of(scene: &Scene) -> Option<[f64; 2]> {
     scene.loads.iter().find_map(|l| match l {
@@ -46,13 +50,15 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
     let (magnitude, direction) = polar_form(force_of(scene).unwrap_or_default());
     let (original, original_direction) = polar_form(force_of(input.original).unwrap_or_default());
     let direction = direction.unwrap_or(state.force_direction());
-    let largest = largest_force(&scene.material, input.simulation.system());
+    let (material, system) = (&scene.material, input.simulation.system());
+    let usual = usual_force(OpeningLoads::of(input.original), material, system);
+    let largest = largest_force(material, system).max(LEAST_SPAN * usual);
     let field = NumberField {
         label: "Force",
         tooltip: "Magnitude of the force, N. Type a number for values the slider has not, such as 12 kN.",
         limit: limits::FORCE,
         slider: 0.0..=largest,
-        logarithmic: Some(SMALLEST * largest),
+        scale: SliderScale::Around(usual),
         whole: false,
     };
     if let Some(new) = field.show_beside(ui, &mut state.messages, magnitude, Some(original)) {
@@ -64,7 +70,7 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
         tooltip: "Direction of the force: 0° right, 90° up, −90° down.",
         limit: limits::DIRECTION,
         slider: -180.0..=180.0,
-        logarithmic: None,
+        scale: SliderScale::Linear,
         whole: false,
     };
     let original = original_direction.map(shown_degrees);
@@ -84,27 +90,30 @@ pub(super) fn gravity_and_moment(
     let scene = input.scene;
     let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
     let direction = direction.or(state.gravity_direction).unwrap_or(DOWN);
+    let original = polar_form(gravity_of(input.original).unwrap_or_default()).0;
+    let usual = if original > 0.0 { original } else { EARTH };
     let field = NumberField {
         label: "Gravity",
         tooltip: "Acceleration that gives the body its weight, m/s²; 9.81 on earth, 0 for none.",
         limit: limits::ACCELERATION,
         slider: 0.0..=1000.0,
-        logarithmic: Some(0.01),
+        scale: SliderScale::Around(usual),
         whole: false,
     };
-    let original = polar_form(gravity_of(input.original).unwrap_or_default()).0;
     if let Some(new) = field.show_beside(ui, &mut state.messages, magnitude, Some(original)) {
         state.gravity_direction = Some(direction);
         actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
     }
     let current = moment_of(scene);
-    let largest = largest_moment(&scene.material, input.simulation.system());
+    let (material, system) = (&scene.material, input.simulation.system());
+    let usual = usual_moment(OpeningLoads::of(input.original), material, system);
+    let largest = largest_moment(material, system).max(LEAST_SPAN * usual);
     let field = NumberField {
         label: "Moment",
         tooltip: "Moment on an edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
         limit: limits::MOMENT,
         slider: -largest..=largest,
-        logarithmic: Some(turn::SMALLEST * largest),
+        scale: SliderScale::Around(usual),
         whole: false,
     };
     let original = moment_of(input.original).unwrap_or(0.0);

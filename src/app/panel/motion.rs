@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, number_row, picker};
-use crate::app::field::{NumberField, show_message};
+use crate::app::field::{NumberField, SliderScale, show_message};
 use crate::app::language::{fill, joined, tr};
 use crate::app::toolbar::option_button;
 use crate::dynamics::INTEGRATORS;
@@ -68,7 +68,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             tooltip: "Length of a step, s. Half of it: twice the work, a quarter of the error at second order.",
             limit: limits::TIME_STEP,
             slider: 1e-4..=0.1,
-            logarithmic: Some(1e-4),
+            scale: SliderScale::Logarithmic(1e-4),
             whole: false,
         },
         |s| s.dynamics.time_step,
@@ -80,7 +80,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             tooltip: "Solves a stage; 0: as many as the tolerance needs.",
             limit: limits::Limit { unit: "", min: 0.0, max: 20.0 },
             slider: 0.0..=4.0,
-            logarithmic: None,
+            scale: SliderScale::Linear,
             whole: true,
         },
         |s| f64::from(s.dynamics.iterations),
@@ -92,7 +92,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             tooltip: "Damping by mass, 1/s: slows everything down, as air does. Velocities fall by a factor e in 2/a seconds.",
             limit: limits::MASS_DAMPING,
             slider: 0.0..=10.0,
-            logarithmic: Some(1e-3),
+            scale: SliderScale::Logarithmic(1e-3),
             whole: false,
         },
         |s| s.dynamics.damping.mass,
@@ -104,7 +104,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
             tooltip: "Damping by stiffness, s: stops vibrations inside the body, the fast ones first; turning is not damped.",
             limit: limits::STIFFNESS_DAMPING,
             slider: 0.0..=1.0,
-            logarithmic: Some(1e-5),
+            scale: SliderScale::Logarithmic(1e-5),
             whole: false,
         },
         |s| s.dynamics.damping.stiffness,

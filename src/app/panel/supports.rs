@@ -3,7 +3,7 @@
 use egui::{ComboBox, Id, Ui};
 
 use super::{Action, PanelInput, PanelState};
-use crate::app::field::NumberField;
+use crate::app::field::{NumberField, SliderScale};
 use crate::app::language::{fill, joined, tr};
 use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
@@ -80,7 +80,7 @@ pub(super) fn show(
             tooltip,
             limit: limits::COORDINATE,
             slider: -reach..=reach,
-            logarithmic: None,
+            scale: SliderScale::Linear,
             whole: false,
         };
         let original = original.map(|support| support.displacement[component]);
@@ -95,7 +95,7 @@ pub(super) fn show(
             tooltip: "How far the support turns its edge about its middle, counter-clockwise: in degrees, or 0.5 rad.",
             limit: Limit { unit: "°", min: limits::TURN.min.to_degrees(), max: limits::TURN.max.to_degrees() },
             slider: -180.0..=180.0,
-            logarithmic: None,
+            scale: SliderScale::Linear,
             whole: false,
         };
         let original = original.map(|support| support.turn.to_degrees());

@@ -3,7 +3,7 @@
 use egui::{ComboBox, Ui};
 
 use super::{Action, PanelInput, PanelState, ViewOptions};
-use crate::app::field::NumberField;
+use crate::app::field::{NumberField, SliderScale};
 use crate::app::language::{joined, tr};
 use crate::scene::{Analysis, Scene, limits};
 use crate::simulation::{Field, Simulation};
@@ -51,7 +51,7 @@ pub(super) fn options(
                 tooltip: "An end of the colour map",
                 limit: span,
                 slider: slider.clone(),
-                logarithmic: None,
+                scale: SliderScale::Linear,
                 whole: false,
             };
             if let Some(new) = field.show(ui, &mut state.messages, range[end]) {
