@@ -1094,3 +1094,15 @@ fn auto_keeps_the_mesh_and_its_answer() {
     let gone = warpbeam(&["solve", "article", "--set", "solver.budget_ms=1"]);
     assert_eq!(gone.status.code(), Some(2));
 }
+
+/// What a study measures with a number of iterations is what `solve` gives with them: the scene says when to stop.
+#[test]
+fn an_accepted_result_is_a_success() {
+    let args = ["solve", "cantilever", "--json", "--set", "solver.accept_after=3"];
+    let output = warpbeam(&args);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!((json["status"].as_str(), json["iterations"].as_u64()), (Some("accepted"), Some(3)));
+    let output = warpbeam(&["solve", "cantilever", "--set", "solver.accept_after=3"]);
+    assert!(stdout(&output).contains("accepted after 3 iterations"), "{}", stdout(&output));
+}

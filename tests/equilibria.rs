@@ -483,3 +483,31 @@ fn a_support_on_what_has_moved_starts_over() {
     simulation.change_scene(&scene.clone().support([0.0, 0.5], &[Axis::X])).unwrap();
     assert!(simulation.displacement().iter().any(|u| u.norm() > 0.0), "it holds what was held");
 }
+
+/// A scene that accepts its result after some iterations has the state that a search has then, and says so; one that has
+/// converged before is converged.
+#[test]
+fn a_result_is_accepted_after_the_iterations_that_a_scene_asks_for() {
+    for method in ["newton", "warped"] {
+        for n in [1, 3, 5] {
+            let asked = [format!("solver.method={method}"), format!("solver.accept_after={n}")];
+            let scene = scene_with("cantilever", &asked.each_ref().map(String::as_str));
+            let mut accepted = Simulation::new(&scene).unwrap();
+            let status = accepted.solve().clone();
+            let mut whole = scene.clone();
+            whole.solver.accept_after = 0;
+            let mut stepped = Simulation::new(&whole).unwrap();
+            (0..n).for_each(|_| {
+                stepped.step();
+            });
+            let converged = *stepped.status() == Status::Converged;
+            assert_eq!(status, if converged { Status::Converged } else { Status::Accepted }, "{method} {n}");
+            assert!(status.is_success() && accepted.iterations() <= n);
+            assert_eq!(accepted.solution().probes[0].u, stepped.solution().probes[0].u, "{method} {n}");
+        }
+    }
+    let moving = scene_with("swing", &[]);
+    let mut refused = moving.clone();
+    refused.solver.accept_after = 2;
+    assert!(Simulation::new(&refused).unwrap_err().to_string().contains("solver.accept_after"));
+}

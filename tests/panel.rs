@@ -762,6 +762,10 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     assert_eq!(lab.scene().element(), best.element);
     assert_eq!(lab.scene().beam.as_ref().map(|b| b.cells), best.cells);
     assert_eq!((lab.scene().solver.method, lab.iterations()), (best.method, best.iterations));
+    // The scene stops where the measurement did, and so does a copy of it.
+    let accepts = if meeting[0].converged { 0 } else { best.iterations };
+    assert_eq!(lab.scene().solver.accept_after, accepts);
+    assert!(lab.simulation().iterations() <= best.iterations, "{best}: {} iterations", lab.simulation().iterations());
     assert!(meeting.iter().all(|m| m.time.total() >= meeting[0].time.total()));
     // Another scene is another study.
     pick(&mut harness, "Scene", "bridge");

@@ -8,7 +8,7 @@ use super::mode::Mode;
 use super::motion_plot::MotionPlot;
 use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::Field;
-use crate::study::Setting;
+use crate::study::Measurement;
 
 /// Most iterations that a displayed frame may be asked for.
 pub(super) const MOST_ITERATIONS: u32 = 100;
@@ -70,8 +70,8 @@ pub(super) enum Action {
     Measure(bool),
     /// Show the card of this number, from 0, and set its scene up.
     Card(usize),
-    /// Use a measured setting.
-    Apply(Setting),
+    /// Use a setting as it was measured.
+    Apply(Measurement),
     /// Stop what is meshed and solved beside the window, and go back to how it was before.
     Cancel,
 }

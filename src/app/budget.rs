@@ -115,8 +115,8 @@ impl Budget {
         }
     }
 
-    /// Shows limits and plot for the lab's scene, which makes so many iterations a displayed frame.
-    pub(super) fn show(&mut self, ui: &mut Ui, scene: &Scene, iterations: u32, actions: &mut Vec<Action>) {
+    /// Shows limits and plot for the lab's scene.
+    pub(super) fn show(&mut self, ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
         let demand = Demand::from(self.limits);
         let budget = BudgetView {
             scene,
@@ -127,7 +127,6 @@ impl Budget {
             is_partial: self.is_partial,
             progress: self.background.as_ref().map(Background::progress),
             error: self.error.as_ref().map(ToString::to_string),
-            iterations,
         };
         let (limits, messages) = (&mut self.limits, &mut self.messages);
         ui.add_space(4.0);
@@ -160,8 +159,6 @@ struct BudgetView<'a> {
     progress: Option<(f32, &'a str)>,
     /// Why there is no study.
     error: Option<String>,
-    /// Iterations the lab makes a displayed frame.
-    iterations: u32,
 }
 
 /// Width of the list, points, and the largest part of the width that it takes from the plot.
@@ -238,7 +235,7 @@ fn settings(
             .on_hover_text(tr("Use the fastest setting that meets both"))
             .on_disabled_hover_text(tr("No setting that has been measured meets both limits"));
         if let (true, Some(best)) = (apply.clicked(), best) {
-            actions.push(Action::Apply(best.setting));
+            actions.push(Action::Apply(**best));
         }
         let measured = budget.study.map_or(0, |s| s.measurements.len());
         ui.label(match budget.study.filter(|study| !study.can_judge(budget.demand)) {
@@ -255,13 +252,12 @@ fn settings(
 /// The settings that meet the demand, fastest first; a click applies one.
 fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let meeting = &budget.meeting;
-    let applied = Setting::of(budget.scene, budget.iterations);
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
             let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error.bound()), setting_words(&m.setting));
             let label = ui.add(
-                Button::selectable(m.setting == applied, RichText::new(words).font(FontId::monospace(12.0))).truncate(),
+                Button::selectable(m.apply(budget.scene) == *budget.scene, RichText::new(words).font(FontId::monospace(12.0))).truncate(),
             );
             let e = &m.error;
             let parts = fill!(
@@ -272,7 +268,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
                 theory = percent(e.model)
             );
             if label.on_hover_text(parts).clicked() {
-                actions.push(Action::Apply(m.setting));
+                actions.push(Action::Apply(**m));
             }
         }
     });

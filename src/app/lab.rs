@@ -586,7 +586,9 @@ impl Lab {
     fn keep_converged(&mut self) {
         let simulation = &self.simulation;
         let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
-        if *simulation.status() == Status::Converged && !self.converged.as_ref().is_some_and(is_kept) {
+        if matches!(simulation.status(), Status::Converged | Status::Accepted)
+            && !self.converged.as_ref().is_some_and(is_kept)
+        {
             self.converged = simulation.snapshot();
         }
     }
@@ -800,7 +802,7 @@ impl Lab {
 
     /// Error against time, under the body.
     pub(super) fn budget(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        drawer_panel(ui).show(ui, |ui| self.budget.show(ui, &self.scene, self.iterations, actions));
+        drawer_panel(ui).show(ui, |ui| self.budget.show(ui, &self.scene, actions));
     }
 
     /// The presets over the panes that are compared, and the load curve under them.
@@ -1220,7 +1222,7 @@ impl Lab {
         let is_sound = if self.moves() {
             !matches!(status, Status::Stopped(_))
         } else {
-            *status == Status::Converged || self.shows_converged
+            matches!(status, Status::Converged | Status::Accepted) || self.shows_converged
         };
         if is_sound {
             let (mut low, mut high) = self.simulation.system().mesh().bounds();
@@ -1410,10 +1412,10 @@ impl Lab {
                 self.budget.measure(&self.scene, extent);
             }
             Action::Measure(false) => self.budget.cancel(),
-            Action::Apply(setting) => {
+            Action::Apply(measured) => {
                 let before = self.snapshot();
-                self.edit(ctx, setting.apply(&self.scene));
-                self.iterations = setting.iterations.clamp(1, MOST_ITERATIONS);
+                self.edit(ctx, measured.apply(&self.scene));
+                self.iterations = measured.setting.iterations.clamp(1, MOST_ITERATIONS);
                 self.remember(before, None);
             }
         }

@@ -90,6 +90,7 @@ pub(super) fn status_words(simulation: &Simulation, running: bool, shows_converg
         Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
         Status::Running | Status::Finished => (tr("Iterating").to_owned(), false),
         Status::Converged => (tr("Converged").to_owned(), false),
+        Status::Accepted => (tr("Accepted").to_owned(), false),
         Status::NotConverged(reason) if shows_converged => {
             (fill!("Not converged: %{reason}. Shown is the last equilibrium.", reason = said(reason)), true)
         }

@@ -83,6 +83,8 @@ pub const MESH_SCALE: Limit = Limit::new("m", 1e-9, 1e6);
 pub const TOLERANCE: Limit = Limit::new("", 1e-14, 0.1);
 /// Iterations a solve may take.
 pub const MAX_ITERATIONS: Limit = Limit::new("", 1.0, 100_000.0);
+/// Iterations after which a result is accepted; 0 for none.
+pub const ACCEPT_AFTER: Limit = Limit::new("", 0.0, 100_000.0);
 /// Error that may be asked for.
 pub const MAX_ERROR_PERCENT: Limit = Limit::new("%", 1e-6, 100.0);
 /// Time a solve may be given.

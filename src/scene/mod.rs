@@ -198,14 +198,29 @@ pub struct SolverSettings {
     pub tolerance: f64,
     /// Iterations after which it gives up.
     pub max_iterations: u32,
+    /// Iterations after which the result is accepted as it is; 0: only where it has converged.
+    #[serde(skip_serializing_if = "is_off")]
+    pub accept_after: u32,
     /// `auto` only: the error that is asked for, percent of the true displacement.
     pub max_error_percent: f64,
 }
 
 impl Default for SolverSettings {
     fn default() -> Self {
-        Self { method: MethodKind::default(), tolerance: 1e-8, max_iterations: 100, max_error_percent: 1.0 }
+        Self {
+            method: MethodKind::default(),
+            tolerance: 1e-8,
+            max_iterations: 100,
+            accept_after: 0,
+            max_error_percent: 1.0,
+        }
     }
+}
+
+/// `true` for a number of iterations that nothing is accepted after.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_off(iterations: &u32) -> bool {
+    *iterations == 0
 }
 
 /// The methods there are; `method::METHODS` says what each does.
@@ -293,6 +308,12 @@ impl Scene {
         }
         check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
         check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;
+        check("solver.accept_after", limits::ACCEPT_AFTER, f64::from(self.solver.accept_after))?;
+        if dynamic && self.solver.accept_after != 0 {
+            let message =
+                "expected analysis = \"static\" beside it; of a motion, dynamics.iterations sets the solves a stage";
+            return Err(Invalid::new("solver.accept_after", message));
+        }
         check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)?;
         self.dynamics.validate()?;
         self.start.validate()?;

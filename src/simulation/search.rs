@@ -226,16 +226,22 @@ impl Search {
             }
             Verdict::Stop(reason) => self.status = reason.into(),
         }
-        let most = body.scene.solver.max_iterations;
-        if self.status == Status::Running && self.iterations >= most {
-            self.end(body, workspace, Reason::IterationLimit(most), timings);
+        let solver = &body.scene.solver;
+        let (most, enough) = (solver.max_iterations, solver.accept_after);
+        if self.status == Status::Running && enough != 0 && self.iterations >= enough {
+            self.end(body, workspace, Status::Accepted, timings);
+        } else if self.status == Status::Running && self.iterations >= most {
+            self.end(body, workspace, Reason::IterationLimit(most).into(), timings);
         }
     }
 
-    /// Ends before convergence with the best state there is, and measures its residual under the whole load.
-    fn end(&mut self, body: &mut Body, workspace: &mut Workspace, reason: Reason, timings: &mut Timings) {
-        self.status = reason.into();
-        self.method.stop(&mut body.state);
+    /// Ends before convergence, and measures the residual under the whole load. A result that is accepted stays as it is;
+    /// else the method goes back to the best state there is.
+    fn end(&mut self, body: &mut Body, workspace: &mut Workspace, status: Status, timings: &mut Timings) {
+        self.status = status;
+        if self.status != Status::Accepted {
+            self.method.stop(&mut body.state);
+        }
         self.measure_forces(body, workspace, true, (None, 1.0), timings);
     }
 
@@ -245,7 +251,7 @@ impl Search {
             return;
         }
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
-        self.end(body, &mut workspace, Reason::Interrupted, &mut Timings::default());
+        self.end(body, &mut workspace, Reason::Interrupted.into(), &mut Timings::default());
         self.workspace = Some(workspace);
     }
 

@@ -13,6 +13,8 @@ pub enum Status {
     /// The residual is below the tolerance, or within what rounding changes in it; see
     /// [`crate::Simulation::residual_floor`].
     Converged,
+    /// It has made the iterations after which the scene accepts its result: [`crate::scene::SolverSettings::accept_after`].
+    Accepted,
     /// It stopped while still improving, or near its end.
     NotConverged(Reason),
     /// The iteration does not lead to an equilibrium; the state shown is its last finite one.
@@ -30,6 +32,7 @@ impl Status {
         match self {
             Self::Running => "running",
             Self::Converged => "converged",
+            Self::Accepted => "accepted",
             Self::NotConverged(_) => "not_converged",
             Self::Diverged(_) => "diverged",
             Self::Finished => "finished",
@@ -46,7 +49,7 @@ impl Status {
     /// Whether it has come to its result.
     #[must_use]
     pub fn is_success(&self) -> bool {
-        matches!(self, Self::Converged | Self::Finished)
+        matches!(self, Self::Converged | Self::Accepted | Self::Finished)
     }
 
     /// Why it has ended without its result.
@@ -55,7 +58,7 @@ impl Status {
         match self {
             Self::NotConverged(reason) | Self::Diverged(reason) => Some(reason.to_string()),
             Self::Stopped(reason) => Some(reason.to_string()),
-            Self::Running | Self::Converged | Self::Finished => None,
+            Self::Running | Self::Converged | Self::Accepted | Self::Finished => None,
         }
     }
 }

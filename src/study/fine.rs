@@ -118,6 +118,7 @@ pub(super) fn fine(
     scene.set_element(element(&scene));
     scene.solver.method = MethodKind::Newton;
     scene.solver.max_iterations = MOST_ITERATIONS;
+    scene.solver.accept_after = 0;
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
     let has_point = has_point(&scene);

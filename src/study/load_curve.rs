@@ -123,6 +123,7 @@ fn departure(samples: &[Sample], percent: f64) -> Option<Departure> {
 fn method_point(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Option<MethodPoint> {
     let mut scene = scene.clone();
     scene.solver.method = method;
+    scene.solver.accept_after = 0;
     let mut simulation = Simulation::with_system(&scene, system.clone()).ok()?;
     simulation.solve();
     let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"))?;

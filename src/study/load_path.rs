@@ -292,6 +292,7 @@ impl Follower {
         let rate = largest(linear.displacement());
         scene.solver.method = MethodKind::Newton;
         scene.solver.max_iterations = scene.solver.max_iterations.max(ENOUGH_ITERATIONS);
+        scene.solver.accept_after = 0;
         let system = linear.system().clone();
         let whole = Problem::new(&scene, system.clone()).ok()?;
         let workspace = Workspace::new(&system).ok()?;

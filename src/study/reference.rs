@@ -306,6 +306,7 @@ fn run_to_end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result
     let mut scene = scene.clone();
     scene.solver.method = method;
     scene.solver.max_iterations = scene.solver.max_iterations.max(200);
+    scene.solver.accept_after = 0;
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
     if *simulation.solve() != Status::Converged && method == MethodKind::Newton {
         return Err(StudyError::NoReference);

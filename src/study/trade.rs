@@ -43,7 +43,7 @@ impl Setting {
         Self { element: scene.element(), cells, method: scene.solver.method, iterations }
     }
 
-    /// The scene on this mesh, with this method.
+    /// The scene on this mesh, with this method, solved to its end.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
@@ -52,6 +52,7 @@ impl Setting {
             beam.cells = cells;
         }
         scene.solver.method = self.method;
+        scene.solver.accept_after = 0;
         scene
     }
 }
@@ -112,6 +113,14 @@ pub struct Measurement {
 }
 
 impl Measurement {
+    /// The scene as it was measured: on the setting's mesh, with its method, stopped after as many iterations.
+    #[must_use]
+    pub fn apply(&self, scene: &Scene) -> Scene {
+        let mut scene = self.setting.apply(scene);
+        scene.solver.accept_after = if self.converged { 0 } else { self.setting.iterations };
+        scene
+    }
+
     /// Time of a solve, ms.
     #[must_use]
     pub fn milliseconds(&self) -> f64 {

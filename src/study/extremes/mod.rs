@@ -246,6 +246,7 @@ impl Case {
             scene.scale_loads(self.alpha);
             scene.solver.method = self.method;
             scene.solver.max_iterations = MAX_ITERATIONS;
+            scene.solver.accept_after = 0;
             return scene;
         }
         /// Cells along are as many as the aspect asks for, up to these.
