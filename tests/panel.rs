@@ -12,7 +12,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
 use warpbeam::dynamics::INTEGRATORS;
-use warpbeam::scene::{Analysis, Load, MethodKind, Plane, Source};
+use warpbeam::scene::{Analysis, IntegratorKind, Load, MethodKind, Plane, Source};
 use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::Demand;
 use warpbeam::words::percent;
@@ -940,4 +940,20 @@ fn every_motion_is_shown_with_every_integrator_and_plot() {
             assert!(said.iter().all(|t| !t.contains("NaN") && !t.contains("inf")), "{id} {}: {said:?}", integrator.id);
         }
     }
+}
+
+/// An integrator whose motion blows up leaves the comparison, and the plots, with a message; the others go on.
+#[test]
+fn an_unstable_integrator_leaves_the_comparison() {
+    let mut harness = harness_of("swing");
+    harness.state_mut().compare_with(IntegratorKind::SymplecticEuler);
+    harness.state_mut().compare_with(IntegratorKind::EnergyMomentum);
+    let words = "symplectic-euler is unstable: its longest stable step is";
+    let mut steps = 0;
+    while harness.query_all_by_label_contains(words).next().is_none() {
+        harness.step();
+        steps += 1;
+        assert!(steps < 2000, "nothing is said of it");
+    }
+    assert!(!matches!(harness.state().simulation().status(), Status::Stopped(_)));
 }

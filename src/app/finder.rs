@@ -60,6 +60,11 @@ impl<T: Send + 'static> Finder<T> {
         }
     }
 
+    /// `true` while it is being computed.
+    pub(super) fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
     /// Finds out, however long it takes.
     pub(super) fn settle(&mut self, scene: &Scene) {
         if self.found.is_none() {

@@ -55,7 +55,7 @@ pub(super) fn show(
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let headlines = match input.simulation.motion() {
-            Some(motion) => of_motion(&palette, input, motion),
+            Some(motion) => of_motion(&palette, input, motion).into(),
             None => of_solve(&palette, input, errors),
         };
         for headline in headlines {
@@ -77,7 +77,7 @@ pub(super) fn show(
     });
 }
 
-fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [Headline; 3] {
+fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> Vec<Headline> {
     let simulation = input.simulation;
     let times = simulation.timings();
     let seconds = (times.total() - times.certify).as_secs_f64();
@@ -85,11 +85,16 @@ fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [Head
     let truth = truth_words(input.truth);
     let level = |decades: f64| decades.floor().clamp(0.0, 4.0) as u32;
     let error = errors.own.map_or(0.0, |error| error.max(1e-9).log10() + 2.0);
-    [
+    let is_sought = errors.own.is_none() && input.seeks_reference;
+    let mut headlines = vec![
         Headline {
             name: "ERROR",
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
-            word: errors.source.map_or("", super::verdict::ErrorSource::word),
+            word: match errors.source {
+                Some(source) => source.word(),
+                None if is_sought => "computing the reference",
+                None => "",
+            },
             tip: fill!(
                 "Distance of the first probe from %{truth}, over its displacement; and where most of it comes from",
                 truth = truth
@@ -105,7 +110,10 @@ fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [Head
             color: palette.text,
             gauge: Gauge::Blocks(level((1e6 * seconds).max(1.0).log10())),
         },
-        Headline {
+    ];
+    // Linear theory iterates nothing.
+    if !simulation.is_linear() {
+        headlines.push(Headline {
             name: "ρ",
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
             word: "",
@@ -120,8 +128,9 @@ fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> [Head
                 None => palette.secondary,
             },
             gauge: Gauge::Bar(rho.map_or(0.0, |rho| 0.5 * rho), 0.5),
-        },
-    ]
+        });
+    }
+    headlines
 }
 
 fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Headline; 3] {
@@ -159,7 +168,7 @@ fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Hea
 
 /// What errors are measured against, in words.
 pub(super) fn truth_words(truth: Option<&Reference>) -> String {
-    truth.map_or_else(|| tr("the truth, once that is known").to_owned(), |truth| translated(&truth.to_string()))
+    truth.map_or_else(|| tr("the reference, once that is known").to_owned(), |truth| translated(&truth.to_string()))
 }
 
 /// A name, its number and its gauge.

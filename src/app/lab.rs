@@ -48,6 +48,7 @@ use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::study::{Extent, LoadPath, PathSummary, Reference, Study};
 use crate::timings::Timings;
+use crate::words;
 
 mod beside;
 
@@ -622,6 +623,7 @@ impl Lab {
             jump: self.jump.get(),
             equilibrium_rho: self.learn.as_ref().and_then(|learn| learn.rho()),
             quality: &self.quality,
+            seeks_reference: self.truth.is_running(),
             shows_converged: self.shows_converged,
             scene: &self.scene,
             original: &self.document.original,
@@ -654,6 +656,21 @@ impl Lab {
         self.find_out(ui.ctx());
         self.budget.listen(ui.ctx());
         self.go_on_with_intro(ui.ctx());
+        for (integrator, step) in self.playback.take_unstable() {
+            let integrator = tr(integrator.id());
+            let words = match step {
+                Some(step) => {
+                    let step = words::engineering(step, "s");
+                    fill!(
+                        "%{integrator} is unstable: its longest stable step is %{step}",
+                        integrator = integrator,
+                        step = step
+                    )
+                }
+                None => fill!("%{integrator} is unstable: its steps fail", integrator = integrator),
+            };
+            self.say(ui.ctx(), words);
+        }
         if let Some(words) = self.beside.unsaid.take() {
             self.say(ui.ctx(), words);
         }
@@ -1700,6 +1717,13 @@ impl Lab {
             ui.visuals().strong_text_color(),
             rect.width() - 48.0,
         );
+        // For those who hear the window.
+        let said = ui.interact(
+            Rect::from_center_size(rect.center_bottom(), egui::Vec2::ZERO),
+            egui::Id::unique("toast"),
+            Sense::empty(),
+        );
+        said.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, message));
         ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));
     }
 }

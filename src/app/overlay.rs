@@ -154,7 +154,7 @@ pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
     if let Some(linear) = overlay.ghost {
         draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.method(MethodKind::Linear)));
     }
-    for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
+    for companion in overlay.playback.companions() {
         let u = companion.simulation.displacement();
         let color = palette.integrator(companion.integrator);
         draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
@@ -214,7 +214,7 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     const DURATION: f64 = 2.0;
     const MOST_PIECES: usize = 400;
     let playback = overlay.playback;
-    let companions = playback.companions().iter().filter(|c| !c.has_stopped());
+    let companions = playback.companions().iter();
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
     for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
         let points: Vec<Vector2<f64>> = history.last(DURATION).map(|s| s.position).collect();
@@ -461,7 +461,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
     };
     let mut lines = vec![(palette.solution(overlay.scene), Mark::Line, own)];
-    for companion in overlay.playback.companions().iter().filter(|c| !c.has_stopped()) {
+    for companion in overlay.playback.companions() {
         lines.push((palette.integrator(companion.integrator), Mark::Line, tr(companion.integrator.id()).to_owned()));
     }
     if overlay.ghost.is_some() {

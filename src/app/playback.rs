@@ -8,7 +8,7 @@ use super::history::History;
 use super::pace::Pace;
 use crate::mesh::MaterialPoint;
 use crate::scene::{Analysis, IntegratorKind, Scene};
-use crate::simulation::{Simulation, Status};
+use crate::simulation::{Motion, Simulation, Status};
 use crate::state::State;
 
 /// Of a frame so much may go into steps: the rest is for drawing.
@@ -30,6 +30,9 @@ pub(super) struct Playback {
     /// Where a reset goes, in place of the start.
     here: Option<State>,
     companions: Vec<Companion>,
+    /// Integrators that became unstable and were taken out of the comparison since this was last asked for, with their longest
+    /// stable step, s, where they have one.
+    unstable: Vec<(IntegratorKind, Option<f64>)>,
 }
 
 impl Playback {
@@ -60,6 +63,21 @@ impl Playback {
             companion.simulation.step();
             companion.history.record(&companion.simulation);
         }
+        // Its energies would set the axes of everything else.
+        let unstable = &mut self.unstable;
+        self.companions.retain(|companion| {
+            let stopped = companion.has_stopped();
+            if stopped {
+                let step = companion.simulation.motion().and_then(Motion::critical_step);
+                unstable.push((companion.integrator, step));
+            }
+            !stopped
+        });
+    }
+
+    /// Takes the integrators that became unstable since the last call, with their longest stable step, s.
+    pub(super) fn take_unstable(&mut self) -> Vec<(IntegratorKind, Option<f64>)> {
+        std::mem::take(&mut self.unstable)
     }
 
     /// The same motion under other integrators.
@@ -156,7 +174,7 @@ impl Playback {
 
 impl Companion {
     /// Whether it cannot go on.
-    pub(super) fn has_stopped(&self) -> bool {
+    fn has_stopped(&self) -> bool {
         matches!(self.simulation.status(), Status::Stopped(_))
     }
 }

@@ -84,10 +84,10 @@ fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, bool)>) {
         return;
     };
     let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
-    let words = if *good { time.clone() } else { fill!("%{error} off", error = percent(m.error.bound())) };
+    let words = if *good { time.clone() } else { fill!("at most %{error}", error = percent(m.error.bound())) };
     let color = if *good { palette.text } else { palette.secondary };
     let tip = fill!(
-        "%{setting}: %{time}, error %{error}",
+        "%{setting}: %{time}, error at most %{error}",
         setting = setting_words(&m.setting),
         time = time,
         error = percent(m.error.bound())

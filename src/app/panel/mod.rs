@@ -58,6 +58,8 @@ pub(super) struct PanelInput<'a> {
     pub jump: Option<&'a PathSummary>,
     /// ρ of the warped iteration at the equilibrium, where it has been looked for, whatever the body's state.
     pub equilibrium_rho: Option<f64>,
+    /// `true` while the reference solution is being computed.
+    pub seeks_reference: bool,
     /// `true` where the last equilibrium is drawn instead of a state that diverges.
     pub shows_converged: bool,
     /// How far the result is to be trusted.

@@ -51,10 +51,8 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
         ui.label(tr("Beside it"))
             .on_hover_text(tr("The same motion under other integrators, as outlines and lines in the plots"));
         for entry in INTEGRATORS.iter().filter(|entry| entry.kind != settings.integrator) {
-            let companion = input.playback.companions().iter().find(|c| c.integrator == entry.kind);
-            let stopped = companion.is_some_and(|c| c.has_stopped());
-            let tip = if stopped { "It has stopped: its step is too long" } else { entry.about };
-            if ui.add(option_button(companion.is_some(), tr(entry.id))).on_hover_text(tr(tip)).clicked() {
+            let is_shown = input.playback.companions().iter().any(|c| c.integrator == entry.kind);
+            if ui.add(option_button(is_shown, tr(entry.id))).on_hover_text(tr(entry.about)).clicked() {
                 actions.push(Action::Compare(entry.kind));
             }
         }
