@@ -1064,11 +1064,10 @@ impl Lab {
         let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
         let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
         let id = egui::Id::unique("status");
-        let size = egui::AreaState::load(ui.ctx(), id).and_then(|state| state.size).unwrap_or_default();
-        let (pivot, at) = self.place_off_handles(rect, above, size);
+        let (pivot, at, width) = self.place_off_handles(rect, above, WIDEST.min(rect.width() - 28.0));
         let area = egui::Area::new(id).order(egui::Order::Middle).fixed_pos(at).pivot(pivot).constrain_to(rect);
         area.show(ui.ctx(), |ui| {
-            ui.set_max_width(WIDEST.min(rect.width() - 28.0));
+            ui.set_max_width(width);
             if self.view.why {
                 chip(palette.panel).show(ui, |ui| {
                     for line in verdict::explanation(&input) {
@@ -1110,23 +1109,30 @@ impl Lab {
         });
     }
 
-    /// Corner and place of a message of this size: the lower left of the view, or another corner where that hides the tip of
-    /// an arrow.
-    fn place_off_handles(&self, view: Rect, above: f32, size: egui::Vec2) -> (egui::Align2, egui::Pos2) {
+    /// Corner, place and largest width of a message over the view: the lower left, beside the tips of arrows that it would
+    /// hide, or another corner.
+    fn place_off_handles(&self, view: Rect, above: f32, widest: f32) -> (egui::Align2, egui::Pos2, f32) {
         const SIDE: f32 = 14.0;
-        const CLEAR: f32 = 16.0;
-        let low = overlay::LEGEND_HEIGHT + 10.0;
-        let tips: Vec<egui::Pos2> = self.arrow_tips().into_iter().map(|(_, tip)| tip).collect();
-        let corners = [
-            (egui::Align2::LEFT_BOTTOM, view.left_bottom() + egui::vec2(SIDE, -above)),
-            (egui::Align2::RIGHT_BOTTOM, view.right_bottom() + egui::vec2(-SIDE, -low)),
-            (egui::Align2::LEFT_TOP, view.left_top() + egui::vec2(SIDE, 44.0)),
-        ];
-        let is_clear = |(pivot, at): &(egui::Align2, egui::Pos2)| {
-            let message = pivot.anchor_size(*at, size).expand(CLEAR);
-            !tips.iter().any(|tip| message.contains(*tip))
-        };
-        corners.into_iter().find(is_clear).unwrap_or(corners[0])
+        /// Height that two messages may have, points.
+        const HEIGHT: f32 = 100.0;
+        const CLEAR: f32 = 18.0;
+        const NARROWEST: f32 = 220.0;
+        let lower_left = view.left_bottom() + egui::vec2(SIDE, -above);
+        let covered = Rect::from_min_max(lower_left - egui::vec2(0.0, HEIGHT), lower_left + egui::vec2(widest, 0.0));
+        let covered = covered.expand(CLEAR);
+        let hidden = self.arrow_tips().into_iter().map(|(_, tip)| tip).filter(|tip| covered.contains(*tip));
+        let columns: Vec<f32> = hidden.map(|tip| tip.x).collect();
+        let first = columns.iter().copied().fold(f32::INFINITY, f32::min);
+        let last = columns.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let (left, right) = (first - CLEAR - lower_left.x, view.right() - SIDE - last - CLEAR);
+        if left >= NARROWEST {
+            return (egui::Align2::LEFT_BOTTOM, lower_left, left.min(widest));
+        }
+        if right >= NARROWEST {
+            let low = view.right_bottom() - egui::vec2(SIDE, overlay::LEGEND_HEIGHT + 10.0);
+            return (egui::Align2::RIGHT_BOTTOM, low, right.min(widest));
+        }
+        (egui::Align2::LEFT_TOP, view.left_top() + egui::vec2(SIDE, 44.0), widest)
     }
 
     /// The true outline, m, where it is known of what is shown.
