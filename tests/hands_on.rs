@@ -11,7 +11,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
-use warpbeam::scene::{Load, Source};
+use warpbeam::scene::{Analysis, Load, Source};
 use warpbeam::simulation::{Simulation, Status};
 
 /// Time between frames, s: two clicks within some of them are a double click.
@@ -516,6 +516,39 @@ fn the_force_slider_spans_what_a_slender_body_can_bear() {
         assert!(much > 10.0 * own, "{id}: at most {much} N, for {own} N");
         assert!(press(0.0) == 0.0, "{id}: no force at the left end");
     }
+}
+
+/// A wheel that still turns in the gallery when a scene is clicked leaves the new view alone: it shows the whole body.
+#[test]
+fn a_wheel_in_the_gallery_does_not_zoom_the_view() {
+    let opened = harness;
+    let mut harness = opened("article");
+    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
+    harness.run();
+    let entry = harness.get_by_role_and_label(Role::Button, "cantilever").rect();
+    let at = egui::pos2(entry.center().x, entry.center().y.clamp(100.0, 500.0));
+    harness.hover_at(at);
+    harness.run();
+    let wheel = |delta| Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: vec2(0.0, delta),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(wheel(-40.0));
+    harness.step();
+    // Back up, with a long way to go.
+    harness.event(wheel(400.0));
+    harness.get_by_role_and_label(Role::Button, "cantilever").click();
+    harness.step();
+    harness.run();
+    // The list has scrolled on under the pointer.
+    let name = &harness.state().scene().name;
+    let id = common::ids_of(Analysis::Static).into_iter().find(|id| *scene(id).name == **name).unwrap();
+    assert_ne!(id, "article");
+    let (camera, fitted) = (harness.state().camera(), opened(id).state().camera());
+    assert!((camera.scale / fitted.scale - 1.0).abs() < 1e-6, "{camera:?} {fitted:?}");
 }
 
 /// The gallery is a list of all scenes with what they are, within a window of any size, and is gone through by keys.

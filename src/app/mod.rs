@@ -11,6 +11,7 @@ mod action;
 mod arrow;
 mod background;
 mod budget;
+mod clicks;
 mod clipboard;
 mod compare;
 mod document;

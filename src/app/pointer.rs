@@ -50,6 +50,8 @@ pub(super) struct Pointer {
     over_body: Option<MaterialPoint>,
     /// Where the pointer is.
     at: Option<Pos2>,
+    /// `true` while the wheel scrolls that was turned over the view: what is left of a turn elsewhere is not the view's.
+    scrolls: bool,
 }
 
 /// What the pointer asks for in one frame.
@@ -245,7 +247,7 @@ impl Pointer {
     }
 
     /// Moves and zooms the view.
-    fn look(&self, ui: &Ui, response: &Response, reach: &Reach<'_>, fingers: Option<Vec2>) -> Look {
+    fn look(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, fingers: Option<Vec2>) -> Look {
         let mut camera = reach.camera;
         let mut look = Look::Same;
         // Two fingers move the view together, wherever they are.
@@ -254,7 +256,13 @@ impl Pointer {
             camera.pan([f64::from(drag.x), f64::from(drag.y)]);
             look = Look::At(camera);
         }
-        if let Some(pointer) = response.hover_pos() {
+        let turned = ui.input(|i| {
+            i.events.iter().any(|event| matches!(event, egui::Event::MouseWheel { .. } | egui::Event::Zoom(_)))
+        });
+        if turned {
+            self.scrolls = response.hover_pos().is_some();
+        }
+        if let Some(pointer) = response.hover_pos().filter(|_| self.scrolls || fingers.is_some()) {
             let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
             // A pointer that only rests over the view must not stop it from following the body.

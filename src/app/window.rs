@@ -13,6 +13,7 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
+use super::clicks;
 use super::clipboard::Clipboard;
 use super::lab::{Lab, Request};
 use super::language::fill;
@@ -93,8 +94,17 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
     if first_picture {
         lab.introduce();
     }
-    let mut app =
-        App { lab, ctx, settings, settings_file: file, open: None, start: Instant::now(), wake: None, error: None };
+    let mut app = App {
+        lab,
+        ctx,
+        settings,
+        settings_file: file,
+        open: None,
+        start: Instant::now(),
+        later: Vec::new(),
+        wake: None,
+        error: None,
+    };
     display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
     app.keep_settings();
     app.error.map_or(Ok(()), Err)
@@ -109,6 +119,8 @@ struct App {
     open: Option<OpenWindow>,
     /// When the window began.
     start: Instant,
+    /// Events that wait for the next frame.
+    later: Vec<egui::Event>,
     /// When egui wants its next frame without an event.
     wake: Option<Instant>,
     error: Option<AppError>,
@@ -247,7 +259,11 @@ impl App {
             return Ok(());
         };
         self.lab.advance(self.start.elapsed().as_secs_f64());
-        let input = open.input.take_egui_input(&open.window);
+        let mut input = open.input.take_egui_input(&open.window);
+        let mut events = std::mem::take(&mut self.later);
+        events.append(&mut input.events);
+        self.later = clicks::after_first(&mut events);
+        input.events = events;
         let mut requests = Vec::new();
         let mut output = self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui)));
         open.clipboard.after(&output.platform_output);
@@ -267,7 +283,7 @@ impl App {
         open.window.set_title(&self.lab.title());
 
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
-        self.schedule(delay);
+        self.schedule(if self.later.is_empty() { delay } else { Duration::ZERO });
         if requests.contains(&Request::Screenshot) {
             self.screenshot(screen.pixels_per_point);
         }

@@ -46,7 +46,7 @@ static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| {
 });
 
 /// The groups of entries, with their headings.
-const GROUPS: [(Analysis, &str); 2] = [(Analysis::Static, "At rest"), (Analysis::Dynamic, "In motion")];
+const GROUPS: [(Analysis, &str); 2] = [(Analysis::Dynamic, "In motion"), (Analysis::Static, "At rest")];
 
 /// The thumbnails that there are. They are made when the gallery is opened first.
 #[derive(Debug, Default)]
