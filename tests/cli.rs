@@ -1095,7 +1095,7 @@ fn auto_keeps_the_mesh_and_its_answer() {
     assert_eq!(gone.status.code(), Some(2));
 }
 
-/// What a study measures with a number of iterations is what `solve` gives with them: the scene says when to stop.
+/// `solve` stops after the iterations that a scene accepts, as a study does with the same number.
 #[test]
 fn an_accepted_result_is_a_success() {
     let args = ["solve", "cantilever", "--json", "--set", "solver.accept_after=3"];

@@ -1,4 +1,4 @@
-//! What commands do with signals, files and options that do not fit.
+//! Commands end on signals, and refuse files and options that do not fit.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -191,7 +191,7 @@ fn names_of_probes_are_fields_and_differ() {
     assert!(stderr(&refused).contains("probe.1.name: expected a name of its own"), "{}", stderr(&refused));
 }
 
-/// What a result cannot be trusted in is said, in words and in JSON.
+/// Results name their limits, in words and in JSON.
 #[test]
 fn results_say_what_limits_them() {
     for (args, expected) in [

@@ -55,7 +55,7 @@ fn columns_buckle_at_eulers_loads() {
     assert_eq!(LoadPath::of(&column(0.4, free).force("right", [0.0, 0.3])).unwrap().bifurcations, []);
 }
 
-/// What is stored is the work of the supports, integrated along the path.
+/// The stored energy is the work of the supports, integrated along the path.
 #[test]
 fn moved_supports_do_the_work_that_is_stored() {
     let beam = || Scene::beam(10.0, 1.0).with_cells(10, 1).clamp("left").clamp("right").probe("middle", [5.0, 0.0]);
@@ -111,7 +111,7 @@ fn commands_name_the_critical_load() {
     let json = solve_json(&set);
     assert!((json["buckles_at"].as_f64().unwrap() - 0.493).abs() < 1e-3 && json["stable"] == false, "{json}");
     assert!((buckles(&stdout(&warpbeam(&[&["solve"][..], &set].concat()))) - 49.3).abs() < 0.1);
-    // What nobody would find there is not measured against.
+    // An unstable equilibrium has no reference.
     assert!(json["probes"][0]["error_percent"].is_null(), "{json}");
     assert!(solve_json(&["column"])["buckles_at"].is_null());
 }

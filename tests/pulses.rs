@@ -141,7 +141,7 @@ fn a_motion_ends_at_its_duration() {
             assert_eq!(json["steps"].as_f64(), Some(steps), "{set:?}");
         }
     }
-    // Somebody who goes on takes whole steps again.
+    // A motion that goes on after its end takes whole steps again.
     let mut simulation = Simulation::new(&scene_with("swing", &["dynamics.duration=0.11"])).unwrap();
     simulation.solve();
     simulation.step();

@@ -96,7 +96,7 @@ fn independent(scene: &Scene, nodes: f64) -> Option<Vector2<f64>> {
     (*simulation.solve() == Status::Converged).then(|| simulation.probe("probe").unwrap())
 }
 
-/// What a comparison of one scene shows.
+/// The comparison of one scene with two independent solutions.
 #[derive(Debug, Default)]
 struct Tally {
     judged: usize,

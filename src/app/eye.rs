@@ -60,7 +60,7 @@ impl Eye {
         self.whole
     }
 
-    /// `true` while it shows the whole body: nobody has moved it.
+    /// `true` while it shows the whole body, not a view that the user has chosen.
     pub(super) fn shows_whole(&self) -> bool {
         self.own.is_none()
     }

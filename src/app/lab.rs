@@ -378,12 +378,14 @@ impl Lab {
         if self.view.mode == Mode::Compare { self.compare.camera() } else { self.eye.camera() }
     }
 
-    /// Title for the window.
+    /// Title of the window: the scene's name, a star where it has been edited, and the name of its file.
     #[must_use]
     pub fn title(&self) -> String {
         let edited = if self.scene == self.document.original { "" } else { "*" };
         language::speak(self.settings.language);
-        format!("{}{edited} \u{2013} warpbeam", tr(&self.scene.name))
+        let file = self.document.path().and_then(Path::file_name);
+        let file = file.map_or_else(String::new, |file| format!(" ({})", file.to_string_lossy()));
+        format!("{}{edited}{file} \u{2013} warpbeam", tr(&self.scene.name))
     }
 
     /// Makes the iterations of one displayed frame if it runs, or the time steps that are due at `now`, s of any clock

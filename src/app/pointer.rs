@@ -50,7 +50,7 @@ pub(super) struct Pointer {
     over_body: Option<MaterialPoint>,
     /// Where the pointer is.
     at: Option<Pos2>,
-    /// `true` while the wheel scrolls that was turned over the view: what is left of a turn elsewhere is not the view's.
+    /// `true` if the wheel was last turned over the view. Scrolling that is left from elsewhere does not zoom it.
     scrolls: bool,
 }
 

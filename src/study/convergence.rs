@@ -76,7 +76,7 @@ mod tests {
                 assert!(bound >= error && bound <= 50.0 * error, "{q}, {count}: {bound} for {error}");
             }
         }
-        // Of two meshes the rate is not known.
+        // Two meshes do not show a rate.
         let bound = remaining_error(&sequence(0.1, 0.5, 2), false).unwrap();
         assert!((bound - SAFETY * 0.05).abs() < 1e-12, "{bound}");
     }

@@ -239,7 +239,7 @@ impl Search<'_> {
         Ok(simulation.status().clone())
     }
 
-    /// `true` if what is left of the budget is enough for a few solves of so many unknowns.
+    /// `true` if the rest of the budget is enough for a few solves of so many unknowns.
     fn has_work_for(&self, unknowns: usize) -> bool {
         const FEW: f64 = 4.0;
         self.work + FEW * unknowns as f64 <= self.effort.most_work()
@@ -266,7 +266,7 @@ fn start_near(simulation: &mut Simulation, near: &Simulation) {
 
 /// Meshes that follow one another, each with every element of the one before cut into four.
 struct Meshes {
-    /// Of a beam, the mesh of the straight rectangle.
+    /// The mesh before the beam is bent to its arch; the mesh itself where there is no arch.
     straight: Mesh,
     /// The arch it is bent to.
     arch: Option<Beam>,
