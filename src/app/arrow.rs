@@ -47,7 +47,7 @@ pub(super) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
 
 /// As far as anything can be seen, N, rounded up to a power of ten: a force that strains the whole section by 1, or, of
 /// what is slender, a thousand times the one that bends it by its length under linear theory.
-pub(super) fn largest_force(material: &Material, system: &System) -> f64 {
+fn largest_force(material: &Material, system: &System) -> f64 {
     const TIMES: f64 = 1e3;
     let [bending, axial] = bending_force(material, system);
     power_of_ten_above(axial.min(TIMES * bending))
@@ -76,10 +76,11 @@ pub(super) fn scale(usual: f64, view: Vec2) -> LoadScale {
     LoadScale { usual, stub: STUB, opening: within(OPENING, opening), decade: within(DECADE, decade) }
 }
 
-/// Force, N, that arrows and sliders of a scene are scaled by: the largest it opens with, or, of a scene without forces, one
-/// that bends its body by a third of its length under linear theory.
-pub(super) fn usual_force(opening: OpeningLoads, material: &Material, system: &System) -> f64 {
-    opening.force.unwrap_or_else(|| round_down(0.3 * bending_force(material, system)[0]))
+/// Forces, N, that arrows and sliders of a scene are scaled by: the largest it opens with, or, of a scene without forces, one
+/// that bends its body by a third of its length under linear theory; and the one they end at.
+pub(super) fn force_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
+    let usual = opening.force.unwrap_or_else(|| round_down(0.3 * bending_force(material, system)[0]));
+    [usual, largest_force(material, system).max(LEAST_SPAN * usual)]
 }
 
 /// Where a load pulls: the middle of its edge, or its node; `None` where there is no such place.
@@ -127,9 +128,7 @@ impl Forces<'_> {
     /// The arrows of all forces that pull at the present time.
     pub(super) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
         let mesh = self.system.mesh();
-        let material = &self.scene.material;
-        let usual = usual_force(self.opening, material, self.system);
-        let largest = largest_force(material, self.system).max(LEAST_SPAN * usual);
+        let [usual, largest] = force_range(self.opening, &self.scene.material, self.system);
         let scale = scale(usual, projection.rect.size());
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let arrows = shown.filter_map(|(load, of)| {

@@ -257,7 +257,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         for m in meeting.get(rows).unwrap_or_default() {
             let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error.bound()), setting_words(&m.setting));
             let label = ui.add(
-                Button::selectable(m.apply(budget.scene) == *budget.scene, RichText::new(words).font(FontId::monospace(12.0))).truncate(),
+                Button::selectable(m.is_applied_to(budget.scene), RichText::new(words).font(FontId::monospace(12.0))).truncate(),
             );
             let e = &m.error;
             let parts = fill!(

@@ -14,6 +14,8 @@ pub(super) struct Document {
     pub source: Source,
     /// The scene as it was opened or saved last.
     pub original: Scene,
+    /// `true` if the scene comes from a file: it is neither built in nor read from a stream.
+    has_file: bool,
     /// When the file was written last, as far as is known.
     stamp: Option<SystemTime>,
 }
@@ -29,7 +31,8 @@ pub(super) enum SaveError {
 
 impl Document {
     pub(super) fn new(source: Source, original: Scene) -> Self {
-        let mut document = Self { source, original, stamp: None };
+        let has_file = source.built_in().is_none() && !source.is_stream();
+        let mut document = Self { source, original, has_file, stamp: None };
         document.stamp = document.path().and_then(written);
         document
     }
@@ -45,7 +48,7 @@ impl Document {
 
     /// The scene's file; `None` for a built-in scene, and for one that came from a stream.
     pub(super) fn path(&self) -> Option<&Path> {
-        (self.source.built_in().is_none() && !self.source.is_stream()).then_some(self.source.name.as_path())
+        self.has_file.then_some(self.source.name.as_path())
     }
 
     /// Whether the file has been written since it was read or saved here.

@@ -4,7 +4,7 @@ use egui::{Color32, Painter, Pos2, Vec2};
 
 use super::arrow::{Arrow, Forces, NEAR, is_seen, load_point};
 use super::overlay::Projection;
-use super::turn::{Turn, usual_moment};
+use super::turn::{Turn, moment_range};
 use crate::scene::{Load, Place};
 
 /// The end of a load's arrow.
@@ -136,7 +136,7 @@ impl Forces<'_> {
     /// The circular arrows of all moments that act at the present time.
     pub(super) fn turns(&self, projection: &Projection) -> Vec<Turn> {
         let mesh = self.system.mesh();
-        let usual = usual_moment(self.opening, &self.scene.material, self.system);
+        let [usual, _] = moment_range(self.opening, &self.scene.material, self.system);
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let turns = shown.filter_map(|(load, of)| {
             let Load::Moment { edge, moment, .. } = of else { return None };

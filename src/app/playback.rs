@@ -66,7 +66,7 @@ impl Playback {
         // Its energies would set the axes of everything else.
         let unstable = &mut self.unstable;
         self.companions.retain(|companion| {
-            let stopped = companion.has_stopped();
+            let stopped = matches!(companion.simulation.status(), Status::Stopped(_));
             if stopped {
                 let step = companion.simulation.motion().and_then(Motion::critical_step);
                 unstable.push((companion.integrator, step));
@@ -169,13 +169,6 @@ impl Playback {
     /// Lets everything go.
     pub(super) fn release(&mut self) {
         self.companions.iter_mut().for_each(|c| c.simulation.release());
-    }
-}
-
-impl Companion {
-    /// Whether it cannot go on.
-    fn has_stopped(&self) -> bool {
-        matches!(self.simulation.status(), Status::Stopped(_))
     }
 }
 

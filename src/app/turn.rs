@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 
-use super::arrow::{NEAR, power_of_ten_above};
+use super::arrow::{LEAST_SPAN, NEAR, power_of_ten_above};
 use super::load_scale::{LoadScale, OpeningLoads};
 use super::overlay::boxed_text;
 use crate::assembly::System;
@@ -26,7 +26,7 @@ const START: f64 = TAU / 8.0;
 const MIDDLE: f32 = 5.0;
 
 /// What rolls the rest shape up once, 2πEI/L, N m, rounded up to a power of ten.
-pub(super) fn largest_moment(material: &Material, system: &System) -> f64 {
+fn largest_moment(material: &Material, system: &System) -> f64 {
     power_of_ten_above(rolling_moment(material, system))
 }
 
@@ -36,10 +36,11 @@ fn rolling_moment(material: &Material, system: &System) -> f64 {
     TAU * material.young * material.thickness * height.powi(3) / (12.0 * length)
 }
 
-/// Moment, N m, that arrows and sliders of a scene are scaled by: the largest it opens with, or, of a scene without moments, a
-/// tenth of what rolls the body up.
-pub(super) fn usual_moment(opening: OpeningLoads, material: &Material, system: &System) -> f64 {
-    opening.moment.unwrap_or_else(|| round_down(0.1 * rolling_moment(material, system)))
+/// Moments, N m, that arrows and sliders of a scene are scaled by: the largest it opens with, or, of a scene without moments, a
+/// tenth of what rolls the body up; and the one that sliders end at.
+pub(super) fn moment_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
+    let usual = opening.moment.unwrap_or_else(|| round_down(0.1 * rolling_moment(material, system)));
+    [usual, largest_moment(material, system).max(LEAST_SPAN * usual)]
 }
 
 /// The circular arrow of a moment, in the window.

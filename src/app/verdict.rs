@@ -134,10 +134,7 @@ pub(super) fn summary(input: &PanelInput<'_>) -> (String, bool) {
     }
     add(count(simulation.iterations(), "iteration"));
     if let Some(path) = input.jump.filter(|_| simulation.status().is_success()) {
-        let buckling = path.buckling.map(|buckling| buckling.to_string());
-        for sentence in path.jump.map(|jump| jump.to_string()).into_iter().chain(buckling) {
-            add(translated(&sentence));
-        }
+        path.sentences().for_each(|sentence| add(translated(&sentence)));
     }
     (words, inside_out || stability(simulation) == Some(false))
 }

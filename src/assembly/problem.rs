@@ -201,7 +201,12 @@ impl Problem {
 
     /// Takes loads and pointer to another time, s.
     pub(crate) fn set_time(&mut self, time: f64) {
-        self.loads.set_time(time);
+        self.set_stage(time, &|pulse| pulse.factor(time));
+    }
+
+    /// Takes the pointer to another time, s, and sets every pulse to a factor of its full size; see [`Loads::set_pulses`].
+    pub(crate) fn set_stage(&mut self, time: f64, factor: &dyn Fn(&Pulse) -> f64) {
+        self.loads.set_pulses(factor);
         if let Some(hand) = &mut self.hand {
             hand.set_time(time);
         }

@@ -16,8 +16,8 @@ use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult}
 use crate::stress::strain_warning;
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Demand, Effort, Extent, LoadCurve, LoadPath, MotionStudy, PathSummary, Reference, Scaling, Study, StudyError,
-    Tuning, extremes, heat_map, motion_heat_map, moved_points, parallel, path_chart, plot,
+    Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MotionStudy, PathSummary, Reference, Scaling, Study,
+    StudyError, Tuning, extremes, heat_map, motion_heat_map, moved_points, parallel, path_chart, plot,
 };
 use crate::timings::Timings;
 use crate::words::count;
@@ -79,9 +79,6 @@ pub(super) struct Solved<'a> {
     pub warnings: &'a [String],
     pub spent: &'a Spent,
 }
-
-/// Unknowns beyond which a certificate takes much longer than the solve, and is made only on request.
-const MOST_CERTIFIED: usize = 100_000;
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let began = Instant::now();

@@ -11,7 +11,7 @@ use crate::export::csv_field;
 use crate::method::{Certificate, floor_words, rho_words};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
-use crate::study::{LoadCurve, LoadPath, PathState, Reference, support_name, support_words};
+use crate::study::{LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_words};
 use crate::words::{count, engineering, engineering_pair, prefix};
 
 /// Prints to standard output. A reader that went away, such as `head`, is no error.
@@ -70,8 +70,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         let _ = writeln!(text, "  {}", floor_words(floor, scene.solver.tolerance));
     }
     if let Some(path) = path {
-        let buckling = path.buckling.map(|buckling| buckling.to_string());
-        for sentence in path.jump.map(|jump| jump.to_string()).into_iter().chain(buckling) {
+        for sentence in path.sentences() {
             let _ = writeln!(text, "{sentence}");
         }
     }
@@ -347,11 +346,7 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
         if let Some(u) = state.probes.first() {
             let _ = write!(text, "{:<24}", pair(*u, "m"));
         }
-        let word = match (state.stable, path.driven) {
-            (Some(false), None) => "unstable",
-            (Some(false), Some(_)) => "unstable under force control",
-            _ => "",
-        };
+        let word = if state.stable == Some(false) { path_chart::unstable_words(path) } else { "" };
         let _ = writeln!(text, "{word}");
     }
     text.push('\n');

@@ -31,8 +31,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
         solver.solves = Solves::Tolerance(solver.tolerance);
     }
     let hand_at_start = solver.hand_force(start);
-    solver.problem.set_time(start.time + 0.5 * h);
-    solver.problem.set_pulses(&|pulse| pulse.mean(start.time, start.time + h));
+    solver.problem.set_stage(start.time + 0.5 * h, &|pulse| pulse.mean(start.time, start.time + h));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
     solver.follow(state);

@@ -26,8 +26,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let Step { solver, h, start, state, books, .. } = step;
     let h = *h;
     let hand_at_start = solver.hand_force(start);
-    solver.problem.set_time(start.time + h);
-    solver.problem.set_pulses(&|pulse| pulse.mean(start.time, start.time + h));
+    solver.problem.set_stage(start.time + h, &|pulse| pulse.mean(start.time, start.time + h));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
     // One solve loses least from where the body is, with A alone; an iteration begins nearer to where it leads.
     let from_start = solver.solves == Solves::Times(1);

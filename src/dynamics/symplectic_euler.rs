@@ -28,8 +28,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
 fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let Step { solver, h, start, state, books, .. } = step;
     let h = *h;
-    solver.problem.set_time(start.time);
-    solver.problem.set_pulses(&|pulse| pulse.mean(start.time, start.time + h));
+    solver.problem.set_stage(start.time, &|pulse| pulse.mean(start.time, start.time + h));
     let lumped = solver.mass.lumped();
     let pull = |hand: Option<&Hand>, state: &_| {
         let force = |hand: &Hand| {

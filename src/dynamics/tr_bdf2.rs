@@ -36,8 +36,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     if !start.knows_net_force {
         solver.measure_net_force(start, state);
     }
-    solver.problem.set_time(start.time + g);
-    solver.problem.set_pulses(&|pulse| pulse.mean(start.time, start.time + g));
+    solver.problem.set_stage(start.time + g, &|pulse| pulse.mean(start.time, start.time + g));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (g, &start.velocity)]);
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
     solver.follow(state);
@@ -78,10 +77,9 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let w = h * (1.0 - GAMMA) / (2.0 - GAMMA);
     let c1 = 1.0 / (GAMMA * (2.0 - GAMMA));
     let c0 = (1.0 - GAMMA).powi(2) * c1;
-    solver.problem.set_time(start.time + h);
     // M (v₁ − v₀) = c₁ M (v_g − v₀) + w f₁ is the impulse of the whole step.
     let (t, end) = (start.time, start.time + h);
-    solver.problem.set_pulses(&|pulse| (pulse.impulse(t, end) - c1 * pulse.impulse(t, t + g)) / w);
+    solver.problem.set_stage(end, &|pulse| (pulse.impulse(t, end) - c1 * pulse.impulse(t, t + g)) / w);
     combine(
         &mut solver.memory.free_flight,
         [

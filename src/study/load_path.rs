@@ -138,6 +138,14 @@ pub struct PathSummary {
     pub supports_work: Option<f64>,
 }
 
+impl PathSummary {
+    /// Its jump and its buckling, a sentence each.
+    pub fn sentences(&self) -> impl Iterator<Item = String> {
+        let buckling = self.buckling.map(|buckling| buckling.to_string());
+        self.jump.map(|jump| jump.to_string()).into_iter().chain(buckling)
+    }
+}
+
 /// The path of a scene.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

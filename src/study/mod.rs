@@ -26,6 +26,8 @@ pub use load_path::{
     Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_words,
 };
 pub use motion::MotionStudy;
+#[cfg(feature = "cli")]
+pub(crate) use reference::MOST_CERTIFIED;
 pub use reference::{ProbeReference, Reference, ReferenceSource};
 pub use scaling::{Exponents, Scaling, ScalingPoint};
 pub use timing::times_from_rest;

@@ -269,9 +269,8 @@ impl Reference {
     }
 }
 
-/// Unknowns beyond which a solution without a certificate is not certified for its reference alone: that took more time and
-/// memory than the reference.
-const MOST_CERTIFIED: usize = 100_000;
+/// Unknowns beyond which a solution is certified on request only: that takes much longer than the solve, or its reference.
+pub(crate) const MOST_CERTIFIED: usize = 100_000;
 
 /// `true` for an equilibrium whose exact tangent is known not to be positive definite.
 fn is_unstable(simulation: &Simulation) -> bool {

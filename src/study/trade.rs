@@ -117,8 +117,19 @@ impl Measurement {
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = self.setting.apply(scene);
-        scene.solver.accept_after = if self.converged { 0 } else { self.setting.iterations };
+        scene.solver.accept_after = self.accept_after();
         scene
+    }
+
+    /// `true` if a scene is as [`Self::apply`] makes it.
+    #[must_use]
+    pub fn is_applied_to(&self, scene: &Scene) -> bool {
+        Setting::of(scene, self.setting.iterations) == self.setting && scene.solver.accept_after == self.accept_after()
+    }
+
+    /// Iterations after which its result was taken; 0 where the method had ended by itself.
+    fn accept_after(&self) -> u32 {
+        if self.converged { 0 } else { self.setting.iterations }
     }
 
     /// Time of a solve, ms.

@@ -3,11 +3,11 @@
 use egui::Ui;
 
 use super::{Action, PanelInput, PanelState, edges};
-use crate::app::arrow::{DOWN, LEAST_SPAN, largest_force, polar_form, usual_force, vector};
+use crate::app::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::field::{NumberField, SliderScale};
 use crate::app::language::{joined, tr};
 use crate::app::load_scale::OpeningLoads;
-use crate::app::turn::{largest_moment, usual_moment};
+use crate::app::turn::moment_range;
 use crate::assembly::System;
 use crate::scene::{Load, Scene, limits};
 use crate::words::engineering;
@@ -50,9 +50,8 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
     let (magnitude, direction) = polar_form(force_of(scene).unwrap_or_default());
     let (original, original_direction) = polar_form(force_of(input.original).unwrap_or_default());
     let direction = direction.unwrap_or(state.force_direction());
-    let (material, system) = (&scene.material, input.simulation.system());
-    let usual = usual_force(OpeningLoads::of(input.original), material, system);
-    let largest = largest_force(material, system).max(LEAST_SPAN * usual);
+    let opening = OpeningLoads::of(input.original);
+    let [usual, largest] = force_range(opening, &scene.material, input.simulation.system());
     let field = NumberField {
         label: "Force",
         tooltip: "Magnitude of the force, N. Type a number for values the slider has not, such as 12 kN.",
@@ -105,9 +104,8 @@ pub(super) fn gravity_and_moment(
         actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
     }
     let current = moment_of(scene);
-    let (material, system) = (&scene.material, input.simulation.system());
-    let usual = usual_moment(OpeningLoads::of(input.original), material, system);
-    let largest = largest_moment(material, system).max(LEAST_SPAN * usual);
+    let opening = OpeningLoads::of(input.original);
+    let [usual, largest] = moment_range(opening, &scene.material, input.simulation.system());
     let field = NumberField {
         label: "Moment",
         tooltip: "Moment on an edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
