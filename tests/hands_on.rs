@@ -323,6 +323,8 @@ fn edits_are_undone_and_done_again() {
     harness.run();
     harness.get_by_label("bridge").click();
     harness.run();
+    harness.get_by_role_and_label(Role::Button, "Discard").click();
+    harness.run();
     assert_eq!(harness.state().scene().name, "Bridge");
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!((force(harness.state()), harness.state().scene().material.poisson), (dragged, poisson));
@@ -835,4 +837,172 @@ fn loads_and_supports_are_put_on_other_edges() {
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(*harness.state().scene(), scene("cantilever"));
+}
+
+/// Edits that no file has are not lost without a question: by another scene, by a file that is dropped, by closing. Undo
+/// brings discarded edits back.
+#[test]
+fn unsaved_edits_are_asked_about() {
+    const QUESTION: &str = "Save the changes to \u{201c}Cantilever\u{201d}?";
+    let closes = std::rc::Rc::new(std::cell::Cell::new(false));
+    let asked = closes.clone();
+    let own = scene("cantilever");
+    let simulation = Simulation::new(&own).unwrap();
+    let lab = Lab::new(Source { name: "cantilever".into(), assignments: Vec::new() }, own, simulation);
+    let mut harness = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(2000).build_ui_state(
+        move |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            asked.set(asked.get() || lab.ui(ui).contains(&warpbeam::app::lab::Request::Close));
+        },
+        lab,
+    );
+    harness.run();
+    let ctx = harness.ctx.clone();
+    assert!(harness.state_mut().request_close(&ctx), "nothing is edited");
+    type_into(&mut harness, "Force", "700");
+    let edited = harness.state().scene().clone();
+    let folder = tempfile::tempdir().unwrap();
+    let dropped = folder.path().join("dropped.toml");
+    std::fs::write(&dropped, scene("shear").to_toml().unwrap()).unwrap();
+    let drop_it = |harness: &mut Harness<'_, Lab>| {
+        harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(dropped.clone())));
+        harness.run();
+        harness.input_mut().dropped_files.clear();
+        harness.run();
+    };
+    // Cancelled, by the button or by Escape, nothing happens.
+    for cancel in [0, 1] {
+        drop_it(&mut harness);
+        harness.get_by_label(QUESTION);
+        // Keys of the window wait for the answer.
+        key(&mut harness, Modifiers::NONE, Key::P);
+        assert!(harness.query_by_role_and_label(Role::Slider, "Force").is_some());
+        match cancel {
+            0 => harness.get_by_role_and_label(Role::Button, "Cancel").click(),
+            _ => harness.key_press(Key::Escape),
+        }
+        harness.run();
+        assert!(harness.query_by_label(QUESTION).is_none());
+        assert_eq!(*harness.state().scene(), edited);
+    }
+    // Discarded, they can be brought back.
+    drop_it(&mut harness);
+    harness.get_by_role_and_label(Role::Button, "Discard").click();
+    harness.run();
+    assert_eq!(*harness.state().scene(), scene("shear"));
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), edited);
+    // Saved: a built-in scene has no file yet, and the window closes once it has one.
+    assert!(!harness.state_mut().request_close(&ctx), "it asks first");
+    harness.run();
+    key(&mut harness, Modifiers::NONE, Key::Enter);
+    assert!(harness.query_by_label("Save the scene").is_some());
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.query_by_label("Save the scene").is_none(), "a cancelled file cancels the rest");
+    assert!(!harness.state_mut().request_close(&ctx), "it is still not saved");
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "Save").click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    let kept = folder.path().join("kept.toml");
+    harness.event(Event::Text(kept.to_str().unwrap().to_owned()));
+    harness.step();
+    assert!(!closes.get());
+    key(&mut harness, Modifiers::NONE, Key::Enter);
+    assert_eq!(warpbeam::Scene::from_toml(&std::fs::read_to_string(&kept).unwrap()).unwrap().loads, edited.loads);
+    assert!(closes.get(), "it closes once the scene has a file");
+    assert!(harness.state_mut().request_close(&ctx), "all is saved");
+}
+
+/// Length and height are set in the panel. Cells keep their size, what is at points of the beam moves along, and undo brings
+/// everything back.
+#[test]
+fn a_beam_gets_another_length_and_height() {
+    let mut harness = harness("cantilever");
+    let before = harness.state().scene().clone();
+    let beam = before.beam.clone().unwrap();
+    type_into(&mut harness, "Length", "12");
+    type_into(&mut harness, "Height", "1.5");
+    let after = harness.state().scene().beam.clone().unwrap();
+    assert_eq!((after.length, after.height), (12.0, 1.5));
+    let cells = |along: f64, across: f64| {
+        [along * f64::from(beam.cells[0]), across * f64::from(beam.cells[1])].map(|n| n.round().max(1.0) as u32)
+    };
+    assert_eq!(after.cells, cells(12.0 / beam.length, 1.5 / beam.height));
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    harness.get_by_label_contains("Slenderness, length over height: 8");
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), before);
+    // Small steps add up.
+    for tenth in 101..=150 {
+        type_into(&mut harness, "Length", &format!("{}", f64::from(tenth) * 0.01 * beam.length));
+    }
+    assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, cells(1.5, 1.0));
+}
+
+/// A cantilever becomes a simply supported beam under two loads, by buttons alone; every step can be undone.
+#[test]
+fn loads_and_supports_are_added_and_removed() {
+    let mut harness = harness("cantilever");
+    let before = harness.state().scene().clone();
+    unfold(&mut harness, "Add");
+    let press = |harness: &mut Harness<'_, Lab>, name: &str| {
+        harness.get_by_role_and_label(Role::Button, name).click();
+        harness.run();
+    };
+    let pick_place = |harness: &mut Harness<'_, Lab>, row: (&str, usize), place: &str| {
+        harness.get_all_by_role_and_label(Role::ComboBox, row.0).nth(row.1).unwrap().click();
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, place).scroll_to_me();
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, place).click();
+        harness.run();
+    };
+    pick_place(&mut harness, ("Held at", 0), "lower left corner");
+    assert_eq!(*harness.state().scene(), before, "a pin alone holds no body: refused");
+    press(&mut harness, "Support");
+    assert_eq!(harness.state().scene().supports.len(), 2);
+    pick_place(&mut harness, ("Held at", 1), "lower right corner");
+    pick_place(&mut harness, ("Held at", 0), "lower left corner");
+    let scene = harness.state().scene();
+    let beam = scene.beam.as_ref().unwrap();
+    let [pin, roller] = [&scene.supports[0], &scene.supports[1]];
+    assert_eq!((&pin.place, pin.fix.len()), (&[0.0, -0.5 * beam.height].into(), 2));
+    assert_eq!((&roller.place, roller.fix.len()), (&[beam.length, -0.5 * beam.height].into(), 1));
+    pick_place(&mut harness, ("Force on", 0), "middle of the top");
+    press(&mut harness, "Force");
+    assert_eq!(harness.state().scene().loads.len(), 2);
+    // The sliders set the force that is chosen.
+    let forces = |lab: &Lab| -> Vec<[f64; 2]> {
+        lab.scene()
+            .loads
+            .iter()
+            .filter_map(|l| if let Load::Force { force, .. } = l { Some(*force) } else { None })
+            .collect()
+    };
+    let first = forces(harness.state())[0];
+    harness.get_by_role_and_label(Role::ComboBox, "Sliders set").click();
+    harness.run();
+    harness.get_by_label_contains("Force 2:").click();
+    harness.run();
+    type_into(&mut harness, "Force", "10");
+    let [left, second] = <[[f64; 2]; 2]>::try_from(forces(harness.state())).unwrap();
+    assert!(left == first && (second[0].hypot(second[1]) - 10.0).abs() < 1e-9, "{left:?} {second:?}");
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    // Reactions carry both.
+    let reactions = harness.state().simulation().support_reactions();
+    let up: f64 = reactions.iter().map(|r| r.force.y).sum();
+    assert!((up + left[1] + second[1]).abs() < 1e-6 * up, "{up} {left:?} {second:?}");
+    unfold(&mut harness, "Add");
+    harness.get_by_role_and_label(Role::Button, "Remove load 2").click();
+    harness.run();
+    assert_eq!(forces(harness.state()), [first]);
+    for _ in 0..40 {
+        if harness.state().can_undo() {
+            key(&mut harness, Modifiers::COMMAND, Key::Z);
+        }
+    }
+    assert_eq!(*harness.state().scene(), before);
 }

@@ -18,7 +18,7 @@ use common::{scene, solve_json, warpbeam};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use warpbeam::app::Lab;
+use warpbeam::app::{Lab, Recovery};
 use warpbeam::scene::{Load, Source};
 use warpbeam::simulation::Simulation;
 use x11rb::protocol::xproto::{ConnectionExt, ImageFormat, MapState};
@@ -216,12 +216,17 @@ impl<'a> Window<'a> {
     }
 
     /// Closes the window as its manager does; returns the program's exit code and what it said.
-    fn close(mut self) -> (Option<i32>, String) {
+    fn close(self) -> (Option<i32>, String) {
+        self.close_by(&["alt+F4"])
+    }
+
+    /// Closes the window by these keys.
+    fn close_by(mut self, keys: &[&str]) -> (Option<i32>, String) {
         let mut asked: Option<Instant> = None;
         let status = wait_for("the program to end", || {
             // A key can get lost while windows change hands: asked again, as a person would.
             if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-                self.key("alt+F4");
+                keys.iter().for_each(|key| _ = self.key(key));
                 asked = Some(Instant::now());
             }
             self.process.try_wait().unwrap()
@@ -231,8 +236,16 @@ impl<'a> Window<'a> {
 
     /// Closes the window of a program that has nothing to complain about.
     fn close_well(self) {
-        let (code, said) = self.close();
-        assert_eq!(code, Some(0), "{said}");
+        Self::check_end(&self.close());
+    }
+
+    /// Closes the window of a program that has nothing to complain about, and discards the edits.
+    fn discard_well(self) {
+        Self::check_end(&self.close_by(&["alt+F4", "d"]));
+    }
+
+    fn check_end((code, said): &(Option<i32>, String)) {
+        assert_eq!(*code, Some(0), "{said}");
         assert!(!said.contains("panicked"), "{said}");
     }
 }
@@ -310,7 +323,7 @@ fn a_slider_is_dragged_the_picture_changes_and_close_exits_0() {
     // Of 1 024 000 pixels, the beam and its ghost cover tens of thousands.
     let moved = changed(&before, &after);
     assert!(moved > 20_000, "only {moved} pixels changed");
-    window.close_well();
+    window.discard_well();
 }
 
 #[test]
@@ -499,5 +512,42 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     let different = changed(&read_bgrx(&picture).unwrap(), &after);
     assert!(different < 5_000, "{different} pixels differ from what `shot` makes of the saved scene");
     until("the scene as it was", "ctrl+z", &|| changed(&before, &window.image()) < 2_000);
-    window.close_well();
+    window.discard_well();
+}
+
+/// Edits survive a program that is killed: the next window offers them, and Restore brings them back. An answered offer is
+/// not made again.
+#[test]
+fn edits_survive_a_killed_window() {
+    let Some(desktop) = Desktop::start() else { return };
+    let mut window = Window::open(&desktop, &["run", "article"]);
+    let slider = force_slider();
+    let at = |place: f32| (slider.left() + place * slider.width(), slider.center().y);
+    window.point(at(0.5).0, at(0.5).1);
+    desktop.xdotool(&["mousedown", "1"]);
+    window.point(at(0.3).0, at(0.3).1);
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(420.0, 735.0);
+    let copies = desktop.config.path().join("warpbeam").join("unsaved");
+    let edited = window.settle();
+    wait_for("a copy of the edits", || copies.join("0.toml").exists().then_some(()));
+    window.process.kill().unwrap();
+    window.process.wait().unwrap();
+    let restore = {
+        let (_place, left) = Recovery::open(&copies).unwrap();
+        let mut harness = laid_out();
+        harness.state_mut().offer(left.unwrap());
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, "Restore").rect().center()
+    };
+    let next = Window::open(&desktop, &["run", "article"]);
+    assert!(changed(&next.settle(), &edited) > 10_000, "it starts with the scene as it was opened");
+    next.point(restore.x, restore.y);
+    desktop.xdotool(&["click", "1"]);
+    next.point(420.0, 735.0);
+    next.wait_for_picture("the restored edits", &edited);
+    wait_for("another copy", || copies.join("1.toml").exists().then_some(()));
+    assert!(!copies.join("0.toml").exists(), "it would be offered again");
+    next.discard_well();
+    assert!(!copies.join("1.toml").exists());
 }

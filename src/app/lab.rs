@@ -34,6 +34,7 @@ use super::plot::Curve;
 use super::pointer::{Body, Look, Pointer, Reach, Wish};
 use super::quality::Quality;
 use super::recorder::Recorder;
+use super::recovery::Unsaved;
 use super::settings::Settings;
 use super::shape::Shape;
 use super::stage::viewport;
@@ -51,8 +52,10 @@ use crate::timings::Timings;
 use crate::words;
 
 mod beside;
+mod unsaved;
 
 use beside::Beside;
+use unsaved::{Departure, Question};
 
 /// Width of the panel, points.
 pub const PANEL_WIDTH: f32 = 284.0;
@@ -82,6 +85,10 @@ const TOAST: Duration = Duration::from_secs(4);
 pub enum Request {
     /// Save a picture.
     Screenshot,
+    /// Close the window.
+    Close,
+    /// Remove the copy of unsaved edits that a crashed window has left.
+    ForgetCopy,
 }
 
 /// Everything the window shows.
@@ -111,6 +118,12 @@ pub struct Lab {
     probe: Option<MaterialPoint>,
     /// The file that is asked for.
     dialog: Option<FileDialog>,
+    /// Question about unsaved edits.
+    question: Question,
+    /// Edits that a crashed window has left, while they are offered.
+    left: Option<Unsaved>,
+    /// `true` once the window is to close.
+    closes: bool,
     /// Whether the scene's file has been written by somebody else.
     is_outdated: bool,
     settings: Settings,
@@ -185,6 +198,9 @@ impl Lab {
             dialog: None,
             is_outdated: false,
             settings: Settings::default(),
+            question: Question::None,
+            left: None,
+            closes: false,
             adapter: String::new(),
             toast: None,
             drawing,
@@ -682,7 +698,7 @@ impl Lab {
         if self.view.bars {
             self.bars(ui, &mut actions);
         }
-        if self.dialog.is_none() && !was_typing {
+        if !self.has_dialog() && !was_typing {
             actions.extend(keys::actions(ui.ctx()));
         }
         (self.view.mode.entry().show)(self, ui, &mut actions);
@@ -736,7 +752,10 @@ impl Lab {
     /// The panel over the body, where the window is narrow.
     fn sheet(&mut self, ui: &Ui, actions: &mut Vec<Action>) {
         let errors = verdict::errors(&self.input());
+        self.offer_unsaved(ui.ctx(), &mut requests);
+        self.ask_to_save(ui.ctx());
         let rect = self.view_rect;
+        requests.extend(std::mem::take(&mut self.closes).then_some(Request::Close));
         let width = PANEL_WIDTH.min(rect.width());
         egui::Area::new(egui::Id::unique("sheet"))
             .order(egui::Order::Foreground)
@@ -872,7 +891,7 @@ impl Lab {
         let shown = Shown { input: self.input(), study: self.budget.study(), progress: self.budget.progress() };
         // What lies over the body has Escape first.
         let sheet = self.view.narrow && self.view.sheet;
-        let keys = self.dialog.is_none() && !self.view.help && !sheet;
+        let keys = !self.has_dialog() && !self.view.help && !sheet;
         learn.show(ui, &shown, keys, actions);
         self.learn = Some(learn);
     }
@@ -1204,6 +1223,7 @@ impl Lab {
         Some(scene)
     }
 
+            self.panel.choose_force(load);
     /// Where a material point is in the window.
     fn in_view(&self, point: MaterialPoint) -> Option<egui::Pos2> {
         let place = probe::place(self.simulation.system().mesh(), &self.shape.nodes, point)?;
@@ -1247,7 +1267,7 @@ impl Lab {
         let is_sound = if self.moves() {
             !matches!(status, Status::Stopped(_))
         } else {
-            matches!(status, Status::Converged | Status::Accepted) || self.shows_converged
+            status.is_success() || self.shows_converged
         };
         if is_sound {
             let (mut low, mut high) = self.simulation.system().mesh().bounds();
@@ -1338,17 +1358,13 @@ impl Lab {
 
     fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
         match action {
-            Action::Open(id) => self.open(ctx, Source { name: id.into(), assignments: Vec::new() }),
-            Action::OpenFile => self.dialog = Some(FileDialog::new(Purpose::Open, self.document.path(), "")),
-            Action::Drop(path) => self.open(ctx, Source { name: path, assignments: Vec::new() }),
+            Action::Open(id) => {
+                self.depart(ctx, Departure::Open(Source { name: id.into(), assignments: Vec::new() }));
+            }
+            Action::OpenFile => self.depart(ctx, Departure::AskForFile),
+            Action::Drop(path) => self.depart(ctx, Departure::Open(Source { name: path, assignments: Vec::new() })),
             Action::Reload => self.open(ctx, self.document.source.clone()),
-            Action::Save => match self.document.path().map(Path::to_owned) {
-                Some(path) => {
-                    let saved = self.save(&path);
-                    self.say(ctx, saved.unwrap_or_else(|reason| fill!("Not saved: %{reason}", reason = reason)));
-                }
-                None => self.ask_where_to_save(),
-            },
+            Action::Save => self.save_here(ctx),
             Action::SaveAs => self.ask_where_to_save(),
             Action::Undo => {
                 let step = self.edits.undo(self.snapshot());
@@ -1607,7 +1623,10 @@ impl Lab {
         let Some(mut dialog) = self.dialog.take() else { return };
         let done = match dialog.show(ctx, self.settings.recent()) {
             None => Err(None),
-            Some(Answer::Cancel) => Ok(None),
+            Some(Answer::Cancel) => {
+                self.question = Question::None;
+                Ok(None)
+            }
             Some(Answer::File(path)) => match dialog.purpose {
                 Purpose::Open => {
                     let source = Source { name: path, assignments: Vec::new() };
@@ -1618,7 +1637,10 @@ impl Lab {
         };
         match done {
             Ok(None) => {}
-            Ok(Some(words)) => self.say(ctx, words),
+            Ok(Some(words)) => {
+                self.say(ctx, words);
+                self.after_save(ctx);
+            }
             Err(message) => {
                 message.into_iter().for_each(|message| dialog.refuse(message));
                 self.dialog = Some(dialog);
@@ -1663,6 +1685,21 @@ impl Lab {
     fn solve_linear(&mut self) {
         let known = self.linear.take();
         self.linear = solve_linear(self.simulation.scene(), self.simulation.system(), known);
+    /// Saves the scene to its file, or asks for one.
+    fn save_here(&mut self, ctx: &egui::Context) {
+        let Some(path) = self.document.path().map(Path::to_owned) else { return self.ask_where_to_save() };
+        match self.save(&path) {
+            Ok(words) => {
+                self.say(ctx, words);
+                self.after_save(ctx);
+            }
+            Err(reason) => {
+                self.question = Question::None;
+                self.say(ctx, fill!("Not saved: %{reason}", reason = reason));
+            }
+        }
+    }
+
     }
 
     fn copy(&mut self, ctx: &egui::Context) {

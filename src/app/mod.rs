@@ -49,6 +49,7 @@ mod quality;
 mod record;
 mod recorder;
 mod settings;
+mod recovery;
 mod shape;
 mod shot;
 mod size;
@@ -63,6 +64,8 @@ pub use lab::{Lab, PANEL_WIDTH};
 pub use language::Language;
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use settings::Settings;
+#[doc(hidden)]
+pub use recovery::{Recovery, Unsaved};
 pub use shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
 pub use window::{Display, NoDisplay, opens_beside, run};
 

@@ -1,6 +1,6 @@
 //! The window: winit events in, frames out. At rest nothing is drawn.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -17,6 +17,7 @@ use super::clicks;
 use super::clipboard::Clipboard;
 use super::lab::{Lab, Request};
 use super::language::fill;
+use super::recovery::Recovery;
 use super::settings::Settings;
 use super::shot::picture;
 use super::size::{MOST_ALONE, unknowns};
@@ -91,6 +92,17 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
     };
     lab.set_settings(&ctx, settings.clone());
     lab.set_easing(true);
+    let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
+    let recovery = folder.and_then(|folder| match Recovery::open(&folder) {
+        Ok((recovery, left)) => {
+            left.into_iter().for_each(|left| lab.offer(left));
+            Some(recovery)
+        }
+        Err(error) => {
+            log::warn!("{}: {error}", folder.display());
+            None
+        }
+    });
     if first_picture {
         lab.introduce();
     }
@@ -99,6 +111,7 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
         ctx,
         settings,
         settings_file: file,
+        recovery,
         open: None,
         start: Instant::now(),
         later: Vec::new(),
@@ -116,6 +129,8 @@ struct App {
     /// As they are in their file.
     settings: Settings,
     settings_file: Option<PathBuf>,
+    /// Keeps a copy of unsaved edits; `None` where the system has no place for it.
+    recovery: Option<Recovery>,
     open: Option<OpenWindow>,
     /// When the window began.
     start: Instant,
@@ -283,11 +298,39 @@ impl App {
         open.window.set_title(&self.lab.title());
 
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
+        let delay = delay.min(self.keep_unsaved());
         self.schedule(if self.later.is_empty() { delay } else { Duration::ZERO });
-        if requests.contains(&Request::Screenshot) {
-            self.screenshot(screen.pixels_per_point);
+        for request in requests {
+            match request {
+                Request::Screenshot => self.screenshot(screen.pixels_per_point),
+                Request::ForgetCopy => self.recovery.iter_mut().for_each(Recovery::forget_left),
+                Request::Close => self.close(event_loop),
+            }
         }
         Ok(())
+    }
+
+    /// Keeps a copy of unsaved edits; returns when to ask again.
+    fn keep_unsaved(&mut self) -> Duration {
+        let Some(recovery) = &mut self.recovery else { return Duration::MAX };
+        match recovery.keep(self.lab.unsaved()) {
+            Ok(due) => due.map_or(Duration::MAX, |due| due.saturating_duration_since(Instant::now())),
+            Err(error) => {
+                log::warn!("no copy of unsaved changes is kept: {error}");
+                self.recovery = None;
+                Duration::MAX
+            }
+        }
+    }
+
+    /// Closes the window. Edits that are not saved by now are not wanted.
+    fn close(&mut self, event_loop: &ActiveEventLoop) {
+        if let Some(recovery) = &mut self.recovery
+            && let Err(error) = recovery.keep(None)
+        {
+            log::warn!("the copy of unsaved changes is still there: {error}");
+        }
+        self.quit(event_loop, None);
     }
 
     fn schedule(&mut self, delay: Duration) {
@@ -373,9 +416,15 @@ impl ApplicationHandler for App {
         open.clipboard.before(&event, &mut open.input);
         let wants = open.input.on_window_event(&open.window, &event);
         match event {
-            WindowEvent::CloseRequested | WindowEvent::Destroyed => {
-                return self.quit(event_loop, None);
+            WindowEvent::CloseRequested => {
+                if self.lab.request_close(&self.ctx) {
+                    return self.close(event_loop);
+                }
+                // The question is to be seen.
+                open.window.set_minimized(false);
+                open.window.request_redraw();
             }
+            WindowEvent::Destroyed => return self.quit(event_loop, None),
             WindowEvent::Resized(size) => {
                 open.resize(size.width, size.height);
                 let points = size.to_logical::<f32>(open.window.scale_factor());

@@ -69,7 +69,7 @@ pub(crate) fn bent(beam: &Beam, along: f64, across: f64) -> Vector2<f64> {
         return Vector2::new(x, across);
     }
     let slope = 4.0 * beam.rise * (1.0 - 2.0 * along) / beam.length;
-    let axis = Vector2::new(x, 4.0 * beam.rise * along * (1.0 - along));
+    let axis = Vector2::new(x, beam.axis(along));
     axis + Vector2::new(-slope, 1.0) * (across / slope.hypot(1.0))
 }
 

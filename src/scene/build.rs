@@ -242,6 +242,27 @@ impl Scene {
         Ok(())
     }
 
+    /// Gives the beam another length and height, m, and moves loads, supports and probes at points along with it. The number
+    /// of cells stays. A scene with a mesh file stays as it is.
+    pub fn resize_beam(&mut self, length: f64, height: f64) {
+        let Some(beam) = &mut self.beam else { return };
+        let before = beam.clone();
+        (beam.length, beam.height) = (length, height);
+        let loads = self.loads.iter_mut().filter_map(|load| match load {
+            Load::Force { place, .. } => Some(place),
+            Load::Moment { .. } | Load::Gravity { .. } => None,
+        });
+        let supports = self.supports.iter_mut().map(|support| &mut support.place);
+        let probes = self.probes.iter_mut().map(|probe| &mut probe.place);
+        for place in loads.chain(supports).chain(probes) {
+            if let Place::At([x, y]) = place {
+                let along = *x / before.length;
+                let across = (*y - before.axis(along)) / before.height;
+                [*x, *y] = beam.point(along, across);
+            }
+        }
+    }
+
     /// Every load times `factor`, and supports taken as much of their way.
     pub fn scale_loads(&mut self, factor: f64) {
         for support in &mut self.supports {

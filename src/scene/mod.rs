@@ -353,6 +353,18 @@ impl Beam {
         Err(Invalid::new("beam.cells", message))
     }
 
+    /// Height of the axis at rest above its ends, m; `along` is 0 at the left end and 1 at the right one.
+    pub(crate) fn axis(&self, along: f64) -> f64 {
+        4.0 * self.rise * along * (1.0 - along)
+    }
+
+    /// Rest coordinates of a point, m: `along` is 0 at the left end and 1 at the right one, `across` −½ at the bottom and ½ at
+    /// the top, measured upwards.
+    #[must_use]
+    pub fn point(&self, along: f64, across: f64) -> [f64; 2] {
+        [along * self.length, self.axis(along) + across * self.height]
+    }
+
     /// Length over height of one cell.
     #[must_use]
     pub fn cell_aspect(&self) -> f64 {

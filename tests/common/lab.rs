@@ -7,9 +7,10 @@ use egui_kittest::kittest::Queryable;
 use warpbeam::app::Lab;
 
 /// What is behind a fold of the panel.
-const FOLDS: [(&str, &[&str]); 5] = [
+const FOLDS: [(&str, &[&str]); 6] = [
     ("Gravity, moment: ", &["Gravity", "Moment"]),
-    ("Edges: ", &["Force on", "Held at", "Moment on"]),
+    ("Loads and supports: ", &["Add", "Force on", "Held at", "Moment on"]),
+    ("Beam: ", &["Length", "Height"]),
     ("Material: ", &["Young E", "Poisson ν", "Density ρ", "Thickness t", "strain"]),
     ("Mesh: ", &["Cells along", "Cells across"]),
     ("Details: ", &["stable"]),
@@ -30,7 +31,7 @@ pub fn unfold(harness: &mut Harness<'_, Lab>, label: &str) {
     }
 }
 
-/// Picks an entry of a picker.
+/// Picks an entry of a picker; edits that another scene would lose are discarded.
 pub fn pick(harness: &mut Harness<'_, Lab>, picker: &str, entry: &str) {
     harness.get_by_role_and_label(Role::ComboBox, picker).click();
     harness.run();
@@ -39,6 +40,10 @@ pub fn pick(harness: &mut Harness<'_, Lab>, picker: &str, entry: &str) {
     harness.run();
     harness.get_by_role_and_label(Role::Button, entry).click();
     harness.run();
+    if let Some(discard) = harness.query_by_role_and_label(Role::Button, "Discard") {
+        discard.click();
+        harness.run();
+    }
 }
 
 /// Types a number into the field of this label.

@@ -174,6 +174,11 @@ impl Learn {
         (self.before, self.card)
     }
 
+    /// The lab as it was before the mode.
+    pub(super) fn lab_before(&self) -> &Lab {
+        &self.before
+    }
+
     /// How the lab was looked at.
     pub(super) fn view_before(&self) -> &ViewOptions {
         self.before.view()

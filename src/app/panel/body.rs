@@ -5,10 +5,10 @@ use egui::Ui;
 use super::{Action, PanelInput, PanelState, number_row};
 use crate::app::action::MOST_ITERATIONS;
 use crate::app::field::{NumberField, SliderScale, show_message};
-use crate::app::language::{count, joined, tr};
+use crate::app::language::{count, fill, joined, tr};
 use crate::app::toolbar::option_button;
-use crate::scene::{Analysis, Material, Plane, Scene, limits};
-use crate::words::engineering;
+use crate::scene::{Analysis, Beam, Material, Plane, Scene, limits};
+use crate::words::{engineering, number, three_digits};
 
 /// A material with a name.
 struct Preset {
@@ -33,6 +33,72 @@ pub(super) fn material_summary(scene: &Scene) -> String {
     let young = scene.material.young;
     let name = PRESETS.iter().find(|preset| preset.range.contains(&young)).map(|p| tr(p.name).to_lowercase());
     joined(name.into_iter().chain([engineering(young, "Pa")]))
+}
+
+/// Length and height of a beam: `3 m × 1 m`.
+pub(super) fn size_summary(beam: &Beam) -> String {
+    format!("{} × {}", engineering(beam.length, "m"), engineering(beam.height, "m"))
+}
+
+/// Cells that follow the size of a beam: as many as keep the length or height of a cell.
+#[derive(Debug, Default)]
+pub(super) struct CellsThatFollow {
+    /// Length or height, m, and cells, from which the others are counted.
+    references: [Option<(f64, u32)>; 2],
+}
+
+impl CellsThatFollow {
+    /// Number of cells of a side that is now of size `new`, m, and was of size `old` with `cells`. Small steps add up: all
+    /// are counted from the same reference until somebody sets the cells.
+    fn count(&mut self, axis: usize, [old, new]: [f64; 2], cells: u32) -> u32 {
+        let Some(reference) = self.references.get_mut(axis) else { return cells };
+        let at = |(size, cells): (f64, u32), now: f64| {
+            (f64::from(cells) * now / size).round().clamp(limits::CELLS.min, limits::CELLS.max) as u32
+        };
+        let from = reference.filter(|&from| at(from, old) == cells).unwrap_or((old, cells));
+        *reference = Some(from);
+        at(from, new)
+    }
+}
+
+/// Length and height of the beam.
+pub(super) fn size(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    let (Some(beam), Some(original)) = (&input.scene.beam, &input.original.beam) else { return };
+    let sides = [
+        (
+            "Length",
+            "Length of the beam, m. Cells along it follow; points with loads or supports move with it.",
+            limits::LENGTH,
+            [beam.length, original.length],
+        ),
+        (
+            "Height",
+            "Height of the beam, m. Cells across it follow; points with loads or supports move with it.",
+            limits::HEIGHT,
+            [beam.height, original.height],
+        ),
+    ];
+    for (axis, (label, tooltip, limit, [present, original])) in sides.into_iter().enumerate() {
+        const SPAN: f64 = 10.0;
+        let field = NumberField {
+            label,
+            tooltip,
+            limit,
+            slider: original / SPAN..=original * SPAN,
+            scale: SliderScale::Logarithmic(original / SPAN),
+            whole: false,
+        };
+        let Some(new) = field.show_beside(ui, &mut state.messages, present, Some(original)) else { continue };
+        let mut scene = Box::new(input.scene.clone());
+        let (length, height) = if axis == 0 { (new, beam.height) } else { (beam.length, new) };
+        scene.resize_beam(length, height);
+        if let Some(cells) = scene.beam.as_mut().and_then(|beam| beam.cells.get_mut(axis)) {
+            *cells = state.cells.count(axis, [present, new], *cells);
+        }
+        actions.push(Action::Edit(label, scene));
+    }
+    let slenderness = number(three_digits(beam.length / beam.height));
+    ui.label(fill!("Slenderness, length over height: %{slenderness}", slenderness = slenderness));
 }
 
 /// The mesh in a few words: `5 × 1, 24 unknowns`.

@@ -1,12 +1,17 @@
-//! Pickers of the edges that loads and supports are on.
+//! Loads and supports: the edge or point of each, and buttons that add and remove them.
 
-use egui::{ComboBox, Ui};
+use egui::{Align, Button, ComboBox, Layout, Role, Ui, WidgetInfo, vec2};
 
 use super::{Action, PanelInput, PanelState, ViewOptions};
+use crate::app::arrow::force_range;
 use crate::app::field::show_message;
 use crate::app::language::{count, fill, joined, tr};
+use crate::app::load_scale::OpeningLoads;
+use crate::app::toolbar::option_button;
+use crate::app::turn::moment_range;
 use crate::assembly::{Edge, System};
-use crate::scene::{Load, Place, Scene};
+use crate::scene::{Axis, Load, Place, Scene, Support};
+use crate::words::number;
 
 /// Edges that a load is looked for on, before all others.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];
@@ -43,11 +48,32 @@ pub(super) fn edge_for_moment(scene: &Scene, system: &System) -> Option<String> 
     edge_for(scene, system, can_turn)
 }
 
+/// Points of a beam that loads and supports are often at: the name of each, and its place along and across.
+const POINTS: [(&str, [f64; 2]); 8] = [
+    ("lower left corner", [0.0, -0.5]),
+    ("lower right corner", [1.0, -0.5]),
+    ("upper left corner", [0.0, 0.5]),
+    ("upper right corner", [1.0, 0.5]),
+    ("middle of the bottom", [0.5, -0.5]),
+    ("middle of the top", [0.5, 0.5]),
+    ("middle of the left end", [0.0, 0.0]),
+    ("middle of the right end", [1.0, 0.0]),
+];
+
+/// Named points of the beam, if the scene has one.
+fn points(scene: &Scene) -> impl Iterator<Item = (&'static str, Place)> {
+    let beam = scene.beam.as_ref();
+    beam.into_iter().flat_map(|beam| POINTS.map(|(name, [along, across])| (name, beam.point(along, across).into())))
+}
+
 /// A place in words.
-fn words(place: &Place) -> String {
+pub(super) fn words(scene: &Scene, place: &Place) -> String {
     match place {
         Place::Edge(name) => tr(name).to_owned(),
-        Place::At([x, y]) => fill!("point (%{x}, %{y})", x = x, y = y),
+        Place::At([x, y]) => match points(scene).find(|(_, point)| point == place) {
+            Some((name, _)) => tr(name).to_owned(),
+            None => fill!("point (%{x}, %{y})", x = number(*x), y = number(*y)),
+        },
     }
 }
 
@@ -60,45 +86,62 @@ fn place_of(load: &Load) -> Option<Place> {
     }
 }
 
-/// A row with the edge of something; says which edge was picked. The edge under the pointer is shown in the view.
+/// Change that a row asks for.
+enum Change {
+    Move(Place),
+    Remove,
+}
+
+/// A row with the place of a load or support; returns the change that is asked for. The edge under the pointer is shown in
+/// the view. `more` shows what else there is to set.
 fn row(
     ui: &mut Ui,
-    (label, id): (&'static str, usize),
-    present: &Place,
-    edges: &[&Edge],
+    (label, id, remove): (&'static str, usize, &str),
+    (scene, present): (&Scene, &Place),
+    places: impl Iterator<Item = (&'static str, Place)>,
     view: &mut ViewOptions,
-) -> Option<String> {
-    let mut picked = None;
+    more: impl FnOnce(&mut Ui),
+) -> Option<Change> {
+    const WIDTH: f32 = 128.0;
+    let mut change = None;
     ui.horizontal(|ui| {
         let name = ui.label(tr(label));
-        let combo = ComboBox::from_id_salt((label, id)).selected_text(words(present)).show_ui(ui, |ui| {
-            for edge in edges {
-                let is_present = matches!(present, Place::Edge(name) if name == edge.name());
-                let entry = ui.selectable_label(is_present, tr(edge.name()));
-                if entry.hovered() || entry.has_focus() {
-                    view.edge = Some(edge.name().to_owned());
+        let picker = ComboBox::from_id_salt((label, id)).selected_text(words(scene, present)).width(WIDTH).truncate();
+        let combo = picker.show_ui(ui, |ui| {
+            for (_, place) in places {
+                let entry = ui.selectable_label(*present == place, words(scene, &place));
+                if let (true, Place::Edge(name)) = (entry.hovered() || entry.has_focus(), &place) {
+                    view.edge = Some(name.clone());
                 }
-                if entry.clicked() && !is_present {
-                    picked = Some(edge.name().to_owned());
+                if entry.clicked() && *present != place {
+                    change = Some(Change::Move(place));
                 }
             }
         });
         let button =
-            combo.response.labelled_by(name.id).on_hover_text(tr("The edge it is on; other edges are in the list"));
+            combo.response.labelled_by(name.id).on_hover_text(tr("Edge or point it is at; the list has others"));
         if let (true, Place::Edge(name), None) = (button.hovered(), present, &view.edge) {
             view.edge = Some(name.clone());
         }
+        more(ui);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let response = ui.add(Button::new("×").frame(false).min_size(vec2(20.0, 20.0))).on_hover_text(remove);
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, remove));
+            if response.clicked() {
+                change = Some(Change::Remove);
+            }
+        });
     });
-    picked
+    change
 }
 
-/// What is on edges, in a few words.
+/// Numbers of loads and supports, in a few words.
 pub(super) fn summary(scene: &Scene) -> String {
     let loads = scene.loads.iter().filter_map(place_of).count();
     joined([count(loads as u64, "load"), count(scene.supports.len() as u64, "support")])
 }
 
-/// Shows where loads and supports are.
+/// Shows the places of loads and supports.
 pub(super) fn show(
     ui: &mut Ui,
     input: &PanelInput<'_>,
@@ -107,28 +150,118 @@ pub(super) fn show(
     actions: &mut Vec<Action>,
 ) {
     let (scene, system) = (input.scene, input.simulation.system());
+    let edges = |can_carry: fn(&System, &Edge) -> bool| {
+        system.edges().iter().filter(move |edge| can_carry(system, edge)).map(|edge| ("", Place::from(edge.name())))
+    };
+    let mut edited = None;
     for (i, load) in scene.loads.iter().enumerate() {
         let Some(present) = place_of(load) else { continue };
-        let (label, can_carry): (_, fn(&System, &Edge) -> bool) =
-            if load.is_moment() { ("Moment on", can_turn) } else { ("Force on", is_free) };
-        let edges: Vec<&Edge> = system.edges().iter().filter(|e| can_carry(system, e)).collect();
-        if let Some(name) = row(ui, (label, i), &present, &edges, view) {
-            let mut scene = Box::new(scene.clone());
-            match &mut scene.loads[i] {
-                Load::Force { place, .. } => *place = Place::Edge(name),
-                Load::Moment { edge, .. } => *edge = name,
-                Load::Gravity { .. } => {}
-            }
-            actions.push(Action::Edit("Edges", scene));
+        let remove = fill!("Remove load %{n}", n = i + 1);
+        let change = if load.is_moment() {
+            row(ui, ("Moment on", i, &remove), (scene, &present), edges(can_turn), view, |_| {})
+        } else {
+            row(ui, ("Force on", i, &remove), (scene, &present), edges(is_free).chain(points(scene)), view, |_| {})
+        };
+        let Some(change) = change else { continue };
+        let mut scene = Box::new(scene.clone());
+        match (change, &mut scene.loads[i]) {
+            (Change::Remove, _) => _ = scene.loads.remove(i),
+            (Change::Move(to), Load::Force { place, .. }) => *place = to,
+            (Change::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
+            _ => {}
         }
+        edited = Some(scene);
     }
     for (i, support) in scene.supports.iter().enumerate() {
-        let edges: Vec<&Edge> = system.edges().iter().collect();
-        if let Some(name) = row(ui, ("Held at", i), &support.place, &edges, view) {
-            let mut scene = Box::new(scene.clone());
-            scene.supports[i].place = Place::Edge(name);
-            actions.push(Action::Edit("Edges", scene));
+        let places = edges(|_, _| true).chain(points(scene));
+        let mut fix = support.fix.clone();
+        let remove = fill!("Remove support %{n}", n = i + 1);
+        let change = row(ui, ("Held at", i, &remove), (scene, &support.place), places, view, |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            for (axis, word) in [(Axis::X, "x"), (Axis::Y, "y")] {
+                let is_fixed = fix.contains(&axis);
+                let tip = fill!("It holds the body along %{axis}: a clamp holds both ways, a roller one", axis = word);
+                let button = option_button(is_fixed, word).min_size(vec2(22.0, 0.0));
+                if ui.add(button).on_hover_text(tip).clicked() {
+                    match is_fixed {
+                        true => fix.retain(|other| *other != axis),
+                        false => fix.push(axis),
+                    }
+                }
+            }
+        });
+        let is_refixed = fix != support.fix;
+        if change.is_none() && !is_refixed {
+            continue;
         }
+        let mut scene = Box::new(scene.clone());
+        match (change, &mut scene.supports[i]) {
+            // Nothing is held: it is none any more.
+            _ if fix.is_empty() => _ = scene.supports.remove(i),
+            (Some(Change::Remove), _) => _ = scene.supports.remove(i),
+            (Some(Change::Move(to)), support) => support.place = to,
+            (None, support) => *support = Support::new(support.place.clone(), &fix),
+        }
+        edited = Some(scene);
     }
-    show_message(ui, &state.messages, "Edges");
+    ui.horizontal(|ui| {
+        ui.label(tr("Add"));
+        for (word, tip, added) in ADDITIONS {
+            if ui.add(option_button(false, tr(word))).on_hover_text(tr(tip)).clicked() {
+                edited = Some(added(input));
+            }
+        }
+    });
+    actions.extend(edited.map(|scene| Action::Edit("Loads and supports", scene)));
+    show_message(ui, &state.messages, "Loads and supports");
+}
+
+/// Buttons that add something: the name of each, its tooltip, and the scene with it.
+type Addition = (&'static str, &'static str, fn(&PanelInput<'_>) -> Box<Scene>);
+const ADDITIONS: [Addition; 3] = [
+    ("Force", "Another force, down, at a place without one", with_another_force),
+    ("Moment", "Another moment, on an edge without one", with_another_moment),
+    ("Support", "Another support, at a place without one; x and y say which way it holds", with_another_support),
+];
+
+/// Edges that can carry a load, then points of the beam.
+fn free_places(input: &PanelInput<'_>) -> impl Iterator<Item = Place> {
+    let system = input.simulation.system();
+    let usual = USUAL.into_iter().filter(|name| system.edges().iter().any(|e| e.name() == *name && is_free(system, e)));
+    let others = system.edges().iter().filter(|edge| is_free(system, edge)).map(Edge::name);
+    usual.chain(others).map(Place::from).chain(points(input.scene).map(|(_, place)| place))
+}
+
+fn with_another_force(input: &PanelInput<'_>) -> Box<Scene> {
+    let mut scene = Box::new(input.scene.clone());
+    let is_taken = |place: &Place| scene.loads.iter().any(|load| place_of(load).as_ref() == Some(place));
+    if let Some(place) = free_places(input).find(|place| !is_taken(place)) {
+        let [usual, _] = force_range(OpeningLoads::of(input.original), &scene.material, input.simulation.system());
+        scene.loads.push(Load::force(place, [0.0, -usual]));
+    }
+    scene
+}
+
+fn with_another_moment(input: &PanelInput<'_>) -> Box<Scene> {
+    let mut scene = Box::new(input.scene.clone());
+    let system = input.simulation.system();
+    let is_taken = |name: &str| scene.loads.iter().any(|l| matches!(l, Load::Moment { edge, .. } if edge == name));
+    let mut edges = system.edges().iter().filter(|edge| can_turn(system, edge)).map(Edge::name);
+    let first = edge_for_moment(&scene, system).filter(|name| !is_taken(name));
+    if let Some(edge) = first.or_else(|| edges.find(|name| !is_taken(name)).map(str::to_owned)) {
+        let [usual, _] = moment_range(OpeningLoads::of(input.original), &scene.material, system);
+        scene.loads.push(Load::moment(&edge, usual));
+    }
+    scene
+}
+
+fn with_another_support(input: &PanelInput<'_>) -> Box<Scene> {
+    let mut scene = Box::new(input.scene.clone());
+    let is_taken = |place: &Place| scene.supports.iter().any(|support| support.place == *place);
+    let edges = input.simulation.system().edges().iter().map(|edge| Place::from(edge.name()));
+    // A beam that is held at one end gets a roller under the other.
+    if let Some(place) = points(input.scene).map(|(_, place)| place).chain(edges).find(|place| !is_taken(place)) {
+        scene.supports.push(Support::new(place, &[Axis::Y]));
+    }
+    scene
 }

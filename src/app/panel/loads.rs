@@ -1,25 +1,32 @@
 //! Force, gravity, moment.
 
-use egui::Ui;
+use egui::{ComboBox, Ui};
 
 use super::{Action, PanelInput, PanelState, edges};
 use crate::app::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::field::{NumberField, SliderScale};
-use crate::app::language::{joined, tr};
+use crate::app::language::{fill, joined, tr};
 use crate::app::load_scale::OpeningLoads;
 use crate::app::turn::moment_range;
-use crate::assembly::System;
-use crate::scene::{Load, Scene, limits};
+use crate::scene::{Load, Place, Scene, limits};
 use crate::words::engineering;
 
 /// Acceleration of free fall on earth, m/s².
 const EARTH: f64 = 9.81;
 
-fn force_of(scene: &Scene) -> Option<[f64; 2]> {
-    scene.loads.iter().find_map(|l| match l {
-        Load::Force { force, .. } => Some(*force),
+/// Forces of a scene, with the number of each among its loads.
+fn forces(scene: &Scene) -> impl Iterator<Item = (usize, &Place, [f64; 2])> {
+    scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
+        Load::Force { place, force, .. } => Some((i, place, *force)),
         _ => None,
     })
+}
+
+/// The force that the sliders set: the chosen one, or the first.
+fn chosen_force(scene: &Scene, state: &PanelState) -> Option<(usize, [f64; 2])> {
+    let mut all = forces(scene).map(|(i, _, force)| (i, force));
+    let first = all.next();
+    all.find(|(i, _)| Some(*i) == state.force).or(first)
 }
 
 fn gravity_of(scene: &Scene) -> Option<[f64; 2]> {
@@ -47,8 +54,11 @@ pub(super) fn summary(scene: &Scene) -> String {
 /// Force and its direction.
 pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
-    let (magnitude, direction) = polar_form(force_of(scene).unwrap_or_default());
-    let (original, original_direction) = polar_form(force_of(input.original).unwrap_or_default());
+    choose(ui, scene, state);
+    let chosen = chosen_force(scene, state);
+    let (magnitude, direction) = polar_form(chosen.map_or([0.0; 2], |(_, force)| force));
+    let as_opened = chosen.and_then(|(i, _)| forces(input.original).find(|(j, ..)| *j == i));
+    let (original, original_direction) = polar_form(as_opened.map_or([0.0; 2], |(_, _, force)| force));
     let direction = direction.unwrap_or(state.force_direction());
     let opening = OpeningLoads::of(input.original);
     let [usual, largest] = force_range(opening, &scene.material, input.simulation.system());
@@ -62,7 +72,7 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
     };
     if let Some(new) = field.show_beside(ui, &mut state.messages, magnitude, Some(original)) {
         state.keep_force_direction(direction);
-        actions.push(Action::Edit("Force", with_force(scene, input.simulation.system(), vector(new, direction))));
+        actions.push(Action::Edit("Force", with_force(input, state, vector(new, direction))));
     }
     let field = NumberField {
         label: "Direction",
@@ -75,7 +85,7 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
     let original = original_direction.map(shown_degrees);
     if let Some(new) = field.show_beside(ui, &mut state.messages, shown_degrees(direction), original) {
         state.keep_force_direction(new);
-        actions.push(Action::Edit("Direction", with_force(scene, input.simulation.system(), vector(magnitude, new))));
+        actions.push(Action::Edit("Direction", with_force(input, state, vector(magnitude, new))));
     }
 }
 
@@ -141,21 +151,45 @@ fn shown_degrees(degrees: f64) -> f64 {
     (degrees * 1e9).round() / 1e9
 }
 
-/// The scene with its first force replaced, or with one on an edge that can carry it.
-fn with_force(scene: &Scene, system: &System, new: [f64; 2]) -> Box<Scene> {
-    let mut scene = Box::new(scene.clone());
-    let first = scene.loads.iter_mut().find_map(|l| match l {
-        Load::Force { force, .. } => Some(force),
-        _ => None,
-    });
-    match first {
-        Some(force) => *force = new,
-        None => {
-            let edge = edges::edge_for_force(&scene, system).unwrap_or_else(|| "right".to_owned());
+/// The scene with the chosen force replaced, or with a first one on an edge that can carry it.
+fn with_force(input: &PanelInput<'_>, state: &PanelState, new: [f64; 2]) -> Box<Scene> {
+    let mut scene = Box::new(input.scene.clone());
+    let chosen = chosen_force(&scene, state).map(|(i, _)| i);
+    match chosen.and_then(|i| scene.loads.get_mut(i)) {
+        Some(Load::Force { force, .. }) => *force = new,
+        _ => {
+            let edge = edges::edge_for_force(&scene, input.simulation.system()).unwrap_or_else(|| "right".to_owned());
             scene.loads.push(Load::force(edge.as_str(), new));
         }
     }
     scene
+}
+
+/// Lets the user choose the force that the sliders set, where there are several.
+fn choose(ui: &mut Ui, scene: &Scene, state: &mut PanelState) {
+    let Some((present, _)) = chosen_force(scene, state).filter(|_| forces(scene).count() > 1) else { return };
+    let name = |i: usize, place: &Place| {
+        let number = forces(scene).position(|(j, ..)| j == i).unwrap_or(0) + 1;
+        fill!("Force %{number}: %{place}", number = number, place = edges::words(scene, place))
+    };
+    let place = forces(scene).find(|(i, ..)| *i == present).map(|(_, place, _)| place);
+    ui.horizontal(|ui| {
+        let label = ui.label(tr("Sliders set"));
+        let text = place.map_or_else(String::new, |place| name(present, place));
+        ComboBox::from_id_salt("chosen force")
+            .selected_text(text)
+            .width(ui.available_width())
+            .show_ui(ui, |ui| {
+                for (i, place, _) in forces(scene) {
+                    if ui.selectable_label(i == present, name(i, place)).clicked() {
+                        state.force = Some(i);
+                    }
+                }
+            })
+            .response
+            .labelled_by(label.id)
+            .on_hover_text(tr("The force that the sliders set; dragging an arrow chooses its force"));
+    });
 }
 
 fn with_gravity(scene: &Scene, new: [f64; 2]) -> Box<Scene> {

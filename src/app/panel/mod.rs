@@ -76,12 +76,20 @@ pub(super) struct PanelState {
     /// Directions in degrees, kept while a magnitude is zero.
     force_direction: Option<f64>,
     gravity_direction: Option<f64>,
+    /// Number among the scene's loads of the force that the sliders set; the first one if it is none.
+    force: Option<usize>,
+    cells: body::CellsThatFollow,
 }
 
 impl PanelState {
     /// Forgets what belonged to another scene.
     pub(super) fn clear(&mut self) {
         *self = Self::default();
+    }
+
+    /// Lets the sliders set this load of the scene, if it is a force.
+    pub(super) fn choose_force(&mut self, load: usize) {
+        self.force = Some(load);
     }
 
     /// Direction of a force of zero, degrees.
@@ -124,10 +132,13 @@ pub(super) fn show(
         let summary = loads::summary(input.scene);
         fold(ui, "Gravity, moment", &summary, false, |ui| loads::gravity_and_moment(ui, input, state, actions));
         let summary = edges::summary(input.scene);
-        fold(ui, "Edges", &summary, false, |ui| edges::show(ui, input, state, view, actions));
+        fold(ui, "Loads and supports", &summary, false, |ui| edges::show(ui, input, state, view, actions));
         if let Some(support) = supports::chosen(ui, input) {
             let summary = supports::summary(input.scene, support);
             fold(ui, "Moved support", &summary, true, |ui| supports::show(ui, input, support, state, actions));
+        }
+        if let Some(beam) = &input.scene.beam {
+            fold(ui, "Beam", &body::size_summary(beam), false, |ui| body::size(ui, input, state, actions));
         }
         let summary = body::material_summary(input.scene);
         fold(ui, "Material", &summary, false, |ui| body::material(ui, input, state, actions));
