@@ -4,17 +4,19 @@
 mod common;
 
 use common::lab::{pick, type_into, unfold};
-use common::{scene, solve_json};
+use common::{scene, scene_with, solve_json};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
+use warpbeam::Scene;
 use warpbeam::app::Lab;
 use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::scene::{Analysis, IntegratorKind, Load, MethodKind, Plane, Source};
 use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::Demand;
+use warpbeam::study::motion::{MotionMeasurement, MotionSetting};
 use warpbeam::words::percent;
 
 fn harness(id: &str) -> Harness<'static, Lab> {
@@ -25,7 +27,10 @@ fn harness(id: &str) -> Harness<'static, Lab> {
 
 /// One that may not come to rest.
 fn harness_of(id: &str) -> Harness<'static, Lab> {
-    let scene = scene(id);
+    harness_with(id, scene(id))
+}
+
+fn harness_with(id: &str, scene: Scene) -> Harness<'static, Lab> {
     let simulation = Simulation::new(&scene).unwrap();
     let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
     Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
@@ -879,9 +884,7 @@ fn a_beam_is_pulled_and_springs_back() {
 fn a_motion_is_run_paused_stepped_pulled_and_reset() {
     let mut harness = harness_of("swing");
     let time = |harness: &Harness<'_, Lab>| harness.state().simulation().state().time();
-    harness.run_steps(12);
-    let running = time(&harness);
-    assert!(running > 0.5, "12 frames of a quarter of a second made {running} s");
+    wait(&mut harness, "half a second of motion", |lab| lab.simulation().state().time() > 0.5);
     harness.get_by_label("Pause").click();
     harness.run_steps(3);
     let paused = time(&harness);
@@ -895,8 +898,7 @@ fn a_motion_is_run_paused_stepped_pulled_and_reset() {
     harness.run_steps(2);
     let marked = harness.state().simulation().displacement().to_vec();
     harness.get_by_label("Run").click();
-    harness.run_steps(5);
-    assert!(time(&harness) > paused + 0.3);
+    wait(&mut harness, "the motion to go on", |lab| lab.simulation().state().time() > paused + 0.3);
     // Pulled at the tip while it runs: the hand works.
     let grip = on_body(harness.state(), Vector2::new(0.98, 0.0));
     harness.drag_at(grip);
@@ -956,4 +958,78 @@ fn an_unstable_integrator_leaves_the_comparison() {
         assert!(steps < 2000, "nothing is said of it");
     }
     assert!(!matches!(harness.state().simulation().status(), Status::Stopped(_)));
+}
+
+/// Budget measures motions too: the time of a displayed frame against the error of the path. A click applies a setting.
+#[test]
+fn a_motions_settings_are_measured_and_applied() {
+    // Short, for a test.
+    let mut harness = harness_with("swing", scene_with("swing", &["dynamics.duration=0.1"]));
+    harness.key_press(Key::Space);
+    harness.key_press(Key::B);
+    harness.run_steps(4);
+    harness.get_by_label("Measure").click();
+    harness.step();
+    harness.step();
+    wait(&mut harness, "the study of the motion", |lab| !lab.study().1);
+    let study = harness.state().motion_study().unwrap().clone();
+    assert!(!study.is_partial && study.measurements.len() > 20);
+    type_into(&mut harness, "Error ≤", "20");
+    type_into(&mut harness, "Time ≤", "100");
+    harness.run_steps(4);
+    let is_met = |m: &&MotionMeasurement| study.is_within(m, 20.0) && m.milliseconds / 60.0 <= 100.0;
+    let meeting: Vec<_> = study.measurements.iter().filter(is_met).collect();
+    let all = study.measurements.iter().filter(|m| m.error.is_some()).count();
+    harness.get_by_label(&format!("{} of {all} settings meet both", meeting.len()));
+    let best = meeting.iter().min_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds)).unwrap().setting;
+    harness.get_by_label("Apply the fastest").click();
+    harness.step();
+    assert_eq!(MotionSetting::of(harness.state().scene()), best);
+    assert_eq!(harness.state().scene().analysis, Analysis::Dynamic);
+    // Called off, a study keeps the measurements that it has, or none.
+    harness.get_by_label("Measure").click();
+    harness.step();
+    harness.step();
+    harness.get_by_label("Cancel").click();
+    wait(&mut harness, "the end of a cancelled study", |lab| !lab.study().1);
+    assert!(harness.state().motion_study().is_none_or(|study| study.is_partial));
+}
+
+/// Motions are compared in panes: one clock, and each integrator does to the energy what it does. A pane takes another element,
+/// and all start over.
+#[test]
+fn integrators_are_compared_in_panes() {
+    // A coarse mesh keeps a busy machine near real time.
+    let mut harness = harness_with("swing", scene_with("swing", &["beam.cells=[6,1]"]));
+    harness.key_press(Key::K);
+    harness.run_steps(4);
+    let times = |lab: &Lab| -> Vec<f64> {
+        lab.motion_panes().iter().map(|pane| pane.simulation().unwrap().state().time()).collect()
+    };
+    assert_eq!(harness.state().motion_panes().len(), 3);
+    let before = harness.state().simulation().state().time();
+    wait(&mut harness, "a second of motion", |lab| times(lab).iter().all(|t| *t > 1.0));
+    let all = times(harness.state());
+    assert!(all.iter().all(|t| (t - all[0]).abs() < 1e-9), "one clock: {all:?}");
+    let drift = |lab: &Lab, kind: IntegratorKind| {
+        let pane = lab.motion_panes().iter().find(|pane| pane.setting().integrator == Some(kind)).unwrap();
+        let motion = pane.simulation().unwrap().motion().unwrap();
+        motion.ledger().drift()
+    };
+    let kept = drift(harness.state(), IntegratorKind::EnergyMomentum);
+    let lost = drift(harness.state(), IntegratorKind::ImplicitEuler);
+    assert!(kept.abs() < 1e-3 && lost < -0.02, "{kept} {lost}");
+    // Space pauses all of them.
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    let paused = times(harness.state());
+    harness.run_steps(3);
+    assert_eq!(times(harness.state()), paused);
+    harness.get_by_role_and_label(Role::Button, "t3 | t6 | q4").click();
+    harness.run_steps(4);
+    let elements: Vec<_> = harness.state().motion_panes().iter().map(|p| p.setting().element).collect();
+    assert_eq!(elements.len(), 3);
+    assert!(times(harness.state()).iter().all(|t| *t == 0.0), "another mesh starts over");
+    let explored = harness.state().simulation().state().time();
+    assert!((explored - before).abs() < 1e-12, "the body of Explore waits");
 }

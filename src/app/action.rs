@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::measured::Choice;
 use super::mode::Mode;
 use super::motion_plot::MotionPlot;
 use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::Field;
-use crate::study::Measurement;
 
 /// Most iterations that a displayed frame may be asked for.
 pub(super) const MOST_ITERATIONS: u32 = 100;
@@ -71,7 +71,7 @@ pub(super) enum Action {
     /// Show the card of this number, from 0, and set its scene up.
     Card(usize),
     /// Use a setting as it was measured.
-    Apply(Measurement),
+    Apply(Choice),
     /// Stop what is meshed and solved beside the window, and go back to how it was before.
     Cancel,
 }

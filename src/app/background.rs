@@ -3,8 +3,9 @@
 use thiserror::Error;
 
 use super::job::{Heard, Job, Line};
-use crate::scene::Scene;
-use crate::study::{Extent, Progress, Study, StudyError};
+use super::measured::Measured;
+use crate::scene::{Analysis, Scene};
+use crate::study::{Extent, MotionStudy, Progress, Study, StudyError};
 
 /// Why a study gave no result.
 #[derive(Debug, Error)]
@@ -21,10 +22,10 @@ pub(super) enum BackgroundError {
 #[derive(Debug)]
 enum Said {
     Now(f32, String),
-    SoFar(Study),
+    SoFar(Measured),
 }
 
-type Done = Result<Study, StudyError>;
+type Done = Result<Measured, StudyError>;
 
 /// How far a study is, as last heard.
 #[derive(Debug)]
@@ -59,8 +60,13 @@ impl Background {
         (self.fraction, &self.now)
     }
 
+    /// Asks the study to end with the measurements that it has.
+    pub(super) fn call_off(&self) {
+        self.job.call_off();
+    }
+
     /// Takes what has been heard since; measurements go to `study`.
-    pub(super) fn listen(&mut self, study: &mut Option<Study>) -> News {
+    pub(super) fn listen(&mut self, study: &mut Option<Measured>) -> News {
         loop {
             match self.job.hear() {
                 Heard::News(Said::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
@@ -81,9 +87,12 @@ impl Background {
 fn work(scene: &Scene, extent: Extent, line: &Line<Said, Done>) -> Done {
     let mut observe = |progress: Progress<'_>| {
         line.say(match progress.so_far {
-            Some(study) => Said::SoFar(study.clone()),
+            Some(study) => Said::SoFar(Measured::Rest(study.clone())),
             None => Said::Now(progress.fraction as f32, progress.now.to_owned()),
         })
     };
-    Study::new(scene, extent, &mut observe)
+    match scene.analysis {
+        Analysis::Static => Study::new(scene, extent, &mut observe).map(Measured::Rest),
+        Analysis::Dynamic => MotionStudy::new(scene, extent, &mut observe).map(Measured::Motion),
+    }
 }

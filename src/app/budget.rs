@@ -7,13 +7,14 @@ use super::action::Action;
 use super::background::{Background, BackgroundError, News};
 use super::field::{Messages, NumberField, SliderScale};
 use super::job::LISTEN;
-use super::language::{count, fill, joined, percent, tr, translated};
+use super::language::{fill, joined, percent, tr, translated};
+use super::measured::{Choice, Group, Measured};
 use super::palette::Palette;
+use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
-use crate::scene::{ElementKind, Scene, SolverSettings, limits};
-use crate::study::plot::drawn_error;
-use crate::study::{Demand, Extent, Measurement, Setting, Study};
+use crate::scene::{Analysis, DynamicsSettings, ElementKind, Scene, SolverSettings, limits};
+use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
 use crate::words::{engineering, number, three_digits};
 
 /// The study of the lab's scene, and the limits within which its settings are looked for.
@@ -22,7 +23,7 @@ pub(super) struct Budget {
     background: Option<Background>,
     /// Whether the last study was cancelled.
     is_partial: bool,
-    study: Option<Study>,
+    study: Option<Measured>,
     /// What was measured, but for what is varied.
     of: Option<Scene>,
     error: Option<BackgroundError>,
@@ -60,6 +61,9 @@ pub(super) fn question(scene: &Scene) -> Scene {
         beam.cells = [1, 1];
     }
     scene.solver = SolverSettings { tolerance: scene.solver.tolerance, ..SolverSettings::default() };
+    let any = DynamicsSettings::default();
+    let dynamics = &mut scene.dynamics;
+    (dynamics.integrator, dynamics.time_step, dynamics.iterations) = (any.integrator, any.time_step, any.iterations);
     scene
 }
 
@@ -75,7 +79,13 @@ impl Budget {
 
     /// Calls the study off; what has been measured stays.
     pub(super) fn cancel(&mut self) {
-        self.is_partial = self.background.take().is_some();
+        let Some(background) = self.background.take() else { return };
+        self.is_partial = true;
+        // A motion's measurements come at its end.
+        if self.of.as_ref().is_some_and(|scene| scene.analysis == Analysis::Dynamic) {
+            background.call_off();
+            self.background = Some(background);
+        }
     }
 
     /// Fraction that is done and what is measured now, while a study runs.
@@ -88,19 +98,35 @@ impl Budget {
         self.background.is_some()
     }
 
-    /// What has been measured.
+    /// The study of a body at rest.
     pub(super) fn study(&self) -> Option<&Study> {
-        self.study.as_ref()
+        match &self.study {
+            Some(Measured::Rest(study)) => Some(study),
+            _ => None,
+        }
     }
 
-    /// The fastest setting that meets the limits, where one has been measured.
+    /// The study of a motion.
+    pub(super) fn motion_study(&self) -> Option<&MotionStudy> {
+        match &self.study {
+            Some(Measured::Motion(study)) => Some(study),
+            _ => None,
+        }
+    }
+
+    /// The fastest setting of a body at rest that meets the limits, where one has been measured.
     pub(super) fn chosen(&self) -> Option<Setting> {
-        self.study.as_ref()?.meeting(self.limits.into()).first().map(|m| m.setting)
+        self.study()?.meeting(self.limits.into()).first().map(|m| m.setting)
     }
 
     /// Takes a study made elsewhere.
     pub(super) fn set(&mut self, scene: &Scene, study: Study) {
-        *self = Self { of: Some(question(scene)), study: Some(study), limits: self.limits, ..Self::default() };
+        *self = Self {
+            of: Some(question(scene)),
+            study: Some(Measured::Rest(study)),
+            limits: self.limits,
+            ..Self::default()
+        };
     }
 
     /// Hears how far the study is.
@@ -118,9 +144,11 @@ impl Budget {
     /// Shows limits and plot for the lab's scene.
     pub(super) fn show(&mut self, ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
         let demand = Demand::from(self.limits);
+        let moves = scene.analysis == Analysis::Dynamic;
         let budget = BudgetView {
             scene,
             study: self.study.as_ref(),
+            choices: self.study.as_ref().map(Measured::choices).unwrap_or_default(),
             demand,
             meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
             current: self.of.as_ref() == Some(&question(scene)),
@@ -137,7 +165,7 @@ impl Budget {
                 settings(ui, &budget, limits, messages, actions);
             });
             ui.vertical(|ui| {
-                legend(ui);
+                legend(ui, moves);
                 plot(ui, &budget);
             });
         });
@@ -147,10 +175,12 @@ impl Budget {
 /// What is shown of the budget.
 struct BudgetView<'a> {
     scene: &'a Scene,
-    study: Option<&'a Study>,
+    study: Option<&'a Measured>,
+    /// Every setting that was measured.
+    choices: Vec<Choice>,
     demand: Demand,
-    /// What of the study meets the demand, fastest first.
-    meeting: Vec<&'a Measurement>,
+    /// Settings that meet the demand, fastest first.
+    meeting: Vec<Choice>,
     /// Whether the study is of the body and loads that the lab shows.
     current: bool,
     /// Whether the study was cancelled.
@@ -196,8 +226,7 @@ fn settings(
                     RichText::new(tr("Cancelled: not everything has been measured.")).small().color(color)
                 }
                 (None, Some(study)) => {
-                    let truth = translated(&study.reference.to_string());
-                    RichText::new(fill!("Error against %{truth}.", truth = truth)).small()
+                    RichText::new(fill!("Error against %{truth}.", truth = study.reference_words())).small()
                 }
             };
             ui.add(egui::Label::new(words).truncate());
@@ -205,7 +234,7 @@ fn settings(
     });
     let time = NumberField {
         label: "Time ≤",
-        tooltip: "At most so many milliseconds a solve from rest. A frame at 60 Hz has 16.",
+        tooltip: "At most so many milliseconds a solve from rest, or a frame of a motion at 60 Hz, which has 16.",
         limit: limits::BUDGET_MS,
         slider: 1e-3..=1e3,
         scale: SliderScale::Logarithmic(1e-3),
@@ -229,20 +258,17 @@ fn settings(
     });
     let meeting = &budget.meeting;
     ui.horizontal(|ui| {
-        let best = meeting.first();
+        let best = meeting.first().copied();
         let apply = ui.add_enabled(best.is_some(), Button::new(tr("Apply the fastest")));
         let apply = apply
             .on_hover_text(tr("Use the fastest setting that meets both"))
             .on_disabled_hover_text(tr("No setting that has been measured meets both limits"));
         if let (true, Some(best)) = (apply.clicked(), best) {
-            actions.push(Action::Apply(**best));
+            actions.push(Action::Apply(best));
         }
-        let measured = budget.study.map_or(0, |s| s.measurements.len());
-        ui.label(match budget.study.filter(|study| !study.can_judge(budget.demand)) {
-            Some(study) => {
-                let own = percent(study.against.own_error_percent);
-                fill!("Not known: the reference's own error may be %{own}", own = own)
-            }
+        let measured = budget.choices.len();
+        ui.label(match budget.study.and_then(|study| study.too_coarse_for(budget.demand)) {
+            Some(own) => fill!("Not known: the reference's own error may be %{own}", own = percent(own)),
             None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured),
         });
     });
@@ -255,20 +281,13 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error.bound()), setting_words(&m.setting));
+            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error_percent()), m.words());
             let label = ui.add(
-                Button::selectable(m.is_applied_to(budget.scene), RichText::new(words).font(FontId::monospace(12.0))).truncate(),
+                Button::selectable(m.is_applied_to(budget.scene), RichText::new(words).font(FontId::monospace(12.0)))
+                    .truncate(),
             );
-            let e = &m.error;
-            let parts = fill!(
-                "Click to apply. %{unknowns}. Error: mesh %{mesh}, stopped early %{iteration}, linear theory %{theory}.",
-                unknowns = count(m.dofs as u64, "unknown"),
-                mesh = percent(e.discretization),
-                iteration = percent(e.iteration),
-                theory = percent(e.model)
-            );
-            if label.on_hover_text(parts).clicked() {
-                actions.push(Action::Apply(**m));
+            if label.on_hover_text(m.parts()).clicked() {
+                actions.push(Action::Apply(*m));
             }
         }
     });
@@ -279,8 +298,8 @@ pub(super) fn setting_words(setting: &Setting) -> String {
     translated(&setting.to_string())
 }
 
-/// The time of a solve, three digits.
-fn milliseconds(m: &Measurement) -> String {
+/// Time of a solve or of a frame, three digits.
+fn milliseconds(m: &Choice) -> String {
     engineering(three_digits(1e-3 * m.milliseconds()), "s")
 }
 
@@ -294,19 +313,22 @@ fn decade_words(mark: GridMark) -> String {
     number(10f64.powf(mark.value.round()))
 }
 
-/// Where a measurement is in the plot: both logarithms.
-fn place(m: &Measurement) -> [f64; 2] {
-    [m.milliseconds().max(f64::MIN_POSITIVE).log10(), drawn_error(m).log10()]
+/// Place of a setting in the plot: both logarithms.
+fn place(study: &Measured, m: &Choice) -> [f64; 2] {
+    [m.milliseconds().max(f64::MIN_POSITIVE).log10(), study.drawn_error(m).max(f64::MIN_POSITIVE).log10()]
 }
 
 /// What colours and shapes mean, in one line: the plot has no room for a list.
-fn legend(ui: &mut Ui) {
+fn legend(ui: &mut Ui, moves: bool) {
     let palette = Palette::new(ui.visuals());
     ui.horizontal(|ui| {
         ui.add_space(56.0);
         ui.spacing_mut().item_spacing.x = 10.0;
-        for method in METHODS {
-            ui.label(RichText::new(tr(method.id)).small().strong().color(palette.method(method.kind)));
+        let methods = METHODS.iter().map(|m| (m.id, palette.method(m.kind)));
+        let integrators = INTEGRATORS.iter().map(|i| (i.id, palette.integrator(i.kind)));
+        let names: Vec<_> = if moves { integrators.collect() } else { methods.collect() };
+        for (id, color) in names {
+            ui.label(RichText::new(tr(id)).small().strong().color(color));
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
         let words = RichText::new(fill!("%{shapes}; nothing beats the line", shapes = shapes)).small();
@@ -329,15 +351,19 @@ pub(super) fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
 fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
-    let measured: &[Measurement] = budget.study.map_or(&[], |s| &s.measurements);
+    let place = |choice: &Choice| budget.study.map_or([0.0; 2], |study| place(study, choice));
     let nearest = |x: f64, y: f64| {
-        let distance = |m: &Measurement| (place(m)[0] - x).hypot(place(m)[1] - y);
-        measured.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        let distance = |m: &Choice| (place(m)[0] - x).hypot(place(m)[1] - y);
+        budget.choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    let time = match budget.scene.analysis {
+        Analysis::Static => "time of a solve, ms",
+        Analysis::Dynamic => "time of a frame at 60 Hz, ms",
     };
     Plot::new("budget")
         .custom_x_axes(vec![
             AxisHints::new_x()
-                .label(tr("time of a solve, ms"))
+                .label(tr(time))
                 .formatter(|mark, _| decade_words(mark))
                 // Powers of ten are short: a narrow plot has room for them.
                 .label_spacing(egui::Rangef::new(36.0, 60.0)),
@@ -348,7 +374,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .y_axis_formatter(|mark, _| decade_words(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", setting_words(&m.setting), milliseconds(m), percent(m.error.bound()))),
+                .map(|m| format!("{}\n{}, {}", m.words(), milliseconds(m), percent(m.error_percent()))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)
@@ -361,17 +387,18 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .show(ui, |plot| {
-            for element in ElementKind::all() {
-                let (shape, _) = marker(element);
-                for method in METHODS.iter().map(|m| m.kind) {
-                    let color = palette.method(method);
-                    let own = measured.iter().filter(|m| (m.setting.element, m.setting.method) == (element, method));
-                    let points: Vec<[f64; 2]> = own.map(place).collect();
-                    let name = format!("{} {}", element.id(), tr(method.id()));
-                    plot.points(Points::new(name, points).color(color).shape(shape).radius(3.5));
+            let mut groups: Vec<Group> = Vec::new();
+            for group in budget.choices.iter().map(Choice::group) {
+                if !groups.contains(&group) {
+                    groups.push(group);
                 }
             }
-            let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(place).collect();
+            for group in groups {
+                let points: Vec<[f64; 2]> = budget.choices.iter().filter(|m| m.group() == group).map(place).collect();
+                let (shape, _) = marker(group.element());
+                plot.points(Points::new(group.name(), points).color(group.color(&palette)).shape(shape).radius(3.5));
+            }
+            let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(|m| place(&m)).collect();
             plot.line(Line::new(tr("Pareto front"), PlotPoints::from(front)).color(text).width(1.5));
             let limit = palette.secondary;
             let style = LineStyle::dashed_dense();

@@ -10,7 +10,7 @@ use super::ThemeChoice;
 use super::action::{Action, Drawer, MOST_ITERATIONS, Toggle, ViewOptions};
 use super::arrow::{Forces, vector};
 use super::budget::{Budget, question};
-use super::compare::{Compare, CompareInput, Pane, PaneSetting};
+use super::compare::{Compare, CompareInput, MotionCompare, MotionInput, MotionPane, Pane, PaneSetting};
 use super::document::Document;
 use super::drawing::Drawing;
 use super::edits::{Edits, Snapshot};
@@ -47,7 +47,7 @@ use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{Extent, LoadPath, PathSummary, Reference, Study};
+use crate::study::{Extent, LoadPath, MotionStudy, PathSummary, Reference, Study};
 use crate::timings::Timings;
 use crate::words;
 
@@ -138,6 +138,8 @@ pub struct Lab {
     jump: Finder<PathSummary>,
     budget: Budget,
     compare: Compare,
+    /// The comparison of motions.
+    motions: MotionCompare,
     /// The lowest natural frequency, Hz.
     frequency: Finder<f64>,
     playback: Playback,
@@ -196,11 +198,11 @@ impl Lab {
             pointer: Pointer::default(),
             probe: None,
             dialog: None,
-            is_outdated: false,
-            settings: Settings::default(),
             question: Question::None,
             left: None,
             closes: false,
+            is_outdated: false,
+            settings: Settings::default(),
             adapter: String::new(),
             toast: None,
             drawing,
@@ -210,6 +212,7 @@ impl Lab {
             jump: Finder::new(LoadPath::summary_of),
             budget: Budget::default(),
             compare: Compare::default(),
+            motions: MotionCompare::default(),
             frequency: Finder::new(natural_frequency),
             playback: Playback::default(),
             converged: None,
@@ -308,6 +311,17 @@ impl Lab {
         self.compare.panes()
     }
 
+    /// The panes in which motions are compared.
+    #[must_use]
+    pub fn motion_panes(&self) -> &[MotionPane] {
+        self.motions.panes()
+    }
+
+    /// `true` if motions are compared: the body of Explore waits.
+    fn compares_motions(&self) -> bool {
+        self.view.mode == Mode::Compare && self.moves()
+    }
+
     /// Equilibria that the comparison has traced under the present kind of load: the setting, its load and deflection.
     #[must_use]
     pub fn traced(&self) -> Vec<(PaneSetting, [f64; 2])> {
@@ -318,6 +332,12 @@ impl Lab {
     #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {
         (self.budget.study(), self.budget.runs())
+    }
+
+    /// Measurements of the scene's motion.
+    #[must_use]
+    pub fn motion_study(&self) -> Option<&MotionStudy> {
+        self.budget.motion_study()
     }
 
     /// Iterations a displayed frame.
@@ -391,7 +411,11 @@ impl Lab {
     /// The camera of the last [`Self::ui`].
     #[must_use]
     pub fn camera(&self) -> Camera {
-        if self.view.mode == Mode::Compare { self.compare.camera() } else { self.eye.camera() }
+        match self.view.mode {
+            Mode::Compare if self.moves() => self.motions.camera(),
+            Mode::Compare => self.compare.camera(),
+            _ => self.eye.camera(),
+        }
     }
 
     /// Title of the window: the scene's name, a star where it has been edited, and the name of its file.
@@ -408,6 +432,11 @@ impl Lab {
     /// that goes with the wall's; says whether there are others to make.
     pub fn advance(&mut self, now: f64) -> bool {
         self.tend();
+        if self.compares_motions() {
+            self.playback.pace.rest();
+            self.motions.advance(&self.scene, now, self.running);
+            return self.iterates();
+        }
         match (self.iterates(), self.moves()) {
             _ if self.is_beside() => self.playback.pace.rest(),
             (true, true) => {
@@ -516,6 +545,9 @@ impl Lab {
     /// Whether the next frame changes the body.
     #[must_use]
     pub fn iterates(&self) -> bool {
+        if self.compares_motions() {
+            return self.running && self.motions.moves();
+        }
         self.running && (!self.simulation.is_at_rest() || self.playback.companions_move())
     }
 
@@ -584,8 +616,10 @@ impl Lab {
 
     /// What the body's pass draws, as of the last [`Self::ui`], with this many pixels a point.
     pub(super) fn views(&self, pixels_per_point: f32) -> Vec<View<'_>> {
-        if self.view.mode == Mode::Compare {
-            return self.compare.views(self.view.wireframe, pixels_per_point);
+        match self.view.mode {
+            Mode::Compare if self.moves() => return self.motions.views(self.view.wireframe, pixels_per_point),
+            Mode::Compare => return self.compare.views(self.view.wireframe, pixels_per_point),
+            _ => {}
         }
         let viewport = viewport(self.view_rect, pixels_per_point);
         vec![View { viewport, frame: self.frame(), camera: self.camera() }]
@@ -650,6 +684,7 @@ impl Lab {
             linear: self.linear.as_ref(),
             running: self.running,
             ended: match self.view.mode {
+                Mode::Compare if self.moves() => !self.motions.moves(),
                 Mode::Compare => !self.compare.is_iterating(),
                 _ => self.simulation.is_at_rest() && !self.playback.companions_move(),
             },
@@ -717,7 +752,10 @@ impl Lab {
             self.act(ui.ctx(), action, &mut requests);
         }
         help::show(ui.ctx(), &mut self.view.help);
+        self.offer_unsaved(ui.ctx(), &mut requests);
+        self.ask_to_save(ui.ctx());
         self.ask_for_file(ui.ctx());
+        requests.extend(std::mem::take(&mut self.closes).then_some(Request::Close));
         if self.is_working() {
             ui.ctx().request_repaint_after(LISTEN);
         } else if self.iterates() || self.intro.is_some() {
@@ -752,10 +790,7 @@ impl Lab {
     /// The panel over the body, where the window is narrow.
     fn sheet(&mut self, ui: &Ui, actions: &mut Vec<Action>) {
         let errors = verdict::errors(&self.input());
-        self.offer_unsaved(ui.ctx(), &mut requests);
-        self.ask_to_save(ui.ctx());
         let rect = self.view_rect;
-        requests.extend(std::mem::take(&mut self.closes).then_some(Request::Close));
         let width = PANEL_WIDTH.min(rect.width());
         egui::Area::new(egui::Id::unique("sheet"))
             .order(egui::Order::Foreground)
@@ -845,6 +880,10 @@ impl Lab {
 
     /// The presets over the panes that are compared, and the load curve under them.
     pub(super) fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        if self.moves() {
+            let (motions, input) = self.compared_motions();
+            return motions.bars(ui, &input);
+        }
         let (compare, input) = self.compared();
         compare.bars(ui, &input, actions);
     }
@@ -853,12 +892,17 @@ impl Lab {
     pub(super) fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let rect = ui.available_rect_before_wrap();
         self.view_rect = rect;
-        // The truth does not depend on how the lab's own setting gets on.
-        if !self.compare.is_iterating() {
-            self.truth.ask(&self.scene, ui.ctx());
-        }
-        let (compare, input) = self.compared();
-        let wish = compare.show(ui, &input);
+        let wish = if self.moves() {
+            let (motions, input) = self.compared_motions();
+            motions.show(ui, &input, actions)
+        } else {
+            // The truth does not depend on how the lab's own setting gets on.
+            if !self.compare.is_iterating() {
+                self.truth.ask(&self.scene, ui.ctx());
+            }
+            let (compare, input) = self.compared();
+            compare.show(ui, &input)
+        };
         self.take_wish(ui.ctx(), &wish, requests);
         let painter = ui.painter_at(rect);
         self.show_work(ui, rect, actions);
@@ -882,6 +926,19 @@ impl Lab {
             chosen: budget.chosen(),
         };
         (compare, input)
+    }
+
+    /// The comparison of motions, and its input.
+    fn compared_motions(&mut self) -> (&mut MotionCompare, MotionInput<'_>) {
+        let Self { motions, scene, view, .. } = self;
+        let input = MotionInput {
+            scene,
+            view,
+            direction: self.panel.force_direction(),
+            opening: OpeningLoads::of(&self.document.original),
+            eases: self.eases,
+        };
+        (motions, input)
     }
 
     /// The cards, under the body.
@@ -1166,6 +1223,7 @@ impl Lab {
     /// Sets the load whose arrow has been dragged, or puts it back.
     fn take_wish(&mut self, ctx: &egui::Context, wish: &Wish, requests: &mut Vec<Request>) {
         if let Some((load, pull)) = wish.load {
+            self.panel.choose_force(load);
             let mut scene = Box::new(self.scene.clone());
             let (label, set) = match pull {
                 Pull::Force(magnitude, degrees) => {
@@ -1223,7 +1281,6 @@ impl Lab {
         Some(scene)
     }
 
-            self.panel.choose_force(load);
     /// Where a material point is in the window.
     fn in_view(&self, point: MaterialPoint) -> Option<egui::Pos2> {
         let place = probe::place(self.simulation.system().mesh(), &self.shape.nodes, point)?;
@@ -1396,6 +1453,10 @@ impl Lab {
                     self.call_off();
                 }
             }
+            Action::Step if self.compares_motions() => {
+                self.running = false;
+                self.motions.step();
+            }
             Action::Step if self.view.mode == Mode::Compare => {
                 self.running = false;
                 self.compare.step();
@@ -1418,12 +1479,16 @@ impl Lab {
                 let words = if self.playback.is_marked() { "Reset goes to here" } else { "Reset goes to the start" };
                 self.say(ctx, tr(words).to_owned());
             }
-            Action::Speed(speed) => self.playback.pace.set_speed(speed),
+            Action::Speed(speed) => {
+                self.playback.pace.set_speed(speed);
+                self.motions.pace.set_speed(speed);
+            }
             Action::Compare(integrator) => self.compare_with(integrator),
             Action::Iterations(iterations) => self.iterations = iterations.clamp(1, MOST_ITERATIONS),
             Action::Fit => {
                 self.eye.fit();
                 self.compare.fit();
+                self.motions.fit();
             }
             Action::Toggle(Toggle::Mode(mode)) if !(mode.entry().serves)(&self.scene) => {
                 self.say(ctx, tr(mode.entry().unless).to_owned());
@@ -1449,14 +1514,15 @@ impl Lab {
             Action::Record => self.record(ctx),
             Action::Copy => self.copy(ctx),
             Action::Measure(true) => {
-                let extent = if self.learn.is_some() { Extent::Quick } else { Extent::Full };
+                // Full studies of motions take many minutes.
+                let extent = if self.learn.is_some() || self.moves() { Extent::Quick } else { Extent::Full };
                 self.budget.measure(&self.scene, extent);
             }
             Action::Measure(false) => self.budget.cancel(),
             Action::Apply(measured) => {
                 let before = self.snapshot();
                 self.edit(ctx, measured.apply(&self.scene));
-                self.iterations = measured.setting.iterations.clamp(1, MOST_ITERATIONS);
+                self.iterations = measured.iterations().unwrap_or(1).clamp(1, MOST_ITERATIONS);
                 self.remember(before, None);
             }
         }
@@ -1491,6 +1557,7 @@ impl Lab {
 
     fn reset(&mut self) {
         self.compare.reset();
+        self.motions.reset();
         if self.is_beside() {
             return self.restart_beside(Beginning::AtRest, None);
         }
@@ -1596,6 +1663,7 @@ impl Lab {
         self.budget = Budget::default();
         self.curve = Finder::new(Curve::of);
         self.compare = Compare::default();
+        self.motions = MotionCompare::default();
         self.iterations = 1;
         self.eye = Eye::new(self.simulation.system().mesh().bounds().into());
         self.probe = None;
@@ -1609,6 +1677,21 @@ impl Lab {
         self.settings.add_recent(path);
         self.is_outdated = false;
         Ok(fill!("Saved %{file}", file = path.display()))
+    }
+
+    /// Saves the scene to its file, or asks for one.
+    fn save_here(&mut self, ctx: &egui::Context) {
+        let Some(path) = self.document.path().map(Path::to_owned) else { return self.ask_where_to_save() };
+        match self.save(&path) {
+            Ok(words) => {
+                self.say(ctx, words);
+                self.after_save(ctx);
+            }
+            Err(reason) => {
+                self.question = Question::None;
+                self.say(ctx, fill!("Not saved: %{reason}", reason = reason));
+            }
+        }
     }
 
     fn ask_where_to_save(&mut self) {
@@ -1685,21 +1768,6 @@ impl Lab {
     fn solve_linear(&mut self) {
         let known = self.linear.take();
         self.linear = solve_linear(self.simulation.scene(), self.simulation.system(), known);
-    /// Saves the scene to its file, or asks for one.
-    fn save_here(&mut self, ctx: &egui::Context) {
-        let Some(path) = self.document.path().map(Path::to_owned) else { return self.ask_where_to_save() };
-        match self.save(&path) {
-            Ok(words) => {
-                self.say(ctx, words);
-                self.after_save(ctx);
-            }
-            Err(reason) => {
-                self.question = Question::None;
-                self.say(ctx, fill!("Not saved: %{reason}", reason = reason));
-            }
-        }
-    }
-
     }
 
     fn copy(&mut self, ctx: &egui::Context) {

@@ -35,6 +35,7 @@ mod language;
 mod learn;
 mod legend;
 mod load_scale;
+mod measured;
 mod mode;
 mod motion_plot;
 mod overlay;
@@ -48,8 +49,8 @@ mod probe;
 mod quality;
 mod record;
 mod recorder;
-mod settings;
 mod recovery;
+mod settings;
 mod shape;
 mod shot;
 mod size;
@@ -59,13 +60,13 @@ mod turn;
 mod verdict;
 mod window;
 
-pub use compare::{Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
+pub use compare::{MotionPane, MotionPaneSetting, Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
 pub use lab::{Lab, PANEL_WIDTH};
 pub use language::Language;
 pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
-pub use settings::Settings;
 #[doc(hidden)]
 pub use recovery::{Recovery, Unsaved};
+pub use settings::Settings;
 pub use shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
 pub use window::{Display, NoDisplay, opens_beside, run};
 

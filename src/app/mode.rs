@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::action::Action;
 use super::lab::{Lab, Request};
-use crate::scene::{Analysis, Scene};
+use crate::scene::Scene;
 
 /// What the window is used for at present.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,9 +57,9 @@ pub(super) const MODES: &[ModeEntry] = &[
     ModeEntry {
         mode: Mode::Compare,
         name: "Compare",
-        about: "Methods, elements and meshes beside each other under one load (K)",
-        serves: |scene| scene.analysis == Analysis::Static,
-        unless: "Equilibria are compared. Of a motion, the Time fold of the panel shows other integrators over the body",
+        about: "Methods, integrators, elements and meshes beside each other under one load (K)",
+        serves: |_| true,
+        unless: "",
         show: Lab::comparison_bars,
         view: Lab::comparison,
     },
@@ -67,8 +67,8 @@ pub(super) const MODES: &[ModeEntry] = &[
         mode: Mode::Budget,
         name: "Budget",
         about: "Error against time on this machine, and the fastest setting within limits (B)",
-        serves: |scene| scene.analysis == Analysis::Static,
-        unless: "Solves of an equilibrium are measured; `warpbeam study` measures motions",
+        serves: |_| true,
+        unless: "",
         show: Lab::budget,
         view: Lab::body_view,
     },

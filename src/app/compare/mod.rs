@@ -34,10 +34,13 @@ use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::{Reference, Setting};
 use crate::words::{engineering, prefix, three_digits, two_digits};
 
+mod motion;
 mod pane;
 mod setting;
 mod trace;
 
+pub(super) use motion::{MotionCompare, MotionInput};
+pub use motion::{MotionPane, MotionPaneSetting};
 pub use pane::{Pane, PaneEnd};
 pub use setting::{PaneSetting, PaneSettingError, parse_panes};
 

@@ -65,6 +65,10 @@ const SENTENCES: &[&str] = &[
     "%{n} quadrilaterals",
     "%{n} iterations",
     "%{n} iteration",
+    "%{n} solves a step",
+    "%{n} solve a step",
+    "%{n} solves a stage",
+    "%{n} solve a stage",
     "%{quantity} (%{unit})",
 ];
 

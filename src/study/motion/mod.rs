@@ -47,6 +47,20 @@ pub struct MotionSetting {
 }
 
 impl MotionSetting {
+    /// The setting of a scene.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let dynamics = &scene.dynamics;
+        Self {
+            element: scene.element(),
+            cells: scene.beam.as_ref().map(|beam| beam.cells),
+            integrator: dynamics.integrator,
+            method: scene.solver.method,
+            time_step: dynamics.time_step,
+            iterations: dynamics.iterations,
+        }
+    }
+
     /// The scene with this setting.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
@@ -353,6 +367,12 @@ impl MotionStudy {
         percent.max(self.reference.error_percent)
     }
 
+    /// `true` if the error of a measurement is sure to be at most so many percent; the reference's own error is added to it.
+    #[must_use]
+    pub fn is_within(&self, measurement: &MotionMeasurement, percent: f64) -> bool {
+        measurement.error.is_some_and(|e| e.bound() + self.reference.error_percent <= percent)
+    }
+
     /// The measurements no other beats, fastest first.
     #[must_use]
     pub fn front(&self) -> Vec<&MotionMeasurement> {
@@ -368,9 +388,7 @@ impl MotionStudy {
     }
 
     fn fastest_of(&self, percent: f64, which: impl Fn(&MotionMeasurement) -> bool) -> Option<&MotionMeasurement> {
-        let surely = |m: &&MotionMeasurement| {
-            m.error.is_some_and(|e| e.bound() + self.reference.error_percent <= percent) && which(m)
-        };
+        let surely = |m: &&MotionMeasurement| self.is_within(m, percent) && which(m);
         self.measurements.iter().filter(surely).min_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds))
     }
 }

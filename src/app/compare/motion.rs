@@ -1,0 +1,552 @@
+//! Two to four integrators, elements or meshes beside each other in motion: one load, one clock, one camera, one range of
+//! colours.
+
+use std::time::{Duration, Instant};
+
+use egui::emath::GuiRounding;
+use egui::{Align, Align2, FontId, Layout, Panel, Rect, RichText, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use nalgebra::Vector2;
+
+use super::setting::PANES;
+use super::{GAP, HEADER, KEY, cells, mesh_picker, pick};
+use crate::app::action::{Action, ViewOptions};
+use crate::app::arrow::Forces;
+use crate::app::drawing::Drawing;
+use crate::app::eye::Eye;
+use crate::app::language::{fill, joined, percent, sentence, tr, translated};
+use crate::app::load_scale::OpeningLoads;
+use crate::app::overlay::{self, Overlay, Projection};
+use crate::app::pace::Pace;
+use crate::app::palette::{BODY, Palette};
+use crate::app::playback::Playback;
+use crate::app::pointer::{Body, Look, Pointer, Reach, Wish};
+use crate::app::shape::Shape;
+use crate::app::stage::viewport;
+use crate::app::toolbar::option_button;
+use crate::app::verdict::Errors;
+use crate::dynamics::INTEGRATORS;
+use crate::render::{Camera, Margins, View};
+use crate::scene::{ElementKind, IntegratorKind, Scene};
+use crate::simulation::{Motion, Simulation, Status, probe_results};
+use crate::words::{engineering, prefix, three_digits, two_digits};
+
+/// Time for the steps of all panes between two frames.
+const WORK: Duration = Duration::from_millis(24);
+/// Displayed frames a second.
+const FRAMES: f64 = 60.0;
+
+/// Choices of a pane in the place of those of its scene; `None`: as the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MotionPaneSetting {
+    /// Integrator.
+    pub integrator: Option<IntegratorKind>,
+    /// Element.
+    pub element: Option<ElementKind>,
+    /// Cells along and across.
+    pub cells: Option<[u32; 2]>,
+}
+
+impl MotionPaneSetting {
+    fn of_integrator(integrator: IntegratorKind) -> Self {
+        Self { integrator: Some(integrator), ..Self::default() }
+    }
+
+    fn of_element(element: ElementKind) -> Self {
+        Self { element: Some(element), ..Self::default() }
+    }
+
+    /// The scene with the choices.
+    #[must_use]
+    pub fn apply(&self, scene: &Scene) -> Scene {
+        let mut scene = scene.clone();
+        scene.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
+        scene.set_element(self.element.unwrap_or(scene.element()));
+        if let (Some(beam), Some(cells)) = (&mut scene.beam, self.cells) {
+            beam.cells = cells;
+        }
+        scene
+    }
+}
+
+/// A motion with choices of its own.
+#[derive(Debug)]
+pub struct MotionPane {
+    setting: MotionPaneSetting,
+    /// The scene with the setting, as the simulation was given it.
+    scene: Option<Scene>,
+    simulation: Option<Box<Simulation>>,
+    /// Reason for which there is no simulation.
+    refused: Option<String>,
+    /// Time of computing a step, s: a mean in which old steps fade.
+    seconds: Option<f64>,
+    drawing: Drawing,
+    shape: Shape,
+    place: Option<Rect>,
+    pointer: Pointer,
+}
+
+impl MotionPane {
+    fn new(setting: MotionPaneSetting) -> Self {
+        Self {
+            setting,
+            scene: None,
+            simulation: None,
+            refused: None,
+            seconds: None,
+            drawing: Drawing::default(),
+            shape: Shape::default(),
+            place: None,
+            pointer: Pointer::default(),
+        }
+    }
+
+    /// Choices of its own.
+    #[must_use]
+    pub fn setting(&self) -> &MotionPaneSetting {
+        &self.setting
+    }
+
+    /// Its simulation; `None` where the scene cannot be set up so.
+    #[must_use]
+    pub fn simulation(&self) -> Option<&Simulation> {
+        self.simulation.as_deref()
+    }
+
+    /// Place of its body in the window, points.
+    #[must_use]
+    pub fn place(&self) -> Option<Rect> {
+        self.place
+    }
+
+    /// Takes the scene on. Returns `true` if the motion has to start over: integrator, element or mesh are others.
+    fn follow(&mut self, scene: &Scene) -> bool {
+        let wanted = self.setting.apply(scene);
+        if self.scene.as_ref() == Some(&wanted) {
+            return false;
+        }
+        let goes_on = self.scene.as_ref().is_some_and(|before| {
+            (&before.beam, &before.mesh, &before.dynamics) == (&wanted.beam, &wanted.mesh, &wanted.dynamics)
+        });
+        let made = match self.simulation.take().filter(|_| goes_on) {
+            Some(mut simulation) => simulation.change_scene(&wanted).map(|()| simulation),
+            None => Simulation::new(&wanted).map(Box::new),
+        };
+        self.refused = made.as_ref().err().map(ToString::to_string);
+        self.simulation = made.ok();
+        if let (Some(simulation), false) = (&self.simulation, goes_on) {
+            self.drawing = Drawing::new(simulation.system().mesh());
+            self.shape = Shape::default();
+            self.seconds = None;
+        }
+        self.scene = Some(wanted);
+        !goes_on
+    }
+
+    fn moves(&self) -> bool {
+        self.simulation.as_ref().is_some_and(|simulation| !simulation.is_at_rest())
+    }
+
+    fn step(&mut self) {
+        const FADING: f64 = 0.95;
+        let is_stopped = |simulation: &Simulation| matches!(simulation.status(), Status::Stopped(_));
+        let Some(simulation) = self.simulation.as_mut().filter(|simulation| !is_stopped(simulation)) else { return };
+        let begun = Instant::now();
+        simulation.step();
+        let seconds = begun.elapsed().as_secs_f64();
+        self.seconds = Some(self.seconds.map_or(seconds, |mean| FADING * mean + (1.0 - FADING) * seconds));
+    }
+
+    /// Displacement of the first probe, m.
+    fn tip(&self) -> Option<Vector2<f64>> {
+        let simulation = self.simulation.as_ref()?;
+        Some(probe_results(simulation.problem(), simulation.state()).first()?.u)
+    }
+}
+
+/// Input of the comparison from the lab.
+pub(in crate::app) struct MotionInput<'a> {
+    pub scene: &'a Scene,
+    pub view: &'a ViewOptions,
+    /// Direction of a force's arrow without force, degrees.
+    pub direction: f64,
+    pub opening: OpeningLoads,
+    /// `true` if the view takes its time on the way to where it looks.
+    pub eases: bool,
+}
+
+/// The panes, their clock and their camera.
+#[derive(Debug)]
+pub(in crate::app) struct MotionCompare {
+    panes: Vec<MotionPane>,
+    pub pace: Pace,
+    eye: Option<Eye>,
+    /// Box of everything that the bodies have swept, m.
+    swept: Option<[Vector2<f64>; 2]>,
+    still: Playback,
+}
+
+impl Default for MotionCompare {
+    fn default() -> Self {
+        let mut compare =
+            Self { panes: Vec::new(), pace: Pace::default(), eye: None, swept: None, still: Playback::default() };
+        compare.set(&integrators());
+        compare
+    }
+}
+
+/// The first three integrators of the registry.
+fn integrators() -> Vec<MotionPaneSetting> {
+    INTEGRATORS.iter().filter(|i| !i.is_explicit()).take(3).map(|i| MotionPaneSetting::of_integrator(i.kind)).collect()
+}
+
+impl MotionCompare {
+    pub(in crate::app) fn panes(&self) -> &[MotionPane] {
+        &self.panes
+    }
+
+    /// Compares these: at most four.
+    fn set(&mut self, settings: &[MotionPaneSetting]) {
+        self.panes = settings.iter().take(*PANES.end()).map(|&setting| MotionPane::new(setting)).collect();
+        (self.eye, self.swept) = (None, None);
+    }
+
+    /// `true` while a body moves.
+    pub(in crate::app) fn moves(&self) -> bool {
+        self.panes.iter().any(MotionPane::moves)
+    }
+
+    /// All start over.
+    pub(in crate::app) fn reset(&mut self) {
+        self.panes.iter_mut().filter_map(|pane| pane.simulation.as_mut()).for_each(|simulation| simulation.reset());
+        self.swept = None;
+        self.pace.rest();
+    }
+
+    /// Shows all bodies again.
+    pub(in crate::app) fn fit(&mut self) {
+        self.eye.iter_mut().for_each(Eye::fit);
+    }
+
+    /// One time step of everything.
+    pub(in crate::app) fn step(&mut self) {
+        self.panes.iter_mut().for_each(MotionPane::step);
+    }
+
+    /// Takes the scene on, and makes the time steps that are due at `now`, s. All panes are at the same time: what a slow one
+    /// cannot keep up with slows all down.
+    pub(in crate::app) fn advance(&mut self, scene: &Scene, now: f64, running: bool) {
+        let restarts = self.panes.iter_mut().map(|pane| pane.follow(scene)).fold(false, |any, one| any || one);
+        if restarts {
+            self.reset();
+        }
+        if !running || !self.moves() {
+            return self.pace.rest();
+        }
+        let step = scene.dynamics.time_step;
+        let due = self.pace.begin(now, step);
+        let begun = Instant::now();
+        let mut made = 0;
+        while made < due && (made == 0 || begun.elapsed() < WORK) && self.moves() {
+            self.step();
+            made += 1;
+        }
+        self.pace.end(due, made, step);
+    }
+
+    pub(in crate::app) fn camera(&self) -> Camera {
+        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, Eye::camera)
+    }
+
+    /// The bodies, with so many pixels a point.
+    pub(in crate::app) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
+        let camera = self.camera();
+        let seen = self.panes.iter().filter_map(|pane| {
+            let viewport = viewport(pane.place?, pixels_per_point);
+            Some(View { viewport, frame: pane.shape.frame(&pane.drawing, wireframe), camera })
+        });
+        seen.collect()
+    }
+
+    /// The presets over the panes.
+    pub(in crate::app) fn bars(&mut self, ui: &mut Ui, input: &MotionInput<'_>) {
+        if !input.view.bars {
+            return;
+        }
+        let elements: Vec<ElementKind> = input.scene.elements().collect();
+        let presets = [
+            (tr("integrators").to_owned(), integrators(), "Three integrators on the panel's mesh"),
+            (
+                elements.iter().map(|element| element.id()).collect::<Vec<_>>().join(" | "),
+                elements.iter().map(|&element| MotionPaneSetting::of_element(element)).collect(),
+                "The elements that the mesh can have, by the panel's integrator",
+            ),
+        ];
+        let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
+        Panel::top("motion presets").resizable(false).frame(frame).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing.x = 6.0;
+                let present: Vec<_> = self.panes.iter().map(|pane| pane.setting).collect();
+                for (name, settings, tip) in presets {
+                    let button = ui.add_enabled(settings.len() > 1, option_button(present == settings, name));
+                    if button.on_hover_text(tr(tip)).clicked() {
+                        self.set(&settings);
+                    }
+                }
+                let more = ui.add_enabled(self.panes.len() < *PANES.end(), egui::Button::new(tr("+ Pane")));
+                if more.on_hover_text(tr("Another pane")).on_disabled_hover_text(tr("Four are the most")).clicked() {
+                    let used = |kind| present.iter().any(|setting| setting.integrator == Some(kind));
+                    let unused = INTEGRATORS.iter().map(|entry| entry.kind).find(|&kind| !used(kind));
+                    self.panes.push(MotionPane::new(unused.map(MotionPaneSetting::of_integrator).unwrap_or_default()));
+                }
+                let time = self.panes.iter().find_map(|pane| Some(pane.simulation()?.state().time()));
+                ui.label(RichText::new(fill!("t = %{time}", time = format!("{:.2} s", time.unwrap_or(0.0)))));
+            });
+        });
+    }
+
+    /// The panes; returns the wish for their load.
+    pub(in crate::app) fn show(&mut self, ui: &mut Ui, input: &MotionInput<'_>, actions: &mut Vec<Action>) -> Wish {
+        for pane in &mut self.panes {
+            if let Some(simulation) = &pane.simulation {
+                pane.shape.update(simulation, &pane.drawing, input.view, true);
+            }
+            pane.shape.color(ui.visuals(), input.view.field);
+        }
+        let ranges = self.panes.iter().map(|pane| pane.shape.range);
+        let range = ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default();
+        let shared = input.view.fixed_range.unwrap_or(range);
+        self.panes.iter_mut().for_each(|pane| pane.shape.range = shared);
+        let whole = ui.available_rect_before_wrap();
+        let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
+        let cells = cells(Rect::from_min_max(whole.min, key.right_top() - vec2(0.0, GAP)), self.panes.len());
+        for (pane, cell) in self.panes.iter_mut().zip(&cells) {
+            let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + HEADER).min(cell.bottom())), cell.max);
+            pane.place = Some(place.round_ui());
+        }
+        self.look(ui, input);
+        let (mut change, mut wish) = (None, Wish::default());
+        for (number, cell) in cells.iter().enumerate() {
+            let Some(place) = self.panes.get(number).and_then(MotionPane::place) else { continue };
+            let header = Rect::from_min_max(cell.min, place.right_top());
+            ui.scope_builder(
+                UiBuilder::new().max_rect(header.shrink2(vec2(8.0, 3.0))).id_salt(("pane", number)),
+                |ui| {
+                    ui.set_clip_rect(header.intersect(ui.clip_rect()));
+                    self.header(ui, number, input, &mut change);
+                },
+            );
+            let own = self.body(ui, number, place, input);
+            if own.load.is_some() || own.restore.is_some() {
+                wish = own;
+            }
+        }
+        self.key(ui, key, input.view);
+        match change {
+            Some((number, Some(setting))) => {
+                if let Some(pane) = self.panes.get_mut(number) {
+                    *pane = MotionPane::new(setting);
+                    actions.push(Action::Reset);
+                }
+            }
+            Some((number, None)) if self.panes.len() > *PANES.start() => _ = self.panes.remove(number),
+            _ => {}
+        }
+        ui.advance_cursor_after_rect(whole);
+        wish
+    }
+
+    /// Looks at everything that the bodies have swept, while nobody has moved the view.
+    fn look(&mut self, ui: &Ui, input: &MotionInput<'_>) {
+        let sizes = self.panes.iter().filter_map(MotionPane::place);
+        let sizes = sizes.map(|place| [place.width(), place.height()].map(f64::from));
+        let Some(size) = sizes.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])]) else { return };
+        let Some(first) = self.panes.iter().find_map(MotionPane::simulation) else { return };
+        let (low, high) = first.system().mesh().bounds();
+        let sound = self.panes.iter().filter(|pane| {
+            pane.simulation().is_some_and(|simulation| !matches!(simulation.status(), Status::Stopped(_)))
+        });
+        let grow = |[low, high]: [Vector2<f64>; 2], p: &Vector2<f64>| [low.inf(p), high.sup(p)];
+        let swept = sound.flat_map(|pane| pane.shape.points()).fold(self.swept.unwrap_or([low, high]), grow);
+        self.swept = Some(swept);
+        let holds = self.panes.iter().any(|pane| pane.pointer.holds());
+        let eye = self.eye.get_or_insert_with(|| Eye::new([low, high]));
+        if !holds {
+            eye.follow(swept);
+        }
+        let [low, high] = eye.whole();
+        let margins = Margins { sides: 40.0, top: 40.0, bottom: 44.0 };
+        let dt = f64::from(ui.input(|i| i.stable_dt));
+        if eye.aim(Camera::fit(low, high, size, margins), input.eases.then_some(dt)) {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// The pickers of a pane, and its numbers.
+    fn header(
+        &self,
+        ui: &mut Ui,
+        number: usize,
+        input: &MotionInput<'_>,
+        change: &mut Option<(usize, Option<MotionPaneSetting>)>,
+    ) {
+        let Some(pane) = self.panes.get(number) else { return };
+        let palette = Palette::new(ui.visuals());
+        let name = fill!("Pane %{n}", n = number + 1);
+        ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
+        ui.horizontal(|ui| {
+            let integrator = pane.setting.integrator.unwrap_or(input.scene.dynamics.integrator);
+            let (bar, _) = ui.allocate_exact_size(vec2(10.0, 18.0), Sense::hover());
+            ui.painter().rect_filled(bar, 3.0, palette.integrator(integrator));
+            let mut setting = pane.setting;
+            let close = self.panes.len() > *PANES.start() && input.view.bars;
+            let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
+            let widths = [0.42, 0.2, 0.28].map(|share| (share * room).clamp(30.0, 150.0));
+            let panels = (input.scene.dynamics.integrator.id(), "the panel's");
+            let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));
+            pick(ui, &palette, (&name, "integrator"), widths[0], (&mut setting.integrator, panels), entries);
+            let elements = input.scene.elements().map(|e| (e, e.id(), e.entry().about));
+            let panels = (input.scene.element().id(), "the panel's");
+            pick(ui, &palette, (&name, "element"), widths[1], (&mut setting.element, panels), elements);
+            mesh_picker(ui, &palette, &name, widths[2], &mut setting.cells, input.scene);
+            if setting != pane.setting {
+                *change = Some((number, Some(setting)));
+            }
+            if close {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let button = egui::Button::new(RichText::new("×").size(18.0)).frame(false);
+                    let button = ui.add(button.min_size(vec2(24.0, 24.0)));
+                    let words = fill!("Close pane %{n}", n = number + 1);
+                    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));
+                    if button.on_hover_text(words).clicked() {
+                        *change = Some((number, None));
+                    }
+                });
+            }
+        });
+        self.result(ui, &name, number, pane);
+    }
+
+    /// Time of a frame, drift, and distance of the tip from that of the first pane; or the reason for which there are none.
+    fn result(&self, ui: &mut Ui, name: &str, number: usize, pane: &MotionPane) {
+        let palette = Palette::new(ui.visuals());
+        let failure = pane.refused.as_deref().map(translated).or_else(|| match pane.simulation()?.status() {
+            Status::Stopped(reason) => Some(translated(&reason.to_string())),
+            _ => None,
+        });
+        let words = failure.as_deref().map_or_else(|| self.numbers(number, pane), sentence);
+        let color = if failure.is_some() { palette.error } else { palette.text };
+        let response = ui.add(egui::Label::new(RichText::new(&words).color(color)).truncate());
+        let spoken = format!("{name}: {words}");
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+        response.on_hover_text(tr(
+            "Time of computing what a frame at 60 Hz shows; energy that the integrator has added; distance of the first \
+             probe from that of the first pane, at the same time",
+        ));
+    }
+
+    fn numbers(&self, number: usize, pane: &MotionPane) -> String {
+        let step = pane.scene.as_ref().map_or(1.0, |scene| scene.dynamics.time_step);
+        let cost = pane.seconds.map(|seconds| {
+            let frame = seconds / step / FRAMES;
+            fill!("%{time} a frame", time = engineering(two_digits(frame), "s"))
+        });
+        let drift = pane
+            .simulation()
+            .and_then(Simulation::motion)
+            .map(Motion::ledger)
+            .map(|ledger| fill!("drift %{drift}", drift = percent(100.0 * ledger.drift())));
+        let first = self.panes.first().filter(|_| number > 0).and_then(MotionPane::tip);
+        let apart = first.zip(pane.tip()).map(|(first, own)| {
+            fill!("tip %{distance} off", distance = engineering(three_digits((own - first).norm()), "m"))
+        });
+        joined(cost.into_iter().chain(drift).chain(apart))
+    }
+
+    /// The body of a pane, over what its pass has drawn.
+    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &MotionInput<'_>) -> Wish {
+        let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
+        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Wish::default() };
+        let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
+        let Some(simulation) = pane.simulation.as_deref() else { return Wish::default() };
+        let forces = Forces {
+            scene: simulation.scene(),
+            system: simulation.system(),
+            positions: &pane.shape.nodes,
+            time: simulation.state().time(),
+            direction: input.direction,
+            opening: input.opening,
+        };
+        let handles = forces.handles(&Projection { camera, rect: place });
+        let reach = Reach {
+            mesh: Some(simulation.system().mesh()),
+            camera,
+            positions: &pane.shape.nodes,
+            outline: &pane.drawing.boundary,
+            handles: &handles,
+            scales: eye.scales([place.width(), place.height()].map(f64::from)),
+        };
+        let wish = pane.pointer.follow(ui, &response, &reach, Body::None);
+        match wish.look {
+            Look::Same => {}
+            Look::At(camera) => {
+                eye.look(camera);
+                ui.ctx().request_repaint();
+            }
+            Look::Fit => eye.fit(),
+        }
+        let Some(pane) = self.panes.get(number) else { return wish };
+        let Some(simulation) = pane.simulation() else { return wish };
+        let palette = Palette::new(ui.visuals());
+        let painter = ui.painter_at(place);
+        let overlay = Overlay {
+            apart: false,
+            scene: simulation.scene(),
+            system: simulation.system(),
+            drawing: &pane.drawing,
+            options: input.view,
+            camera: self.camera(),
+            positions: &pane.shape.nodes,
+            ghost: None,
+            exact: &[],
+            errors: Errors::default(),
+            time: simulation.state().time(),
+            direction: input.direction,
+            opening: input.opening,
+            hot: pane.pointer.hot_handle(),
+            hand: None,
+            reactions: &[],
+            playback: &self.still,
+            color_range: pane.shape.range,
+            warning: None,
+        };
+        overlay::body(&painter, place, &overlay, ui.visuals());
+        if number == 0 {
+            overlay::scale_bar(&painter, place, &self.camera(), &palette);
+        }
+        if matches!(simulation.status(), Status::Stopped(_)) {
+            painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.55));
+        }
+        wish
+    }
+
+    /// Colours of all panes.
+    fn key(&self, ui: &Ui, rect: Rect, view: &ViewOptions) {
+        let palette = Palette::new(ui.visuals());
+        let painter = ui.painter_at(rect);
+        let font = FontId::proportional(BODY);
+        let middle = rect.center().y;
+        let Some(range) = self.panes.first().map(|pane| pane.shape.range) else { return };
+        let unit = view.field.unit();
+        let (power, symbol) = prefix(&range, unit);
+        let [low, high] = range.map(|v| engineering(three_digits(v / 10f64.powi(power)), ""));
+        let put = |right: f32, words: String, color| {
+            let place = painter.text(pos2(right, middle), Align2::RIGHT_CENTER, words, font.clone(), color);
+            place.left() - 8.0
+        };
+        let right = put(rect.right() - 12.0, format!("{high} {symbol}{unit}"), palette.text);
+        let bar = Rect::from_center_size(pos2(right - 65.0, middle), vec2(130.0, 10.0));
+        overlay::color_bar(&painter, bar, palette.map(view.field));
+        let left = put(bar.left() - 8.0, low, palette.text);
+        put(left, tr(view.field.name()).to_owned(), palette.secondary);
+    }
+}
