@@ -88,6 +88,8 @@ pub mod words;
 pub use nalgebra;
 
 pub use mesh::Mesh;
-pub use scene::{Axis, Beam, ElementKind, IntegratorKind, Load, Material, MethodKind, Place, Plane, Scene, SceneError};
+pub use scene::{
+    Axis, Beam, Diagonals, ElementKind, IntegratorKind, Load, Material, MethodKind, Place, Plane, Scene, SceneError,
+};
 pub use simulation::{Field, Simulation, SimulationError, Solution, Status};
 pub use state::State;

@@ -24,6 +24,7 @@ fn every_command_has_help() {
         &["tune", "--help"],
         &["extremes", "--help"],
         &["record", "--help"],
+        &["rust", "--help"],
         &["completions", "--help"],
         &["man", "--help"],
     ] {
@@ -34,7 +35,7 @@ fn every_command_has_help() {
         assert!(text.lines().all(|line| line.len() < 200));
     }
     for command in
-        ["run", "scenes", "solve", "curve", "study", "tune", "extremes", "shot", "record", "completions", "man"]
+        ["run", "scenes", "solve", "curve", "study", "tune", "extremes", "shot", "record", "rust", "completions", "man"]
     {
         assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
     }
@@ -1105,4 +1106,18 @@ fn an_accepted_result_is_a_success() {
     assert_eq!((json["status"].as_str(), json["iterations"].as_u64()), (Some("accepted"), Some(3)));
     let output = warpbeam(&["solve", "cantilever", "--set", "solver.accept_after=3"]);
     assert!(stdout(&output).contains("accepted after 3 iterations"), "{}", stdout(&output));
+}
+
+#[test]
+fn a_scene_is_printed_as_a_rust_program() {
+    let program = fs::read_to_string("tests/programs/snap.rs").unwrap();
+    assert_eq!(stdout(&warpbeam(&["rust", "snap"])), program);
+    let edited = stdout(&warpbeam(&["rust", "snap", "--set", "support.2.displacement=[0, -3 mm]"]));
+    assert_eq!(edited, program.replace("-0.012", "-0.003"));
+    // The mesh of a file is found from any folder.
+    let folder = std::env::current_dir().unwrap().join("assets/scenes");
+    let program = stdout(&warpbeam(&["rust", "assets/scenes/../scenes/clip.toml"]));
+    let mesh = program.lines().find(|line| line.contains("mesh_file")).unwrap();
+    assert!(mesh.contains(&format!("(\"../meshes/clip.msh\", \"{}", folder.parent().unwrap().display())), "{mesh}");
+    assert_eq!(warpbeam(&["rust", "nowhere"]).status.code(), Some(2));
 }

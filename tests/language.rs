@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use common::scene;
 use egui::accesskit::Role;
-use egui::{FontId, Key, Rect};
+use egui::{FontId, Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use warpbeam::Scene;
@@ -84,8 +84,8 @@ fn shown(harness: &Harness<'_, Lab>) -> BTreeSet<String> {
 
 /// What is the same in every language: units, formats, keys, and names of programs.
 const SAME: &[&str] = &[
-    "rad", "RTR", "RkT", "fint", "Delete", "GIF", "PNG", "TOML", "Gmsh", "Shift", "Ctrl", "Space", "Enter", "Esc",
-    "Escape", "BDF", "bdf", "det", "max", "int", "warpbeam",
+    "rad", "RTR", "RkT", "fint", "Delete", "GIF", "PNG", "TOML", "Gmsh", "Rust", "Shift", "Ctrl", "Space", "Enter",
+    "Esc", "Escape", "BDF", "bdf", "det", "max", "int", "warpbeam",
 ];
 
 /// Words of three or more Latin letters that are no names: scenes are opened by theirs, and what stands between backticks is
@@ -385,6 +385,9 @@ fn exploring_is_in_chinese() {
     harness.key_press(Key::C);
     harness.run_steps(4);
     assert_chinese(&harness, "copied");
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::C);
+    harness.run_steps(4);
+    assert_chinese(&harness, "copied as a program");
 }
 
 /// What a scene says of its state, its load path and its supports.

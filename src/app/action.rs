@@ -64,8 +64,10 @@ pub(super) enum Action {
     Screenshot,
     /// Record the scene, or end the recording.
     Record,
-    /// Copy the scene.
+    /// Copy the scene as TOML.
     Copy,
+    /// Copy the scene as a Rust program.
+    CopyRust,
     /// Start the study, or call it off.
     Measure(bool),
     /// Show the card of this number, from 0, and set its scene up.

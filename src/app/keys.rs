@@ -61,6 +61,7 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::S, "Save a screenshot (PNG) here", || Action::Screenshot),
     key(Key::V, "Record the scene as a GIF here; again: stop", || Action::Record),
     key(Key::C, "Copy the scene as TOML, with its command", || Action::Copy),
+    with(Modifiers::SHIFT, Key::C, "Copy the scene as a Rust program", || Action::CopyRust),
     with(Modifiers::COMMAND, Key::O, "Open a scene file", || Action::OpenFile),
     with(Modifiers::COMMAND, Key::S, "Save the scene", || Action::Save),
     with(COMMAND_SHIFT, Key::S, "Save the scene to another file", || Action::SaveAs),

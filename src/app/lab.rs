@@ -1513,6 +1513,7 @@ impl Lab {
             Action::Screenshot => requests.push(Request::Screenshot),
             Action::Record => self.record(ctx),
             Action::Copy => self.copy(ctx),
+            Action::CopyRust => self.copy_rust(ctx),
             Action::Measure(true) => {
                 // Full studies of motions take many minutes.
                 let extent = if self.learn.is_some() || self.moves() { Extent::Quick } else { Extent::Full };
@@ -1778,6 +1779,11 @@ impl Lab {
             }
             Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
         }
+    }
+
+    fn copy_rust(&mut self, ctx: &egui::Context) {
+        ctx.copy_text(self.scene.to_rust(&self.document.source.folder()));
+        self.say(ctx, tr("Scene copied as a Rust program").to_owned());
     }
 
     /// Records the scene beside the window, or ends the recording that is made.

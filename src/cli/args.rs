@@ -103,6 +103,8 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),
+    /// Print a scene as a Rust program, which builds it with the library and solves it.
+    Rust(RequiredSceneArgs),
     /// Print the completions of a shell.
     #[command(after_help = "bash: warpbeam completions bash > ~/.local/share/bash-completion/completions/warpbeam")]
     Completions {

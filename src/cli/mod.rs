@@ -1,4 +1,5 @@
-//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `completions`, `man`.
+//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `rust`,
+//! `completions`, `man`.
 //! Without the feature `app`, those that need no window and no GPU.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge or was interrupted, 2 bad input or usage, or a result that
@@ -114,6 +115,7 @@ pub fn main() -> ExitCode {
         Some(Command::Shot(args)) => window::shot(args),
         #[cfg(feature = "app")]
         Some(Command::Record(args)) => record::record(args),
+        Some(Command::Rust(args)) => commands::rust(&args.into()),
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Man) => manual::man(),
     };

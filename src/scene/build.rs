@@ -1,8 +1,11 @@
 //! Scenes in code: builders and setters with numbers, checked where they are simulated.
 
+use std::path::Path;
+
+use super::open::read_mesh;
 use super::{
-    Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
-    MethodKind, Place, Plane, Probe, Pulse, Scene, SolverSettings, Start, Support,
+    Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material, MeshFile,
+    MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SolverSettings, Start, Support,
 };
 use crate::words::engineering;
 
@@ -52,6 +55,37 @@ impl Scene {
             diagonals: Diagonals::default(),
         };
         Self { beam: Some(beam), ..Self::named("Beam") }
+    }
+
+    /// A body of rubber whose mesh is in a Gmsh file, relative to this folder: nothing holds or pulls it yet.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] where the file cannot be read.
+    pub fn mesh_file(file: &str, folder: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let mesh = MeshFile { file: file.to_owned(), element: None, scale: None, text: None };
+        let mut scene = Self { mesh: Some(mesh), ..Self::named(file) };
+        match read_mesh(&mut scene, folder.as_ref()) {
+            Ok(()) => Ok(scene),
+            Err(invalid) => Err(SceneError::Invalid { file: None, line: None, invalid }),
+        }
+    }
+
+    /// With so many metres per unit of its mesh file.
+    #[must_use]
+    pub fn with_scale(mut self, scale: f64) -> Self {
+        if let Some(mesh) = &mut self.mesh {
+            mesh.scale = Some(scale);
+        }
+        self
+    }
+
+    /// With its cells cut this way.
+    #[must_use]
+    pub fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
+        if let Some(beam) = &mut self.beam {
+            beam.diagonals = diagonals;
+        }
+        self
     }
 
     /// Bent to an arch whose axis rises by so much, m, in its middle.

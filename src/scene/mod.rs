@@ -15,6 +15,7 @@ mod open;
 mod place;
 pub mod registry;
 mod required;
+mod rust_code;
 pub mod units;
 
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};

@@ -54,6 +54,17 @@ impl Source {
         self.name.to_str().and_then(registry::find)
     }
 
+    /// Folder that the scene's mesh file is relative to: empty for a built-in scene, else absolute.
+    #[must_use]
+    pub fn folder(&self) -> PathBuf {
+        if self.built_in().is_some() {
+            return PathBuf::new();
+        }
+        let folder = self.name.parent().filter(|_| !self.is_stream()).unwrap_or(Path::new(""));
+        // An empty path has no absolute one.
+        std::path::absolute(folder.join(".")).unwrap_or_else(|_| folder.to_owned())
+    }
+
     fn text(&self) -> Result<String, SceneError> {
         match self.built_in() {
             Some(built_in) => Ok(built_in.toml.to_owned()),
@@ -166,7 +177,7 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
 }
 
 /// Reads the mesh file of a scene, relative to the scene's own folder; the meshes of built-in scenes are built in.
-fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
+pub(super) fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
     const KEY: &str = "mesh.file";
     let Some(mesh) = &mut scene.mesh else { return Ok(()) };
     let path = folder.join(&mesh.file);

@@ -108,7 +108,8 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             ("Save as…", "Save the scene to another file (Ctrl+Shift+S)", Action::SaveAs),
             ("Screenshot", "Save this picture as a PNG file here (S)", Action::Screenshot),
             ("Record", "Record the scene from its start as a GIF here; again: stop (V)", Action::Record),
-            ("Copy scene", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
+            ("Copy as TOML", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
+            ("Copy as Rust", "Copy a Rust program that builds the scene and solves it (Shift+C)", Action::CopyRust),
         ] {
             if ui.button(tr(name)).on_hover_text(tr(tip)).clicked() {
                 actions.push(action);

@@ -1,0 +1,28 @@
+// Save as src/main.rs of a new project (`cargo new beam`), then:
+// cargo add warpbeam --no-default-features && cargo run --release
+
+use std::error::Error;
+
+use warpbeam::{Material, Scene, Simulation};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut simulation = Simulation::new(&scene())?;
+    simulation.solve();
+    println!("{}", simulation.status().word());
+    for probe in simulation.solution().probes {
+        let (name, x, y) = (&probe.name, probe.u.x, probe.u.y);
+        println!("{name} moved by ({x:.6}, {y:.6}) m");
+    }
+    Ok(())
+}
+
+fn scene() -> Scene {
+    let mut scene = Scene::beam(20.0, 1.0)
+        .with_material(Material::new(1e6, 0.0))
+        .clamp("left")
+        .force("right", [-700.0, 2.0])
+        .probe("tip", "right");
+    scene.name = "Buckling column".to_owned();
+    scene.about = "Pushed along its axis beyond Euler's load, with a small side load that decides which way it buckles.".to_owned();
+    scene
+}

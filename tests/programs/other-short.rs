@@ -1,0 +1,24 @@
+// Save as src/main.rs of a new project (`cargo new beam`), then:
+// cargo add warpbeam --no-default-features && cargo run --release
+
+use std::error::Error;
+
+use warpbeam::{Scene, Simulation};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut simulation = Simulation::new(&scene())?;
+    simulation.solve();
+    println!("{}", simulation.status().word());
+    for probe in simulation.solution().probes {
+        let (name, x, y) = (&probe.name, probe.u.x, probe.u.y);
+        println!("{name} moved by ({x:.6}, {y:.6}) m");
+    }
+    Ok(())
+}
+
+fn scene() -> Scene {
+    Scene::beam(10.0, 1.0)
+        .clamp("left")
+        .force("right", [0.0, -1000.0])
+        .probe("tip", "right")
+}
