@@ -12,7 +12,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
 use warpbeam::scene::{Analysis, Load, Source};
-use warpbeam::simulation::{Simulation, Status};
+use warpbeam::simulation::{Field, PointValues, Simulation, Status};
 
 /// Time between frames, s: two clicks within some of them are a double click.
 const STEP: f32 = 0.05;
@@ -613,7 +613,7 @@ fn the_body_says_its_values_and_a_click_keeps_them() {
     let lab = harness.state();
     let away = lab.simulation().displacement().iter().zip(&before).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(away < 1e-6, "a click has moved the body by {away} m");
-    let point = lab.simulation().point_state(lab.probed().expect("a kept point")).unwrap();
+    let point = lab.simulation().point_state(lab.probed().expect("a kept point"), PointValues::Recovered).unwrap();
     assert!((point.rest - at).norm() < 0.02, "{}", point.rest);
     let texts: Vec<String> = harness
         .get_all_by(|_| true)
@@ -1032,4 +1032,69 @@ fn the_scene_is_copied_as_a_rust_program() {
     harness.get_by_label_contains("File: ").click();
     harness.run_steps(8);
     assert!(harness.query_by_role_and_label(Role::Button, "Copy as Rust").is_some());
+}
+
+/// What the card of a point says, by the name of the row.
+fn card(harness: &Harness<'_, Lab>) -> std::collections::BTreeMap<String, String> {
+    let nodes = harness.get_all_by_role(Role::Label).map(|node| node.accesskit_node());
+    let texts: Vec<String> = nodes.filter_map(|node| node.value().or_else(|| node.label())).collect();
+    let rows = texts.windows(2).filter(|pair| ["θ", "σ", "ε", "F", "R", "S"].contains(&pair[0].as_str()));
+    rows.map(|pair| (pair[0].clone(), pair[1].clone())).collect()
+}
+
+/// F, S, ε and σ on the card of a point follow from each other to the digits that are printed, and the card names their kind.
+#[test]
+fn the_card_of_a_point_is_of_one_deformation() {
+    for (id, at) in
+        [("article", Vector2::new(0.4, 0.45)), ("bracket", Vector2::new(0.1, 0.1)), ("jelly", Vector2::new(0.1, -0.2))]
+    {
+        let mut harness = harness(id);
+        for _ in 0..20 {
+            harness.step();
+        }
+        if harness.state().scene().analysis == Analysis::Dynamic {
+            key(&mut harness, Modifiers::NONE, Key::Space);
+        }
+        let pos = on_body(harness.state(), at);
+        harness.hover_at(pos);
+        harness.step();
+        harness.drag_at(pos);
+        harness.step();
+        harness.drop_at(pos);
+        harness.run_steps(4);
+        let point = harness.state().probed().expect("a kept point");
+        harness.hover_at(Pos2::new(5.0, 5.0));
+        harness.get_by_label_contains("View: ").scroll_to_me();
+        harness.run_steps(4);
+        harness.get_by_label_contains("View: ").click();
+        harness.run_steps(8);
+        for (kind, values) in
+            [("recovered at the nodes", PointValues::Recovered), ("raw, of the element", PointValues::Raw)]
+        {
+            assert!(harness.query_by_label(kind).is_some(), "{id}: {kind}");
+            let card = card(&harness);
+            let numbers = |name: &str| -> Vec<f64> {
+                card[name].split([' ', '\n']).filter_map(|word| word.parse().ok()).collect()
+            };
+            let matrix = |name: &str| nalgebra::Matrix2::from_row_slice(&numbers(name));
+            let (f, r, s) = (matrix("F"), matrix("R"), matrix("S"));
+            // Four decimals are printed.
+            assert!((f - r * s).amax() < 3e-4, "{id} {kind}: {card:?}");
+            let strain = s - nalgebra::Matrix2::identity();
+            let printed = numbers("ε")[0];
+            let largest = 100.0 * strain.symmetric_eigenvalues().amax();
+            assert!((largest - printed).abs() < 0.011 + 0.006 * printed, "{id} {kind}: {largest} % {card:?}");
+            let state = harness.state().simulation().point_state(point, values).unwrap();
+            let stress = warpbeam::words::engineering(
+                warpbeam::words::three_digits(state.field(Field::VonMises).unwrap()),
+                "Pa",
+            );
+            assert_eq!(card["σ"], stress, "{id} {kind}");
+            assert!((state.stretch - s).amax() < 6e-5, "{id} {kind}: {card:?}");
+            harness.get_by_role_and_label(Role::CheckBox, "Raw").scroll_to_me();
+            harness.run_steps(4);
+            harness.get_by_role_and_label(Role::CheckBox, "Raw").click();
+            harness.run_steps(4);
+        }
+    }
 }

@@ -8,8 +8,8 @@ use nalgebra::{Matrix2, Vector2};
 use warpbeam::mesh::MaterialPoint;
 use warpbeam::rotation::Rotation;
 use warpbeam::scene::{ElementKind, MethodKind};
-use warpbeam::simulation::{Field, Simulation};
-use warpbeam::{Material, Scene};
+use warpbeam::simulation::{Field, PointState, PointValues, Simulation};
+use warpbeam::{Material, Plane, Scene};
 
 /// A body that is stretched by S and turned by R has F = R S everywhere, and the strain S − I makes its stress.
 #[test]
@@ -25,7 +25,7 @@ fn a_turned_and_stretched_body_has_its_f_r_and_s_at_every_point() {
         let u: Vec<_> = mesh.nodes().iter().map(|x| f * x - x).collect();
         simulation.start_from(&u).unwrap();
         for at in [Vector2::new(0.3, 0.2), Vector2::new(1.6, -0.4), Vector2::new(2.95, 0.01)] {
-            let point = simulation.point_state(mesh.locate(at).unwrap()).unwrap();
+            let point = simulation.point_state(mesh.locate(at).unwrap(), PointValues::Raw).unwrap();
             assert!((point.rest - at).norm() < 1e-12, "{element:?}");
             assert!((point.displacement - (f * at - at)).norm() < 1e-12, "{element:?}");
             assert!((point.gradient - f).norm() < 1e-12, "{element:?}: {}", point.gradient);
@@ -41,6 +41,10 @@ fn a_turned_and_stretched_body_has_its_f_r_and_s_at_every_point() {
             let stress = (stress + stress.transpose()) * 0.5;
             let own = point.cauchy.unwrap().plane;
             assert!((own - stress).norm() < 1e-7 * stress.norm(), "{element:?}: {own} {stress}");
+            // The recovered ones of a uniform deformation are the same.
+            let smooth = simulation.point_state(mesh.locate(at).unwrap(), PointValues::Recovered).unwrap();
+            assert!((smooth.gradient - f).norm() < 1e-9, "{element:?}: {}", smooth.gradient);
+            assert!((smooth.cauchy.unwrap().plane - stress).norm() < 1e-7 * stress.norm(), "{element:?}");
         }
     }
 }
@@ -59,23 +63,94 @@ fn a_point_has_the_values_of_the_fields() {
         for element in [0, mesh.element_count() / 2, mesh.element_count() - 1] {
             for rule in points {
                 let point = MaterialPoint { element, at: rule.at };
-                let state = simulation.point_state(point).unwrap();
                 let nodal = simulation.nodal_stress();
-                for (field, own) in [
-                    (Field::VonMises, state.cauchy.unwrap().von_mises()),
-                    (Field::LargestStrain, state.largest_strain()),
-                ] {
-                    let value = field.smooth_at(mesh, &nodal, point).unwrap();
-                    assert!((value - own).abs() < 1e-9 * (own.abs() + 1e-6), "{id} {field:?}: {value} {own}");
+                let recovered = simulation.point_state(point, PointValues::Recovered).unwrap();
+                let raw = simulation.point_state(point, PointValues::Raw).unwrap();
+                for field in Field::ALL.into_iter().filter(|field| !field.is_of_elements()) {
+                    let mut values = Vec::new();
+                    simulation.field(field, &mut values);
+                    let of_fields =
+                        [field.smooth_at(mesh, &nodal, point).unwrap(), Field::raw_at(mesh, &values, point).unwrap()];
+                    for (state, value) in [recovered, raw].iter().zip(of_fields) {
+                        let own = state.field(field).unwrap();
+                        let same = (value - own).abs() < 1e-9 * (own.abs() + 1e-6);
+                        assert!(same, "{id} {field:?} {:?}: {value} {own}", state.values);
+                    }
                 }
-                let (mut values, own) = (Vec::new(), state.rotation.angle().to_degrees());
-                simulation.field(Field::RotationAngle, &mut values);
-                let value = Field::raw_at(mesh, &values, point).unwrap();
-                let expected = if method == MethodKind::Linear { 0.0 } else { own };
-                assert!((value - expected).abs() < 1e-9 * (own.abs() + 1e-6), "{id}: {value} {expected}");
             }
         }
-        assert!(simulation.point_state(MaterialPoint { element: mesh.element_count(), at: [0.2, 0.2] }).is_none());
+        let beyond = MaterialPoint { element: mesh.element_count(), at: [0.2, 0.2] };
+        assert!(simulation.point_state(beyond, PointValues::Raw).is_none());
         assert_eq!(Field::raw_at(mesh, &[], MaterialPoint { element: 0, at: [0.2, 0.2] }), None);
     }
+}
+
+/// F, R, S, ε and σ of a point are of one deformation: each follows from the one before by its definition.
+fn check_consistency(point: &PointState, material: &Material, about: &str) {
+    let identity = Matrix2::identity();
+    let (f, size) = (point.gradient, 1.0 + point.gradient.norm());
+    let strain = if point.is_linear {
+        (f + f.transpose()) * 0.5 - identity
+    } else {
+        // The polar factors of F.
+        let r = Rotation::from_angle((f.m21 - f.m12).atan2(f.m11 + f.m22)).matrix();
+        assert!((r - point.rotation.matrix()).norm() < 1e-9 * size, "{about}: {r}");
+        assert!((r.transpose() * f - point.stretch).norm() < 1e-9 * size, "{about}: {}", point.stretch);
+        r.transpose() * f - identity
+    };
+    assert!((strain - point.strain.plane).norm() < 1e-9 * size, "{about}: {strain} {}", point.strain.plane);
+    let largest = strain.symmetric_eigenvalues().amax();
+    assert!((largest - point.field(Field::LargestStrain).unwrap()).abs() < 1e-9 * size, "{about}: {largest}");
+    // σ = J⁻¹ R T S Rᵀ of plane strain and plane stress; T itself in linear theory.
+    let biot = material.lame().stress(&strain);
+    let zz = if material.plane == Plane::Strain {
+        0.0
+    } else {
+        -strain.trace() * material.poisson / (1.0 - material.poisson)
+    };
+    let stress = if point.is_linear {
+        biot
+    } else {
+        let r = point.rotation.matrix();
+        r * biot * point.stretch * r.transpose() / (f.determinant() * (1.0 + zz))
+    };
+    // What is turned inside out has none.
+    let Some(own) = point.cauchy.map(|stress| stress.plane) else {
+        return assert!(point.stretch.determinant() <= 0.0 || 1.0 + zz <= 0.0, "{about}: no stress");
+    };
+    assert!((own - stress).norm() < 1e-7 * (stress.norm() + 1e-3 * material.young), "{about}: {own} {stress}");
+}
+
+#[test]
+fn the_numbers_of_a_point_follow_from_each_other() {
+    let mut scenes = Vec::new();
+    for id in ["article", "shear", "cantilever", "bracket", "jelly", "swing"] {
+        for element in scene(id).elements() {
+            let mut scene = scene(id);
+            scene.set_element(element);
+            scenes.push((format!("{id} {element:?}"), scene));
+        }
+    }
+    let mut linear = scene("article");
+    linear.solver.method = MethodKind::Linear;
+    scenes.push(("linear".to_owned(), linear));
+    let mut differ = 0;
+    for (about, scene) in scenes {
+        let mut simulation = Simulation::new(&scene).unwrap();
+        // A motion in the middle of it; others to their equilibrium.
+        for _ in 0..40 {
+            simulation.step();
+        }
+        let mesh = simulation.system().mesh();
+        let count = mesh.element_count();
+        for (element, at) in [(0, [0.2, 0.3]), (count / 2, [0.5, 0.1]), (count - 1, [0.0, 0.4])] {
+            let point = MaterialPoint { element, at };
+            let states = [PointValues::Recovered, PointValues::Raw].map(|v| simulation.point_state(point, v).unwrap());
+            for state in &states {
+                check_consistency(state, &scene.material, &format!("{about} {element} {:?}", state.values));
+            }
+            differ += u32::from((states[0].gradient - states[1].gradient).norm() > 1e-4);
+        }
+    }
+    assert!(differ > 10, "recovered and raw values are the same");
 }

@@ -45,7 +45,7 @@ use crate::dynamics::lowest_frequency;
 use crate::mesh::MaterialPoint;
 use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
-use crate::simulation::{Field, Simulation, SimulationError, Status};
+use crate::simulation::{Field, PointValues, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::study::{Extent, LoadPath, MotionStudy, PathSummary, Reference, Study};
 use crate::timings::Timings;
@@ -1289,8 +1289,12 @@ impl Lab {
 
     /// The value of the field that colours the body, at a material point.
     fn field_at(&self, point: MaterialPoint) -> (Field, Option<f64>) {
-        let mesh = self.simulation.system().mesh();
-        (self.view.field, self.shape.value_at(&self.view, mesh, point))
+        let field = self.view.field;
+        let value = match self.view.raw && !field.is_of_elements() {
+            true => self.shown().point_state(point, PointValues::Raw).and_then(|state| state.field(field)),
+            false => self.shape.value_at(&self.view, self.simulation.system().mesh(), point),
+        };
+        (field, value)
     }
 
     /// The body that is drawn, but for an intro.
@@ -1307,8 +1311,9 @@ impl Lab {
             }
         }
         let Some(point) = self.probe else { return };
-        let (Some(state), Some(at)) = (self.shown().point_state(point), self.in_view(point)) else { return };
-        if probe::show_card(ui, painter, self.view_rect, at, self.field_at(point), &state) {
+        let values = if self.view.raw { PointValues::Raw } else { PointValues::Recovered };
+        let (Some(state), Some(at)) = (self.shown().point_state(point, values), self.in_view(point)) else { return };
+        if probe::show_card(ui, painter, self.view_rect, at, self.view.field, &state) {
             self.probe = None;
         }
     }

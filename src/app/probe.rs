@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::language::{fill, tr};
 use super::overlay::boxed_text;
 use crate::mesh::{MaterialPoint, Mesh};
-use crate::simulation::{Field, PointState};
+use crate::simulation::{Field, PointState, PointValues};
 use crate::words::{engineering, engineering_pair, three_digits};
 
 /// From a point to its card, points.
@@ -50,14 +50,7 @@ fn rows(m: &Matrix2<f64>) -> String {
 }
 
 /// Shows the card of a kept point, which is at `at` in the window, and says whether it was clicked away.
-pub(super) fn show_card(
-    ui: &Ui,
-    painter: &Painter,
-    view: Rect,
-    at: Pos2,
-    field: (Field, Option<f64>),
-    point: &PointState,
-) -> bool {
+pub(super) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field: Field, point: &PointState) -> bool {
     let visuals = ui.visuals();
     let color = visuals.strong_text_color();
     let side = if at.x > view.center().x { -1.0 } else { 1.0 };
@@ -72,7 +65,14 @@ pub(super) fn show_card(
         let frame = Frame::popup(ui.style()).show(ui, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
             ui.strong(fill!("Point %{place}", place = metres(point.rest)));
-            let (field, of_field) = field;
+            let (kind, tip) = match point.values {
+                PointValues::Recovered => (
+                    "recovered at the nodes",
+                    "Smooth values: strain and rotation of the elements around, fitted at the nodes",
+                ),
+                PointValues::Raw => ("raw, of the element", "Strain and rotation as the element has them"),
+            };
+            ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
             Grid::new("probe values").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
                 let mut row = |name: &str, text: String, tip: &str| {
                     ui.label(RichText::new(name).weak()).on_hover_text(tr(tip));
@@ -80,25 +80,33 @@ pub(super) fn show_card(
                     ui.end_row();
                 };
                 row("u", metres(point.displacement), "Displacement");
-                let angle = point.rotation.angle().to_degrees();
-                row("θ", engineering(three_digits(angle), "°"), "Angle of the rotation R");
-                let stress =
-                    point.cauchy.map_or_else(|| tr("none").to_owned(), |s| value(Field::VonMises, s.von_mises()));
-                row("σ", stress, "Von Mises stress of the Cauchy stress, recovered at the nodes");
+                let number =
+                    |field: Field| point.field(field).map_or_else(|| tr("none").to_owned(), |v| value(field, v));
+                if !point.is_linear {
+                    row("θ", number(Field::RotationAngle), "Angle of the rotation R");
+                }
+                row("σ", number(Field::VonMises), "Von Mises stress of the Cauchy stress, which follows from ε");
+                let strain = point.field(Field::LargestStrain).unwrap_or_default();
                 row(
                     "ε",
-                    engineering(three_digits(100.0 * point.largest_strain()), "%"),
-                    "The principal strain of largest magnitude",
+                    engineering(three_digits(100.0 * strain), "%"),
+                    if point.is_linear {
+                        "The principal value of largest magnitude of ε = sym F − I, the strain of linear theory"
+                    } else {
+                        "The principal value of largest magnitude of ε = S − I"
+                    },
                 );
-                if let (Some(of_field), Field::EnergyDensity) = (of_field, field) {
-                    row("ψ", value(field, of_field), "Strain energy density");
+                if field == Field::EnergyDensity {
+                    row("ψ", number(field), "Strain energy density");
                 }
                 let matrices = [
                     ("F", &point.gradient, "Deformation gradient ∂x/∂X"),
                     ("R", &point.rotation.matrix(), "Rotation of F = R S"),
                     ("S", &point.stretch, "Stretch of F = R S"),
                 ];
-                for (name, matrix, tip) in matrices {
+                // Linear theory has no R and no S.
+                let count = if point.is_linear { 1 } else { matrices.len() };
+                for (name, matrix, tip) in matrices.into_iter().take(count) {
                     ui.label(RichText::new(name).weak()).on_hover_text(tr(tip));
                     ui.label(RichText::new(rows(matrix)).monospace().size(12.0)).on_hover_text(tr(tip));
                     ui.end_row();

@@ -28,7 +28,7 @@ mod status;
 
 pub use self::motion::Motion;
 pub use field::Field;
-pub use point::PointState;
+pub use point::{PointState, PointValues};
 pub use results::{
     Deformation, Energy, LargestStress, ProbeResult, ProbeStress, Reaction, StressResult, SupportReaction, energy,
     probe_results, reaction, support_reactions, supports_power,

@@ -3,16 +3,31 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::Simulation;
-use super::field::{Field, largest_principal};
+use super::field::Field;
+use crate::assembly::Kinematics;
 use crate::mesh::{MaterialPoint, Mesh};
-use crate::rotation::{Rotation, polar_or};
-use crate::stress::{NodalStress, PlaneTensor};
+use crate::rotation::Rotation;
+use crate::scene::Material;
+use crate::stress::{Local, NodalStress, PlaneTensor, visit_points};
 
-/// Displacement, deformation and stress at a material point. F, R and S are the element's: what it knows at its quadrature
-/// points only is interpolated between these. Strain and stress are those recovered at the nodes.
+/// Source of the deformation at a material point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointValues {
+    /// Recovered at the nodes and interpolated between them.
+    Recovered,
+    /// The element's own, interpolated between its quadrature points.
+    Raw,
+}
+
+/// Displacement, deformation and stress at a material point, all of one deformation: F = R S, ε = S − I, and σ follows from ε
+/// by the law of the material. In linear theory ε = sym F − I, R = I and S = I + ε.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PointState {
+    /// Source of the deformation.
+    pub values: PointValues,
+    /// `true` in linear theory.
+    pub is_linear: bool,
     /// Position at rest X, m.
     pub rest: Vector2<f64>,
     /// Displacement u = x − X, m.
@@ -23,17 +38,20 @@ pub struct PointState {
     pub rotation: Rotation,
     /// S = RᵀF, symmetric.
     pub stretch: Matrix2<f64>,
-    /// The strain ε, recovered, in the frame turned back.
+    /// The strain ε, in the frame turned back.
     pub strain: PlaneTensor,
-    /// The Cauchy stress, recovered, Pa; `None` where there is none.
+    /// The Cauchy stress, Pa; `None` where there is none.
     pub cauchy: Option<PlaneTensor>,
+    local: Local,
+    material: Material,
 }
 
 impl PointState {
-    /// The principal strain of largest magnitude, without sign.
+    /// The value of a field there; `None` where it has none, as one of elements.
     #[must_use]
-    pub fn largest_strain(&self) -> f64 {
-        largest_principal(&self.strain.plane)
+    pub fn field(&self, field: Field) -> Option<f64> {
+        let kinematics = if self.is_linear { Kinematics::Linear } else { Kinematics::Corotated };
+        field.of(&self.local, &self.material, kinematics)
     }
 }
 
@@ -57,38 +75,73 @@ impl Field {
 }
 
 impl Simulation {
-    /// What the body does at a material point; `None` where there is no such point, or its arithmetic leaves the range
-    /// of f64. A recovery of the whole body.
+    /// Deformation and stress at a material point; `None` where there is no such point, or its arithmetic leaves the range
+    /// of f64. A sweep over the whole body.
     #[must_use]
-    pub fn point_state(&self, point: MaterialPoint) -> Option<PointState> {
+    pub fn point_state(&self, point: MaterialPoint, values: PointValues) -> Option<PointState> {
         let (problem, state) = (self.problem(), self.state());
-        let (mesh, elements) = (problem.system().mesh(), problem.system().elements());
+        let mesh = problem.system().mesh();
+        let (kinematics, material) = (self.kinematics(), *problem.material());
         let nodes = mesh.weights(point)?;
-        let weights = (mesh.entry().point_weights)(point.at);
-        let first = point.element * weights.len();
-        let lame = problem.material().lame();
-        let mut gradient = Matrix2::identity();
-        elements.visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, _| {
-            if let Some(weight) = q.checked_sub(first).and_then(|i| weights.get(i)) {
-                gradient += h * *weight;
+        let local = match values {
+            PointValues::Recovered => self.nodal_stress().mean(&nodes),
+            PointValues::Raw => {
+                let mut own = Vec::new();
+                visit_points(problem, state, kinematics, &mut |q, local| {
+                    own.extend(weight_of(mesh, point, q).map(|w| (local, w)))
+                });
+                Local::mean(own.into_iter())
             }
-        });
-        let rotation = polar_or(&gradient, state.rotations[elements.rotation_of(first)]);
-        let stretch = rotation.matrix().transpose() * gradient;
-        let stretch = (stretch + stretch.transpose()) * 0.5;
-        let recovered = self.nodal_stress();
-        let local = recovered.mean(&nodes);
+        };
+        let stretch = Matrix2::identity() + local.strain;
+        let gradient = match kinematics {
+            Kinematics::Corotated => local.rotation.matrix() * stretch,
+            Kinematics::Linear => stretch + self.spin(point, values, &nodes),
+        };
         let sum = |nodal: &[Vector2<f64>]| nodes.iter().map(|&(n, w)| nodal[n as usize] * w).sum::<Vector2<f64>>();
         let result = PointState {
+            values,
+            is_linear: kinematics == Kinematics::Linear,
             rest: sum(mesh.nodes()),
             displacement: sum(&state.displacement),
             gradient,
-            rotation,
+            rotation: local.rotation,
             stretch,
-            strain: local.strain(recovered.material()),
-            cauchy: local.cauchy(recovered.material(), recovered.kinematics()),
+            strain: local.strain(&material),
+            cauchy: local.cauchy(&material, kinematics),
+            local,
+            material,
         };
         let numbers = gradient.iter().chain(&stretch).chain(&result.displacement);
         (numbers.copied().all(f64::is_finite) && result.strain.is_finite()).then_some(result)
     }
+
+    /// Antisymmetric part of the displacement gradient at a material point, which linear theory has no strain for.
+    fn spin(&self, point: MaterialPoint, values: PointValues, nodes: &[(u32, f64)]) -> Matrix2<f64> {
+        let (problem, state) = (self.problem(), self.state());
+        let system = problem.system();
+        let lame = problem.material().lame();
+        let (mut own, mut at_points) = (0.0, Vec::new());
+        system.elements().visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, _| {
+            let spin = 0.5 * (h.m21 - h.m12);
+            own += spin * weight_of(system.mesh(), point, q).unwrap_or(0.0);
+            at_points.push([spin]);
+        });
+        if values == PointValues::Recovered {
+            let mut nodal = Vec::new();
+            system.recovery().recover(&at_points, &mut nodal);
+            own = nodes.iter().map(|&(n, w)| nodal[n as usize][0] * w).sum();
+        }
+        Matrix2::new(0.0, -own, own, 0.0)
+    }
+}
+
+/// Weight of a quadrature point, by its number in the mesh, in the interpolation to a material point; `None` for those of other
+/// elements.
+fn weight_of(mesh: &Mesh, point: MaterialPoint, number: usize) -> Option<f64> {
+    let count = mesh.entry().points.len();
+    if number / count != point.element {
+        return None;
+    }
+    (mesh.entry().point_weights)(point.at).get(number % count).copied()
 }

@@ -77,6 +77,19 @@ pub struct Local {
 }
 
 impl Local {
+    /// Mean strain and rotation of weighted places, weights that sum to 1.
+    pub(crate) fn mean(weighted: impl Iterator<Item = (Self, f64)>) -> Self {
+        let (mut strain, mut turn) = (Matrix2::zeros(), Vector2::zeros());
+        for (local, weight) in weighted {
+            strain += local.strain * weight;
+            turn += Vector2::new(local.rotation.c, local.rotation.s) * weight;
+        }
+        let length = turn.norm();
+        let rotation =
+            if length > 0.0 { Rotation { c: turn.x / length, s: turn.y / length } } else { Rotation::IDENTITY };
+        Self { strain, rotation }
+    }
+
     /// ε with its part out of the plane: −ν/(1 − ν) tr ε in plane stress, 0 in plane strain.
     #[must_use]
     pub fn strain(&self, material: &Material) -> PlaneTensor {
@@ -241,16 +254,6 @@ impl NodalStress {
     /// The mean over weighted nodes, weights that sum to 1: stress and strain of the mean deformation and rotation there.
     #[must_use]
     pub fn mean(&self, weights: &[(u32, f64)]) -> Local {
-        let (mut strain, mut turn) = (Matrix2::zeros(), Vector2::zeros());
-        for &(node, weight) in weights {
-            if let Some(local) = self.nodes.get(node as usize) {
-                strain += local.strain * weight;
-                turn += Vector2::new(local.rotation.c, local.rotation.s) * weight;
-            }
-        }
-        let length = turn.norm();
-        let rotation =
-            if length > 0.0 { Rotation { c: turn.x / length, s: turn.y / length } } else { Rotation::IDENTITY };
-        Local { strain, rotation }
+        Local::mean(weights.iter().filter_map(|&(node, weight)| Some((*self.nodes.get(node as usize)?, weight))))
     }
 }
