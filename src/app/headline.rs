@@ -20,6 +20,10 @@ use crate::words::{engineering, two_digits};
 /// In place of a number that is not known.
 pub(super) const UNKNOWN: &str = "\u{2013}";
 
+/// Definition of the drift that the window shows.
+pub(super) const DRIFT_TIP: &str = "Energy that the integrator has added, or with a minus lost, over the energy that was put in: by the \
+                                    start, loads and hands";
+
 /// Below this width, points, numbers stand without their gauges.
 const GAUGES: f32 = 820.0;
 
@@ -137,7 +141,7 @@ fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Hea
     let cost = input.timings.total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
     let pace = &input.playback.pace;
-    let drift = motion.ledger().drift();
+    let drift = motion.ledger().drift_of_input();
     [
         Headline {
             name: "STEP",
@@ -159,7 +163,7 @@ fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Hea
             name: "DRIFT",
             value: percent(100.0 * drift),
             word: "",
-            tip: tr("Energy that the integrator has added, over the largest kinetic energy").to_owned(),
+            tip: tr(DRIFT_TIP).to_owned(),
             color: if drift.abs() > 0.05 { palette.warning } else { palette.text },
             gauge: Gauge::None,
         },

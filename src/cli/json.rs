@@ -90,6 +90,7 @@ fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
     object["halvings"] = json!(counts.halvings);
     object["critical_step"] = critical_step.map_or(Value::Null, number);
     object["energy_drift"] = number(ledger.drift());
+    object["energy_drift_of_input"] = number(ledger.drift_of_input());
     if let Some(auto) = auto {
         object["auto"] = json!({
             "decision": auto.decision.id(),

@@ -232,7 +232,7 @@ fn books(motion: &MotionResult) -> String {
     let MotionResult { counts, ledger, momentum, critical_step, .. } = motion;
     let mut text = format!(
         "kinetic energy {}, potential of the loads {}, dissipated {}, put in by pulses {}\n\
-         lost by the integrator {}: energy drift {:.2e} of the largest kinetic energy\n\
+         lost by the integrator {}: energy drift {:.2e} of the largest kinetic energy, {:.2e} of the energy put in\n\
          momentum {}, angular momentum about the origin {}\n",
         joules(ledger.kinetic),
         joules(ledger.potential),
@@ -240,6 +240,7 @@ fn books(motion: &MotionResult) -> String {
         joules(ledger.pulses),
         joules(ledger.integrator),
         ledger.drift(),
+        ledger.drift_of_input(),
         pair(momentum.linear, "kg m/s"),
         engineering(momentum.angular, "kg m²/s")
     );

@@ -34,6 +34,9 @@ pub struct Ledger {
     pub largest_kinetic: f64,
     /// All that was ever turned from one kind into another.
     pub throughput: f64,
+    /// The most energy that the body has been given since the start, J: its kinetic and elastic energy then, and the work of
+    /// loads, hands, supports and edits, less the work that it has done on them.
+    pub put_in: f64,
 }
 
 impl Ledger {
@@ -42,7 +45,13 @@ impl Ledger {
         let mut ledger = Self::default();
         ledger.measure(problem, mass, inertia, state);
         ledger.start = ledger.total();
+        ledger.note_put_in();
         ledger
+    }
+
+    /// Raises [`Self::put_in`] to what has been given now: all that is left of it, and all that was taken from it.
+    fn note_put_in(&mut self) {
+        self.put_in = self.put_in.max(self.kinetic + self.elastic + self.dissipated + self.integrator);
     }
 
     fn measure(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
@@ -66,6 +75,7 @@ impl Ledger {
         self.integrator += lost;
         let booked = [booking.dissipated, booking.pulses, booking.hand, lost];
         self.throughput += changes.iter().chain(&booked).map(|v| v.abs()).sum::<f64>();
+        self.note_put_in();
     }
 
     /// Whether the integrator has added more, since an earlier ledger, than this part of the energy there was then and
@@ -82,6 +92,7 @@ impl Ledger {
         self.measure(problem, mass, inertia, state);
         self.edits += self.total() - before;
         self.throughput += (self.total() - before).abs();
+        self.note_put_in();
     }
 
     /// Books that the state is seen under another theory from now on: what it differs by is the integrator's.
@@ -108,6 +119,14 @@ impl Ledger {
     #[must_use]
     pub fn drift(&self) -> f64 {
         let drift = -self.integrator / self.largest_kinetic;
+        if drift.is_finite() { drift } else { 0.0 }
+    }
+
+    /// The energy that the integrator has added, over [`Self::put_in`]; negative where it has lost energy, down to −1, and 0
+    /// where nothing was put in.
+    #[must_use]
+    pub fn drift_of_input(&self) -> f64 {
+        let drift = -self.integrator / self.put_in;
         if drift.is_finite() { drift } else { 0.0 }
     }
 }

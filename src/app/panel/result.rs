@@ -3,7 +3,7 @@
 use egui::{Grid, RichText, Ui};
 
 use super::{PanelInput, supports};
-use crate::app::headline::{UNKNOWN, truth_words};
+use crate::app::headline::{DRIFT_TIP, UNKNOWN, truth_words};
 use crate::app::language::{count, fill, joined, percent, sentence, tr, translated};
 use crate::app::palette::Palette;
 use crate::app::verdict::{Errors, rho, stability};
@@ -167,11 +167,7 @@ fn motion_rows(row: &mut Row<'_>, input: &PanelInput<'_>, motion: &Motion) {
     let joules = |value: f64| engineering(value, "J");
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
-    row(
-        "Drift",
-        percent(100.0 * ledger.drift()),
-        "Energy that the integrator has added, over the largest kinetic energy",
-    );
+    row("Drift", percent(100.0 * ledger.drift_of_input()), DRIFT_TIP);
     if let Some((_, force)) = input.simulation.hand() {
         row("Hand", engineering(force.norm(), "N"), "Force of the hand that pulls the body");
     }
