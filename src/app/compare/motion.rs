@@ -450,11 +450,11 @@ impl MotionCompare {
             let frame = seconds / step / FRAMES;
             fill!("%{time} a frame", time = engineering(two_digits(frame), "s"))
         });
-        let drift = pane
-            .simulation()
-            .and_then(Simulation::motion)
-            .map(Motion::ledger)
-            .map(|ledger| fill!("drift %{drift}", drift = percent(100.0 * ledger.drift())));
+        let drift = pane.simulation().and_then(Simulation::motion).map(Motion::ledger).map(|ledger| {
+            let drift = 100.0 * ledger.drift_of_input();
+            let words = if drift.abs() < 1e-6 { "0 %".to_owned() } else { percent(drift) };
+            fill!("drift %{drift}", drift = words)
+        });
         let first = self.panes.first().filter(|_| number > 0).and_then(MotionPane::tip);
         let apart = first.zip(pane.tip()).map(|(first, own)| {
             fill!("tip %{distance} off", distance = engineering(three_digits((own - first).norm()), "m"))
