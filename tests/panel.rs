@@ -528,7 +528,8 @@ fn keys_are_listed_and_work() {
     let mut harness = harness("article");
     harness.key_press(Key::F1);
     harness.run();
-    for words in ["Run or pause", "Save a screenshot", "Copy the scene", "Zoom to the pointer", "on the cards of Learn"]
+    for words in
+        ["Run or pause", "Save a screenshot", "Copy the scene as TOML", "Zoom to the pointer", "on the cards of Learn"]
     {
         assert!(harness.query_by_label_contains(words).is_some(), "{words}");
     }

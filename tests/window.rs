@@ -551,3 +551,57 @@ fn edits_survive_a_killed_window() {
     next.discard_well();
     assert!(!copies.join("1.toml").exists());
 }
+
+/// The pictures of a GIF file, and how long it lasts, s; `None` while it is not whole.
+fn movie(path: &std::path::Path) -> Option<(usize, f64)> {
+    let bytes = std::fs::read(path).ok().filter(|bytes| bytes.last() == Some(&0x3b))?;
+    let mut decoder = gif::Decoder::new(bytes.as_slice()).ok()?;
+    let (mut pictures, mut hundredths) = (0, 0.0);
+    while let Some(frame) = decoder.read_next_frame().ok()? {
+        pictures += 1;
+        hundredths += f64::from(frame.delay);
+    }
+    Some((pictures, hundredths / 100.0))
+}
+
+/// V records the window until it is pressed again, or the window is closed.
+#[test]
+fn v_records_the_window_with_its_hands() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let window = Window::open_in(&desktop, folder.path(), &["run", "jelly"]);
+    let path = folder.path().join("warpbeam-001.gif");
+    let mut asked: Option<Instant> = None;
+    wait_for("the recording to begin", || {
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            window.key("v");
+            asked = Some(Instant::now());
+        }
+        path.exists().then_some(())
+    });
+    for x in [500.0, 560.0, 620.0] {
+        window.point(x, 400.0);
+        std::thread::sleep(Duration::from_millis(400));
+    }
+    let mut asked: Option<Instant> = None;
+    let (pictures, seconds) = wait_for("the whole recording", || {
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            window.key("v");
+            asked = Some(Instant::now());
+        }
+        movie(&path)
+    });
+    assert!(pictures >= 5 && seconds >= 1.0, "{pictures} pictures, {seconds} s");
+    let path = folder.path().join("warpbeam-002.gif");
+    let mut asked: Option<Instant> = None;
+    wait_for("another recording to begin", || {
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            window.key("v");
+            asked = Some(Instant::now());
+        }
+        path.exists().then_some(())
+    });
+    window.close_well();
+    let (pictures, _) = movie(&path).unwrap();
+    assert!(pictures >= 1);
+}

@@ -62,8 +62,10 @@ pub(super) enum Action {
     ToggleLanguage,
     /// Save a picture.
     Screenshot,
-    /// Record the scene, or end the recording.
+    /// Record the window from now on, or end the recording.
     Record,
+    /// Record the scene from its start, or end the recording.
+    RecordScene,
     /// Copy the scene as TOML.
     Copy,
     /// Copy the scene as a Rust program.

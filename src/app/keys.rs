@@ -59,7 +59,10 @@ pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::P, "Panel on or off", || Action::Toggle(Toggle::Panel)),
     key(Key::T, "Light or dark", || Action::ToggleTheme),
     key(Key::S, "Save a screenshot (PNG) here", || Action::Screenshot),
-    key(Key::V, "Record the scene as a GIF here; again: stop", || Action::Record),
+    key(Key::V, "Record the window as a GIF here; again: stop", || Action::Record),
+    with(Modifiers::SHIFT, Key::V, "Record the scene from its start as a GIF here; again: stop", || {
+        Action::RecordScene
+    }),
     key(Key::C, "Copy the scene as TOML, with its command", || Action::Copy),
     with(Modifiers::SHIFT, Key::C, "Copy the scene as a Rust program", || Action::CopyRust),
     with(Modifiers::COMMAND, Key::O, "Open a scene file", || Action::OpenFile),

@@ -89,6 +89,8 @@ pub enum Request {
     Close,
     /// Remove the copy of unsaved edits that a crashed window has left.
     ForgetCopy,
+    /// Record the window, or end the recording.
+    Record,
 }
 
 /// Everything the window shows.
@@ -1516,7 +1518,8 @@ impl Lab {
             }
             Action::ToggleLanguage => self.settings.language = self.settings.language.other(),
             Action::Screenshot => requests.push(Request::Screenshot),
-            Action::Record => self.record(ctx),
+            Action::Record => requests.push(Request::Record),
+            Action::RecordScene => self.record(ctx),
             Action::Copy => self.copy(ctx),
             Action::CopyRust => self.copy_rust(ctx),
             Action::Measure(true) => {
@@ -1811,7 +1814,7 @@ impl Lab {
             return self.say(ui.ctx(), words);
         }
         let percent = format!("{:.0}", 100.0 * recorder.fraction);
-        let words = fill!("%{doing}: %{percent} % (V stops it)", doing = recorder.words, percent = percent);
+        let words = fill!("%{doing}: %{percent} % (Shift+V stops it)", doing = recorder.words, percent = percent);
         let place = rect.center_bottom() - egui::vec2(0.0, 48.0);
         let color = ui.visuals().strong_text_color();
         overlay::boxed_text(painter, place, egui::Align2::CENTER_BOTTOM, &words, ui.visuals(), color, 400.0);

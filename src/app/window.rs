@@ -15,8 +15,11 @@ use winit::window::{Window, WindowId};
 
 use super::clicks;
 use super::clipboard::Clipboard;
+use super::job::LISTEN;
 use super::lab::{Lab, Request};
-use super::language::fill;
+use super::language::{fill, translated};
+use super::record::{LiveRecording, pointer};
+use super::recorder::RecorderError;
 use super::recovery::Recovery;
 use super::settings::Settings;
 use super::shot::picture;
@@ -113,12 +116,17 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
         settings_file: file,
         recovery,
         open: None,
+        recording: None,
         start: Instant::now(),
         later: Vec::new(),
         wake: None,
         error: None,
     };
     display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
+    if let Some(words) = app.recording.as_ref().and_then(LiveRecording::wait) {
+        // The window that would show it is closed.
+        eprintln!("warpbeam: {words}");
+    }
     app.keep_settings();
     app.error.map_or(Ok(()), Err)
 }
@@ -132,6 +140,8 @@ struct App {
     /// Keeps a copy of unsaved edits; `None` where the system has no place for it.
     recovery: Option<Recovery>,
     open: Option<OpenWindow>,
+    /// Recording of the window.
+    recording: Option<LiveRecording>,
     /// When the window began.
     start: Instant,
     /// Events that wait for the next frame.
@@ -280,17 +290,46 @@ impl App {
         self.later = clicks::after_first(&mut events);
         input.events = events;
         let mut requests = Vec::new();
-        let mut output = self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui)));
+        let now = self.start.elapsed().as_secs_f64();
+        let (mut mark, mut hand) = (Vec::new(), None);
+        let mut output = self.ctx.run_ui(input, |ui| {
+            requests.extend(self.lab.ui(ui));
+            if let Some(recording) = &self.recording {
+                mark = recording.mark(ui.ctx(), self.lab.view_rect(), now);
+                hand = pointer(ui.ctx());
+                ui.ctx().request_repaint_after(LISTEN);
+            }
+        });
         open.clipboard.after(&output.platform_output);
         open.input.handle_platform_output_with_event_loop(
             &open.window,
             event_loop,
             std::mem::take(&mut output.platform_output),
         );
-        let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        let mut primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         open.stage.set_textures(&open.gpu, &mut output.textures_delta);
-        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let whole = self.ctx.content_rect();
+        let over = |shapes: Vec<egui::Shape>| {
+            let clipped = shapes.into_iter().map(|shape| egui::epaint::ClippedShape {
+                clip_rect: whole,
+                shape,
+                transform_after_tessellation: egui::emath::TSTransform::IDENTITY,
+            });
+            self.ctx.tessellate(clipped.collect(), output.pixels_per_point)
+        };
         let screen = open.screen(output.pixels_per_point);
+        if let Some(recording) = &mut self.recording {
+            recording.hand_on(&open.gpu);
+            if let Some(number) = recording.due(now) {
+                let own = primitives.len();
+                primitives.extend(over(hand.into_iter().collect()));
+                let drawn = (&self.lab, primitives.as_slice());
+                recording.take(&open.gpu, &mut open.stage, drawn, &screen, (number, now));
+                primitives.truncate(own);
+            }
+            primitives.extend(over(mark));
+        }
+        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         open.stage.paint(&open.gpu, &view, &screen, &primitives, &self.lab);
         open.window.pre_present_notify();
         open.gpu.queue.present(texture);
@@ -304,8 +343,13 @@ impl App {
             match request {
                 Request::Screenshot => self.screenshot(screen.pixels_per_point),
                 Request::ForgetCopy => self.recovery.iter_mut().for_each(Recovery::forget_left),
+                Request::Record => self.record(now),
                 Request::Close => self.close(event_loop),
             }
+        }
+        if let Some(words) = self.recording.as_ref().and_then(LiveRecording::listen) {
+            self.recording = None;
+            self.say(words);
         }
         Ok(())
     }
@@ -331,6 +375,35 @@ impl App {
             log::warn!("the copy of unsaved changes is still there: {error}");
         }
         self.quit(event_loop, None);
+    }
+
+    /// Starts to record the window, or ends the recording.
+    fn record(&mut self, now: f64) {
+        let Some(open) = &self.open else { return };
+        if let Some(recording) = &mut self.recording {
+            recording.stop(&open.gpu, now);
+            return open.window.request_redraw();
+        }
+        let size = [open.configuration.width, open.configuration.height];
+        let format = open.configuration.format;
+        let started = free_name("gif")
+            .map_err(RecorderError::from)
+            .and_then(|path| Ok(LiveRecording::start(&open.gpu, format, size, &path, self.lab.language())?));
+        match started {
+            Ok(recording) => {
+                self.recording = Some(recording);
+                open.window.request_redraw();
+            }
+            Err(reason) => self.say(fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
+        }
+    }
+
+    /// Shows a message.
+    fn say(&mut self, message: String) {
+        self.lab.say(&self.ctx, message);
+        if let Some(open) = &self.open {
+            open.window.request_redraw();
+        }
     }
 
     fn schedule(&mut self, delay: Duration) {
@@ -374,6 +447,9 @@ impl App {
 
     fn quit(&mut self, event_loop: &ActiveEventLoop, error: Option<AppError>) {
         self.error = self.error.take().or(error);
+        if let (Some(recording), Some(open)) = (&mut self.recording, &self.open) {
+            recording.stop(&open.gpu, self.start.elapsed().as_secs_f64());
+        }
         // The surface goes while the display connection still stands.
         self.open = None;
         event_loop.exit();

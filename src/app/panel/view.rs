@@ -107,7 +107,12 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
             ("Save as…", "Save the scene to another file (Ctrl+Shift+S)", Action::SaveAs),
             ("Screenshot", "Save this picture as a PNG file here (S)", Action::Screenshot),
-            ("Record", "Record the scene from its start as a GIF here; again: stop (V)", Action::Record),
+            ("Record", "Record the window from now on as a GIF here; again: stop (V)", Action::Record),
+            (
+                "Record scene",
+                "Record the scene from its start as a GIF here; again: stop (Shift+V)",
+                Action::RecordScene,
+            ),
             ("Copy as TOML", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
             ("Copy as Rust", "Copy a Rust program that builds the scene and solves it (Shift+C)", Action::CopyRust),
         ] {

@@ -15,8 +15,8 @@ const EXACT: usize = 32;
 #[derive(Debug)]
 pub(super) struct Palette {
     colors: Vec<Color>,
-    /// The places of colours that have been asked for.
-    known: HashMap<Color, u8>,
+    /// The places of colours that have been asked for, with `true` for those that are not near.
+    known: HashMap<Color, (u8, bool)>,
 }
 
 impl Palette {
@@ -43,11 +43,29 @@ impl Palette {
         self.colors.as_flattened()
     }
 
-    /// The places of a picture's pixels in the palette: of the nearest colours. Without dithering, which would move.
-    pub(super) fn indices(&mut self, picture: &Picture, indices: &mut Vec<u8>) {
+    /// The places of a picture's pixels in the palette: of the nearest colours. Without dithering, which would move. Returns
+    /// how many pixels have no near one.
+    pub(super) fn indices(&mut self, picture: &Picture, indices: &mut Vec<u8>) -> usize {
+        /// Colours that are remembered.
+        const MOST_KNOWN: usize = 1 << 18;
         let Self { colors: palette, known } = self;
+        if known.len() > MOST_KNOWN {
+            known.clear();
+        }
         indices.clear();
-        indices.extend(colors(picture).map(|color| *known.entry(color).or_insert_with(|| nearest(palette, color))));
+        let mut poor = 0;
+        let mut last = None;
+        for color in colors(picture) {
+            // Neighbours are mostly the same.
+            let (place, is_poor) = match last {
+                Some((before, found)) if before == color => found,
+                _ => *known.entry(color).or_insert_with(|| nearest(palette, color)),
+            };
+            last = Some((color, (place, is_poor)));
+            indices.push(place);
+            poor += usize::from(is_poor);
+        }
+        poor
     }
 }
 
@@ -55,12 +73,16 @@ fn colors(picture: &Picture) -> impl Iterator<Item = Color> {
     picture.rgba.as_chunks().0.iter().map(|&[r, g, b, _]: &[u8; 4]| [r, g, b])
 }
 
-fn nearest(palette: &[Color], color: Color) -> u8 {
+/// The place of the nearest colour, and `true` where that is not near.
+fn nearest(palette: &[Color], color: Color) -> (u8, bool) {
+    /// Distance that is seen: about 20 of 255 in every channel.
+    const FAR: u32 = 4000;
     let distance = |other: &Color| -> u32 {
         // Green counts most to the eye, blue least.
         other.iter().zip(color).zip([3, 6, 1]).map(|((&a, b), weight)| weight * u32::from(a.abs_diff(b)).pow(2)).sum()
     };
-    (0..=u8::MAX).zip(palette).min_by_key(|(_, other)| distance(other)).map_or(0, |(place, _)| place)
+    let nearest = (0..=u8::MAX).zip(palette).map(|(place, other)| (distance(other), place)).min();
+    nearest.map_or((0, true), |(distance, place)| (place, distance > FAR))
 }
 
 /// Heckbert 1982: boxes of colours, the widest cut in halves until there are as many as wanted; their means.

@@ -97,6 +97,10 @@ enum Reel {
 struct Gif {
     encoder: gif::Encoder<BufWriter<File>>,
     palette: Palette,
+    /// `true` where a picture whose colours the palette lacks gets a new one.
+    adapts: bool,
+    /// `true` once the palette is not the one at the beginning of the file.
+    is_local: bool,
     before: Vec<u8>,
     now: Vec<u8>,
 }
@@ -141,7 +145,14 @@ impl Film {
                 let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
                 let mut encoder = gif::Encoder::new(file()?, width, height, palette.bytes()).map_err(|e| failed(&e))?;
                 encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e))?;
-                Reel::Gif(Box::new(Gif { encoder, palette, before: Vec::new(), now: Vec::new() }))
+                Reel::Gif(Box::new(Gif {
+                    encoder,
+                    palette,
+                    adapts: false,
+                    is_local: false,
+                    before: Vec::new(),
+                    now: Vec::new(),
+                }))
             }
             MovieFormat::Apng => {
                 let announced = u32::try_from(pictures).unwrap_or(u32::MAX);
@@ -158,6 +169,20 @@ impl Film {
             }
         };
         Ok(Self { path: path.to_owned(), delay, pictures: 0, reel })
+    }
+
+    /// Lets a GIF take new palettes where pictures differ from the samples.
+    pub(super) fn adapt(&mut self) {
+        if let Reel::Gif(gif) = &mut self.reel {
+            gif.adapts = true;
+        }
+    }
+
+    /// Writes what is in memory; returns the length of the file.
+    pub(super) fn flush(&mut self) -> Result<u64, RecordError> {
+        let Reel::Gif(gif) = &mut self.reel else { return Ok(0) };
+        let file = gif.encoder.get_mut();
+        file.flush().and_then(|()| file.stream_position()).map_err(|e| failed(&self.path, &e))
     }
 
     /// Adds a picture, to be shown for so many seconds longer than others.
@@ -214,8 +239,16 @@ fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RecordError {
 impl Gif {
     /// Adds what has changed: the smallest rectangle that holds it.
     fn add(&mut self, picture: &Picture, shown: Delay) -> Result<(), gif::EncodingError> {
-        let Self { encoder, palette, before, now } = self;
-        palette.indices(picture, now);
+        /// Share of pixels without a near colour beyond which there is a new palette.
+        const MOST_POOR: f64 = 1e-3;
+        let Self { encoder, palette, adapts, is_local, before, now } = self;
+        let poor = palette.indices(picture, now);
+        if *adapts && poor as f64 > MOST_POOR * now.len() as f64 {
+            *palette = Palette::of(std::slice::from_ref(picture));
+            palette.indices(picture, now);
+            *is_local = true;
+            before.clear();
+        }
         let width = picture.size[0] as usize;
         let rect = changed(before, now, width);
         let rows = now.chunks(width.max(1)).skip(rect.top).take(rect.height);
@@ -228,6 +261,7 @@ impl Gif {
             top: small(rect.top),
             width: small(rect.width),
             height: small(rect.height),
+            palette: is_local.then(|| palette.bytes().to_vec()),
             buffer: Cow::Owned(pixels),
             ..gif::Frame::default()
         })?;

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use self::film::Film;
 pub use self::film::MovieFormat;
+pub(super) use self::live::{LiveRecording, pointer};
 use super::lab::Lab;
 use super::language::{self, Language, fill};
 use super::panel::range_of;
@@ -22,6 +23,7 @@ use crate::stress::RecoveryScratch;
 
 mod colors;
 mod film;
+mod live;
 
 /// Pictures a second of a motion, where none are asked for: what GIF can say exactly.
 const MOTION_RATE: u16 = 25;
