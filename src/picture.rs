@@ -48,6 +48,9 @@ impl Picture {
     }
 }
 
+/// Font with the Chinese letters of the window.
+pub(crate) const CHINESE_FONT: &[u8] = include_bytes!("../assets/fonts/NotoSansSC-subset.otf");
+
 /// Draws an SVG picture, without a GPU, with the same fonts on every machine.
 ///
 /// # Errors
@@ -55,7 +58,7 @@ impl Picture {
 pub fn draw_svg(svg: &str) -> Result<Picture, PictureError> {
     let mut options = resvg::usvg::Options::default();
     let fonts = options.fontdb_mut();
-    for font in [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR] {
+    for font in [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR, CHINESE_FONT] {
         fonts.load_font_data(font.to_vec());
     }
     let tree = resvg::usvg::Tree::from_str(svg, &options).map_err(|e| PictureError::Svg(e.to_string()))?;

@@ -209,7 +209,6 @@ const NOT_SHOWN: &[&str] = &[
     "Noto Sans SC",
     "acTL",
     "probe values",
-    "load path",
     "load curve",
     "WAYLAND_DISPLAY",
     "WAYLAND_SOCKET",

@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::figure::{CurvePlot, FigureFile};
 use super::measured::Choice;
 use super::mode::Mode;
 use super::motion_plot::MotionPlot;
 use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::Field;
+use crate::study::figure::Figure;
 
 /// Most iterations that a displayed frame may be asked for.
 pub(super) const MOST_ITERATIONS: u32 = 100;
@@ -60,6 +62,10 @@ pub(super) enum Action {
     ToggleTheme,
     /// The other language.
     ToggleLanguage,
+    /// Show these quantities of the load curve.
+    Plot(CurvePlot),
+    /// Save a figure to a file.
+    Export(Box<Figure>, FigureFile),
     /// Save a picture.
     Screenshot,
     /// Record the window from now on, or end the recording.
@@ -141,6 +147,8 @@ pub(super) struct ViewOptions {
     pub mode: Mode,
     pub drawer: Option<Drawer>,
     pub motion_plot: MotionPlot,
+    /// Quantities of the load curve; `None` for those that show most.
+    pub curve_plot: Option<CurvePlot>,
     /// Whether bars and panel are there at all: a picture may do without.
     pub bars: bool,
     /// Whether the panel is there where it has its own place.
@@ -170,6 +178,7 @@ impl Default for ViewOptions {
             mode: Mode::default(),
             drawer: None,
             motion_plot: MotionPlot::default(),
+            curve_plot: None,
             bars: true,
             panel: true,
             sheet: false,

@@ -39,7 +39,7 @@ use super::settings::Settings;
 use super::shape::Shape;
 use super::stage::viewport;
 use super::verdict::{self, Errors};
-use super::{headline, help, keys, motion_plot, plot, probe, toolbar};
+use super::{figure, headline, help, keys, motion_plot, plot, probe, toolbar};
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::mesh::MaterialPoint;
@@ -324,9 +324,10 @@ impl Lab {
         self.view.mode == Mode::Compare && self.moves()
     }
 
-    /// Equilibria that the comparison has traced under the present kind of load: the setting, its load and deflection.
+    /// Equilibria that the comparison has traced under the present kind of load: the setting; the load, and both components
+    /// of the first probe's displacement, m.
     #[must_use]
-    pub fn traced(&self) -> Vec<(PaneSetting, [f64; 2])> {
+    pub fn traced(&self) -> Vec<(PaneSetting, [f64; 3])> {
         self.compare.traced()
     }
 
@@ -863,10 +864,12 @@ impl Lab {
     }
 
     /// The plots under the body, where they are open.
-    pub(super) fn plots(&mut self, ui: &mut Ui, _: &mut Vec<Action>) {
+    pub(super) fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let Some(drawer) = self.view.drawer else { return };
         drawer_panel(ui).show(ui, |ui| match drawer {
-            Drawer::Curve => plot::show(ui, self.curve.latest(), !self.curve.is_open()),
+            Drawer::Curve => {
+                plot::show(ui, self.curve.latest(), !self.curve.is_open(), self.view.curve_plot, actions);
+            }
             Drawer::Motion => {
                 let frequency = self.frequency.get().copied();
                 let integrator = self.scene.dynamics.integrator;
@@ -1517,6 +1520,18 @@ impl Lab {
                 ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
             }
             Action::ToggleLanguage => self.settings.language = self.settings.language.other(),
+            Action::Plot(plot) => {
+                self.view.curve_plot = Some(plot);
+                ctx.request_repaint();
+            }
+            Action::Export(figure, file) => {
+                let words = match figure::save(&figure, file) {
+                    Ok(path) => fill!("Saved %{file}", file = path.display()),
+                    Err(reason) => fill!("Not saved: %{reason}", reason = translated(&reason.to_string())),
+                };
+                self.say(ctx, words);
+                ctx.request_repaint();
+            }
             Action::Screenshot => requests.push(Request::Screenshot),
             Action::Record => requests.push(Request::Record),
             Action::RecordScene => self.record(ctx),

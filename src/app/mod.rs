@@ -20,6 +20,7 @@ mod edits;
 mod errand;
 mod eye;
 mod field;
+mod figure;
 mod file_dialog;
 mod finder;
 mod gallery;

@@ -224,7 +224,7 @@ pub(super) fn install(ctx: &egui::Context) {
 
 /// The letters of all languages of the window that egui's own fonts do not have.
 fn add_font(ctx: &egui::Context) {
-    let data = egui::FontData::from_static(include_bytes!("../../assets/fonts/NotoSansSC-subset.otf"));
+    let data = egui::FontData::from_static(crate::picture::CHINESE_FONT);
     let place = |family| InsertFontFamily { family, priority: FontPriority::Lowest };
     let families = vec![place(FontFamily::Proportional), place(FontFamily::Monospace)];
     ctx.add_font(FontInsert::new("Noto Sans SC", data, families));

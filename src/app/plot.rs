@@ -1,26 +1,29 @@
-//! The load–deflection plot. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory
-//! leaves. Of any other scene: its load path, what is unstable dashed.
+//! The load curve. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory leaves. Of any
+//! other scene: its load path, what is unstable dashed.
 
-use egui::{Align2, Color32, RichText, Ui};
-use egui_plot::{
-    Corner, GridInput, GridMark, HoverPosition, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints,
-    Points, Text, VLine,
-};
+use egui::{Align2, Ui, UiBuilder};
+use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, Plot};
+use nalgebra::Vector2;
 
+use super::action::Action;
+use super::figure::{self, CurvePlot, Parts};
 use super::language::{fill, tr, translated};
 use super::overlay::boxed_text;
-use super::palette::{Palette, SMALL};
+use super::palette::Palette;
 use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
-use crate::study::path_chart::{Ordinate, Piece, drawn, unstable_words};
-use crate::study::{Departure, LoadCurve, LoadPath, MethodPoint};
-use crate::words::{engineering, three_digits, ticks};
+use crate::study::figure::{
+    Figure, FigurePoint, FigureRow, FigureSeries, Ink, LoadAxis, Mark, Quantity, dominant_axis, leaves_the_axes,
+};
+use crate::study::path_chart::{self, Ordinate};
+use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
+use crate::words::{engineering, engineering_pair, three_digits, ticks};
 
-/// What is known of a scene's load and deflection.
+/// Load and displacement of a scene.
 #[derive(Debug)]
 pub(super) enum Curve {
-    /// Of a cantilever.
-    Beam(LoadCurve),
+    /// The curve of a cantilever, and its scene.
+    Beam(Box<(LoadCurve, Scene)>),
     /// Of any scene at rest; of the scene with it.
     Path(Box<(LoadPath, Scene)>),
 }
@@ -28,7 +31,8 @@ pub(super) enum Curve {
 impl Curve {
     pub(super) fn of(scene: &Scene) -> Option<Self> {
         let path = || Some(Self::Path(Box::new((LoadPath::of(scene)?, scene.clone()))));
-        LoadCurve::new(scene).map(Self::Beam).or_else(path)
+        let beam = LoadCurve::new(scene).map(|curve| Self::Beam(Box::new((curve, scene.clone()))));
+        beam.or_else(path)
     }
 }
 
@@ -39,17 +43,21 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
         engineering(three_digits(value), unit)
     }
     let ((x_name, x_unit), (y_name, y_unit)) = (x, y);
-    Plot::new(id.to_owned())
-        .x_axis_label(x_name.to_owned())
-        .y_axis_label(y_name.to_owned())
-        .x_grid_spacer(|input| round_marks(input, APART[0]))
-        .y_grid_spacer(|input| round_marks(input, APART[1]))
-        .x_axis_formatter(move |mark, range| {
+    // The marks are as far apart as their numbers need.
+    let near = egui::Rangef::new(0.5 * APART[0], 0.75 * APART[0]);
+    let x_axis = AxisHints::new_x().label(x_name.to_owned()).label_spacing(near).min_thickness(X_AXIS).formatter(
+        move |mark, range| {
             // In the corner stands the number of the other axis.
             let in_corner = mark.value - range.start() < CORNER * (range.end() - range.start());
             if in_corner { String::new() } else { engineering(mark.value, x_unit) }
-        })
-        .y_axis_formatter(move |mark, _| engineering(mark.value, y_unit))
+        },
+    );
+    let y_axis = AxisHints::new_y().label(y_name.to_owned()).min_thickness(Y_AXIS);
+    Plot::new(id.to_owned())
+        .custom_x_axes(vec![x_axis])
+        .custom_y_axes(vec![y_axis.formatter(move |mark, _| engineering(mark.value, y_unit))])
+        .x_grid_spacer(|input| round_marks(input, APART[0]))
+        .y_grid_spacer(|input| round_marks(input, APART[1]))
         .label_formatter(move |at| match at {
             HoverPosition::NearDataPoint { plot_name, position, .. } => {
                 Some(format!("{plot_name}\n{}, {}", value(position.x, x_unit), value(position.y, y_unit)))
@@ -64,10 +72,14 @@ pub(super) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
         .allow_boxed_zoom(false)
 }
 
+/// Room for the numbers and the title of an axis, points, before egui_plot has measured them.
+pub(super) const X_AXIS: f32 = 38.0;
+pub(super) const Y_AXIS: f32 = 68.0;
+
 /// Grid lines nearer to each other than this, points, are not drawn.
 const NEAREST: f32 = 8.0;
 /// Numbers so far apart, points, have room: beside each other, and over each other.
-const APART: [f32; 2] = [40.0, 26.0];
+const APART: [f32; 2] = [66.0, 26.0];
 
 /// The part of an axis, from its beginning, over which its numbers would touch those of the other axis.
 const CORNER: f64 = 0.02;
@@ -82,174 +94,193 @@ fn round_marks(input: GridInput, apart: f32) -> Vec<GridMark> {
     ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
+/// The pieces of a line: joints of one thick line would stick out where it turns sharply.
+pub(super) fn segments(line: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    line.windows(2).map(<[_]>::to_vec).collect()
+}
+
 /// Shows the plot, that of the scene before while a new one is looked for; or says why there is none: not yet, or not at
 /// all.
-pub(super) fn show(ui: &mut Ui, curve: Option<&Curve>, looked_for: bool) {
-    let at = ui.available_rect_before_wrap().center_top() + egui::vec2(0.0, 10.0);
-    match curve {
-        Some(Curve::Beam(curve)) => beam(ui, curve),
-        Some(Curve::Path(of)) => path(ui, &of.0, &of.1),
-        None => {
-            ui.centered_and_justified(|ui| {
-                ui.weak(tr(if looked_for {
-                    "No load curve: linear theory knows one straight line only."
-                } else {
-                    "The load curve comes when the body has come to rest."
-                }));
-            });
-        }
-    }
-    if curve.is_some() && !looked_for {
-        let words = "As it was before the last change; the new one comes when the body has come to rest.";
-        boxed_text(
-            ui.painter(),
-            at,
-            Align2::CENTER_TOP,
-            tr(words),
-            ui.visuals(),
-            ui.visuals().weak_text_color(),
-            520.0,
-        );
-    }
-}
-
-fn path(ui: &mut Ui, path: &LoadPath, scene: &Scene) {
-    let palette = Palette::new(ui.visuals());
-    let drawn = drawn(path, scene, &Ordinate::Usual);
-    let [stable, unstable] = [MethodKind::Newton, MethodKind::Warped].map(|method| palette.method(method));
-    // Where the curve is not: a load's begins low, that of a support that moves falls again.
-    let corner = if path.driven.is_some() { Corner::RightTop } else { Corner::LeftTop };
-    still(&palette, "load path", (&translated(&drawn.x_label), ""), (&translated(&drawn.y_label), ""))
-        .legend(Legend::default().position(corner).follow_insertion_order(true))
-        .show(ui, |plot| {
-            for (points, piece) in drawn.pieces(path) {
-                let (name, color, style) = match piece {
-                    Piece::Stable => ("stable", stable, LineStyle::Solid),
-                    Piece::Unstable => (unstable_words(path), unstable, LineStyle::dashed_loose()),
-                    Piece::Jump => ("it jumps", unstable, LineStyle::dotted_dense()),
-                };
-                plot.line(Line::new(tr(name), PlotPoints::from(points)).color(color).width(2.0).style(style));
-            }
-            for (at, words) in drawn.bifurcations(path) {
-                plot.points(Points::new(translated(&words), vec![at]).color(unstable).radius(5.0));
-            }
-            let at: Vec<[f64; 2]> = drawn.points.last().map(|p| p.0).into_iter().collect();
-            plot.points(Points::new(tr("the scene"), at).color(palette.text).radius(4.0));
+pub(super) fn show(
+    ui: &mut Ui,
+    curve: Option<&Curve>,
+    looked_for: bool,
+    chosen: Option<CurvePlot>,
+    actions: &mut Vec<Action>,
+) {
+    let whole = ui.available_rect_before_wrap();
+    let Some(curve) = curve else {
+        ui.centered_and_justified(|ui| {
+            ui.weak(tr(if looked_for {
+                "No load curve: linear theory knows one straight line only."
+            } else {
+                "The load curve comes when the body has come to rest."
+            }));
         });
-}
-
-/// What is drawn says beside it what it is: a legend would lie over the points.
-fn beam(ui: &mut Ui, curve: &LoadCurve) {
-    /// Linear theory leaves the picture above so many times the largest true deflection, instead of stretching it.
-    const LEAVES: f64 = 1.35;
-    let palette = Palette::new(ui.visuals());
-    let linear = palette.method(MethodKind::Linear);
-    let samples = |value: fn(&crate::study::Sample) -> f64| -> Vec<[f64; 2]> {
-        curve.samples.iter().map(|s| [100.0 * s.factor, value(s)]).collect()
+        return;
     };
-    let exact = samples(|s| s.truth.norm());
-    let top = exact.iter().map(|p| p[1]).fold(f64::MIN_POSITIVE, f64::max);
-    let straight: Vec<[f64; 2]> =
-        samples(|s| s.linear.norm()).into_iter().take_while(|p| p[1] <= LEAVES * top).collect();
-    let plot = still(&palette, "load curve", (tr("load, of the scene's"), "%"), (tr("tip displacement"), "m"));
-    plot.show(ui, |plot| {
-        let lines = [
-            ("linear theory", straight, linear, 1.5, Align2::LEFT_TOP),
-            ("exact beam", exact, palette.exact, 2.0, Align2::RIGHT_BOTTOM),
-        ];
-        for (name, line, color, width, anchor) in lines {
-            if let Some(&end) = line.last() {
-                plot.text(label(end, tr(name), color, anchor));
-            }
-            plot.line(Line::new(tr(name), PlotPoints::from(line)).color(color).width(width));
-        }
-        for departure in &curve.departures {
-            let at = VLine::new(departure_words(std::slice::from_ref(departure)), 100.0 * departure.at.factor);
-            plot.vline(at.color(linear.gamma_multiply(0.7)).style(LineStyle::dashed_dense()));
-        }
-        if let Some(last) = curve.departures.last() {
-            let beside = [100.0 * last.at.factor, 0.0];
-            plot.text(label(beside, &departure_words(&curve.departures), linear, Align2::LEFT_BOTTOM));
-        }
-        for point in &curve.methods {
-            let at = [100.0, point.tip.norm()];
-            if at[1] <= LEAVES * top {
-                let shape = if point.status == Status::Converged { MarkerShape::Circle } else { MarkerShape::Cross };
-                let points = Points::new(tr(point.method.id()), vec![at]);
-                plot.points(points.color(palette.method(point.method)).radius(5.0).shape(shape));
-            }
-        }
-        for (height, words) in method_labels(&curve.methods, top, LEAVES * top) {
-            plot.text(label([100.0, height], &words, palette.text, Align2::LEFT_TOP));
-        }
+    let offered = curve.offered();
+    let shown = chosen.filter(|plot| offered.contains(plot)).unwrap_or_else(|| curve.usual());
+    let drawn = curve.figure(shown);
+    let parts = Parts::of(whole);
+    ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| figure::plot(ui, "load curve", &drawn, None));
+    ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
+        figure::controls(ui, &drawn, offered, shown, actions);
+        figure::table(ui, &drawn);
     });
+    ui.advance_cursor_after_rect(whole);
+    if !looked_for {
+        let words = "As it was before the last change; the new one comes when the body has come to rest.";
+        let at = parts.plot.center_top() + egui::vec2(0.0, 10.0);
+        let color = ui.visuals().weak_text_color();
+        boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(words), ui.visuals(), color, parts.plot.width());
+    }
 }
 
-/// Words beside a place in a plot.
-fn label(at: [f64; 2], words: &str, color: Color32, anchor: Align2) -> Text {
-    let lines: Vec<String> = words.lines().map(|line| format!("  {line}  ")).collect();
-    let words = RichText::new(lines.join("\n")).size(SMALL).color(color);
-    Text::new("", PlotPoint::from(at), words).anchor(anchor).allow_hover(false)
+impl Curve {
+    /// Quantities that can be shown.
+    fn offered(&self) -> &'static [CurvePlot] {
+        match self {
+            Self::Path(of) if of.0.driven.is_some() => {
+                &[CurvePlot::Reaction, CurvePlot::Path, CurvePlot::X, CurvePlot::Y]
+            }
+            _ => &[CurvePlot::Path, CurvePlot::X, CurvePlot::Y],
+        }
+    }
+
+    /// Quantities that show most: where linear theory leaves the exact beam, or where a path turns back.
+    fn usual(&self) -> CurvePlot {
+        match self {
+            Self::Beam(of) => usual(of.0.samples.iter().map(|s| s.truth)),
+            Self::Path(of) if of.0.driven.is_some() => CurvePlot::Reaction,
+            Self::Path(of) => {
+                let tip = |state: &PathState| state.probes.first().copied();
+                CurvePlot::component(dominant_axis(of.0.states.iter().filter_map(tip)))
+            }
+        }
+    }
+
+    fn figure(&self, shown: CurvePlot) -> Figure {
+        match self {
+            Self::Beam(of) => beam(&of.0, &of.1, shown),
+            Self::Path(of) => path(&of.0, &of.1, shown),
+        }
+    }
 }
 
-/// Where linear theory leaves the truth, by how much and after which rotation.
-fn departure_words(departures: &[Departure]) -> String {
+/// The path of a displacement that leaves the axes, else its larger component: there one sees most of an error.
+pub(super) fn usual(displacements: impl Iterator<Item = Vector2<f64>> + Clone) -> CurvePlot {
+    if leaves_the_axes(displacements.clone()) {
+        CurvePlot::Path
+    } else {
+        CurvePlot::component(dominant_axis(displacements))
+    }
+}
+
+/// The load and both components of the displacement of the first probe.
+pub(super) fn quantities(load: Quantity, scene: &Scene) -> Vec<Quantity> {
+    let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
+    let component = |axis: &str| Quantity::new(translated(&format!("u_{axis} of {probe}")), "m");
+    vec![Quantity::new(translated(&load.name), load.unit), component("x"), component("y")]
+}
+
+/// Head of a column of displacements.
+pub(super) fn displacement_words(scene: &Scene) -> String {
+    let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
+    fill!("(u_x, u_y) of %{probe}", probe = tr(probe))
+}
+
+/// The axes of a plot, among the load and both components.
+pub(super) fn axes(shown: CurvePlot) -> [usize; 2] {
+    match shown {
+        CurvePlot::Path => [1, 2],
+        CurvePlot::X => [0, 1],
+        CurvePlot::Y | CurvePlot::Reaction => [0, 2],
+    }
+}
+
+/// A displacement in a table, m.
+pub(super) fn pair(u: Vector2<f64>) -> String {
+    engineering_pair([u.x, u.y].map(three_digits), "m")
+}
+
+fn path(path: &LoadPath, scene: &Scene, shown: CurvePlot) -> Figure {
+    let ordinate = match shown {
+        CurvePlot::Reaction => Ordinate::Usual,
+        CurvePlot::Path => Ordinate::Path(0),
+        CurvePlot::X => Ordinate::Component(0, 0),
+        CurvePlot::Y => Ordinate::Component(0, 1),
+    };
+    let mut figure = path_chart::figure(path, scene, &ordinate);
+    figure.title = curve_title(scene);
+    let names = figure.quantities.iter_mut().map(|q| &mut q.name);
+    let names = names.chain(figure.series.iter_mut().map(|s| &mut s.name));
+    names.chain(figure.rows.iter_mut().map(|r| &mut r.name)).for_each(|name| *name = translated(name));
+    figure
+}
+
+fn curve_title(scene: &Scene) -> String {
+    format!("{}: {}", tr(&scene.name), tr("Load curve"))
+}
+
+fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
+    let LoadAxis { quantity, full } = LoadAxis::of(scene);
+    let linear = Ink::Method(MethodKind::Linear);
+    let line = |value: fn(&Sample) -> Vector2<f64>| -> Vec<FigurePoint> {
+        let samples = curve.samples.iter();
+        samples.map(|s| figure::point(s.factor * full, value(s))).collect()
+    };
+    let series = |name: String, ink, mark, may_leave, points| FigureSeries { name, ink, mark, may_leave, points };
+    let mut all = vec![
+        series(tr("linear theory").to_owned(), linear, Mark::Line, true, line(|s| s.linear)),
+        series(tr("exact beam").to_owned(), Ink::Exact, Mark::Line, false, line(|s| s.truth)),
+    ];
+    let departures = curve.departures.iter().map(|d| figure::point(d.at.factor * full, d.at.truth)).collect();
+    let departs = departure_words(&curve.departures);
+    if let Some((name, _)) = &departs {
+        all.push(series(name.clone(), linear, Mark::Ring, false, departures));
+    }
+    for point in &curve.methods {
+        let converged = point.status == Status::Converged;
+        let mark = if converged { Mark::Disc } else { Mark::Cross };
+        let state = if converged { "" } else { tr("not converged") }.to_owned();
+        let may_leave = !converged || point.method == MethodKind::Linear;
+        let at = FigurePoint { state, is_present: true, ..figure::point(full, point.tip) };
+        all.push(series(tr(point.method.id()).to_owned(), Ink::Method(point.method), mark, may_leave, vec![at]));
+    }
+    let at_load = curve.samples.iter().find(|s| (s.factor - 1.0).abs() < 1e-9);
+    let value = |series: &FigureSeries| match series.mark {
+        Mark::Ring => departs.as_ref().map(|(_, angles)| angles.clone()),
+        Mark::Cross => Some(tr("not converged").to_owned()),
+        Mark::Line => at_load.map(|s| pair(if series.ink == Ink::Exact { s.truth } else { s.linear })),
+        _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| pair(p.tip)),
+    };
+    let row = |series: &FigureSeries| FigureRow {
+        name: series.name.clone(),
+        ink: series.ink,
+        mark: series.mark,
+        value: value(series).unwrap_or_default(),
+        error: String::new(),
+        is_bad: series.mark == Mark::Cross,
+    };
+    let load = engineering(three_digits(full), quantity.unit);
+    Figure {
+        title: curve_title(scene),
+        axes: axes(shown),
+        bounds: None,
+        rows: all.iter().map(row).collect(),
+        series: all,
+        head: [fill!("at %{load}", load = load), displacement_words(scene), String::new()],
+        error_name: String::new(),
+        quantities: quantities(quantity, scene),
+    }
+}
+
+/// Name and place of the loads at which linear theory leaves the exact beam: by so much, after these rotations.
+fn departure_words(departures: &[Departure]) -> Option<(String, String)> {
     let each = |value: &dyn Fn(&Departure) -> String| departures.iter().map(value).collect::<Vec<_>>().join(", ");
     let percent = each(&|departure| departure.percent.to_string());
     let angles = each(&|departure| format!("{:.1}°", departure.at.rotation.to_degrees().abs()));
-    fill!("linear off by %{percent} %: at %{angles}", percent = percent, angles = angles)
-}
-
-/// What stands beside the points of the methods, and how high: one text for those that are as good as one. Those that are
-/// higher than `highest` are named there.
-fn method_labels(methods: &[MethodPoint], top: f64, highest: f64) -> Vec<(f64, String)> {
-    /// Points nearer to each other than this part of the picture share a text.
-    const NEAR: f64 = 0.08;
-    let mut named: Vec<(f64, String)> = methods
-        .iter()
-        .map(|point| {
-            let height = point.tip.norm();
-            let word = match point.status {
-                Status::Converged if height > highest => tr(", off the picture"),
-                Status::Converged => "",
-                _ => tr(", not converged"),
-            };
-            (height.min(highest), format!("{}{word}", tr(point.method.id())))
-        })
-        .collect();
-    named.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let groups = named.chunk_by(|a, b| b.0 - a.0 < NEAR * top);
-    let texts = groups.map(|group| {
-        let words: Vec<&str> = group.iter().map(|(_, words)| words.as_str()).collect();
-        // What is more than a name has a line of its own.
-        let separator = if group.iter().any(|(height, _)| *height == highest) { "\n" } else { ", " };
-        (group[group.len() / 2].0, words.join(separator))
-    });
-    texts.collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::Vector2;
-
-    use super::*;
-
-    #[test]
-    fn points_that_lie_together_share_a_text() {
-        let point = |method, deflection: f64| MethodPoint {
-            method,
-            tip: Vector2::new(0.0, -deflection),
-            status: Status::Converged,
-            stable: None,
-        };
-        let methods = [
-            point(MethodKind::Linear, 90.0),
-            point(MethodKind::Warped, 2.0),
-            point(MethodKind::Newton, 2.01),
-            point(MethodKind::Auto, 1.0),
-            MethodPoint { status: Status::Running, ..point(MethodKind::Warped, 500.0) },
-        ];
-        let texts: Vec<String> = method_labels(&methods, 3.0, 4.0).into_iter().map(|(_, words)| words).collect();
-        assert_eq!(texts, ["auto", "warped, newton", "linear, off the picture\nwarped, not converged"]);
-    }
+    (!departures.is_empty())
+        .then(|| (fill!("linear off by %{percent} %", percent = percent), fill!("at %{angles}", angles = angles)))
 }

@@ -195,8 +195,9 @@ pub(super) struct CurveArgs {
     /// Also draw the load path: over the way of the support that moves, or over the load; what is unstable is dashed.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub picture: Option<PathBuf>,
-    /// What the picture shows: a probe's name, or `support.N` for the reaction of a support. Else the reaction of the support that moves,
-    /// or the displacement of the first probe.
+    /// Quantity in the picture: `PROBE.x` or `PROBE.y` for a component of a probe's displacement, `PROBE.path` for one over the
+    /// other, `PROBE` for its length, or `support.N` for the reaction of a support. Else the reaction of the support that moves, or
+    /// the larger component of the first probe.
     #[arg(long, value_name = "NAME", requires = "picture")]
     pub of: Option<String>,
 }

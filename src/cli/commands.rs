@@ -235,7 +235,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     }
     if let (Some(picture), Some(is_png)) = (picture, is_png) {
         let path = path.as_ref().ok_or_else(|| CliError::NoPath(named(&source)))?;
-        let svg = path_chart::svg(path, &scene, &ordinate);
+        let svg = path_chart::figure(path, &scene, &ordinate).svg();
         if is_png { draw_svg(&svg)?.write_png(&picture)? } else { export::write_text(&picture, &svg)? }
     }
     text::print(&words)?;
@@ -244,8 +244,14 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
 
 /// What a name on the command line asks to be drawn.
 fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
-    if let Some(i) = scene.probes.iter().position(|p| p.name == name) {
-        return Ok(Ordinate::Probe(i));
+    for (i, probe) in scene.probes.iter().enumerate() {
+        match name.strip_prefix(&probe.name) {
+            Some("") => return Ok(Ordinate::Probe(i)),
+            Some(".path") => return Ok(Ordinate::Path(i)),
+            Some(".x") => return Ok(Ordinate::Component(i, 0)),
+            Some(".y") => return Ok(Ordinate::Component(i, 1)),
+            _ => {}
+        }
     }
     let supports = (0..scene.supports.len()).map(|i| format!("support.{i}"));
     match supports.clone().position(|support| support == name) {

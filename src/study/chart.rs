@@ -168,7 +168,12 @@ impl Margins {
 
     /// The start of a picture.
     pub fn head(&self, title: &str) -> String {
-        let ([width, height], left) = (SIZE, self.left);
+        self.head_of(title, SIZE[0])
+    }
+
+    /// The start of a picture of this width.
+    pub fn head_of(&self, title: &str, width: f64) -> String {
+        let (height, left) = (SIZE[1], self.left);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" font-family=\"Ubuntu, sans-serif\" font-size=\"13\">\n\
              <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{left}\" y=\"28\" font-size=\"16\">{}</text>\n",
@@ -177,8 +182,19 @@ impl Margins {
     }
 
     /// Lines at places of both axes with their words, and what the axes mean.
-    pub fn grid(&self, svg: &mut String, [x, y]: [Vec<(f64, String)>; 2], [x_label, y_label]: [&str; 2]) {
-        let ([left, right], [bottom, top]) = (self.across(), self.up());
+    pub fn grid(&self, svg: &mut String, lines: [Vec<(f64, String)>; 2], labels: [&str; 2]) {
+        self.grid_of(svg, SIZE[0], lines, labels);
+    }
+
+    /// The same in a picture of this width.
+    pub fn grid_of(
+        &self,
+        svg: &mut String,
+        width: f64,
+        [x, y]: [Vec<(f64, String)>; 2],
+        [x_label, y_label]: [&str; 2],
+    ) {
+        let ([left, right], [bottom, top]) = ([self.left, width - self.right], self.up());
         for (at, words) in x {
             let _ = writeln!(
                 svg,
@@ -252,7 +268,7 @@ impl LogLog<'_> {
 }
 
 /// A mark for every element: as many corners as it has nodes.
-fn shape(x: f64, y: f64, element: ElementKind, [r, g, b]: [u8; 3], size: f64) -> String {
+pub(super) fn shape(x: f64, y: f64, element: ElementKind, [r, g, b]: [u8; 3], size: f64) -> String {
     let corners = element.entry().nodes.len();
     let path: Vec<String> = (0..corners)
         .map(|i| {

@@ -3,6 +3,7 @@
 mod chart;
 mod convergence;
 pub mod extremes;
+pub mod figure;
 mod fine;
 mod heat_map;
 mod load_curve;

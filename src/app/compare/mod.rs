@@ -115,7 +115,7 @@ impl Compare {
         &self.panes
     }
 
-    pub(super) fn traced(&self) -> Vec<(PaneSetting, [f64; 2])> {
+    pub(super) fn traced(&self) -> Vec<(PaneSetting, [f64; 3])> {
         self.trace.dots()
     }
 
@@ -232,7 +232,9 @@ impl Compare {
         if shows_trace {
             let height = TRACE_HEIGHT.min(TRACE_SHARE * height);
             let panel = Panel::bottom("trace").exact_size(height).resizable(false).frame(frame);
-            panel.show(ui, |ui| self.trace.show(ui, input.scene, &self.panes, actions));
+            panel.show(ui, |ui| {
+                self.trace.show(ui, input.scene, &self.panes, input.view.curve_plot, actions);
+            });
         }
     }
 
@@ -502,7 +504,8 @@ impl Compare {
         let spoken = format!("{name}: {}: {error}{words}", setting.words());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
         let tip = fill!(
-            "Error: distance of the first probe from %{truth}. Time and iterations: of a solve from rest.",
+            "Error: length of the difference of the displacement vectors of the first probe and of %{truth}, over the length \
+             of the latter. Time and iterations: of a solve from rest.",
             truth = truth_words(input.truth)
         );
         response.on_hover_text(format!("{words}\n{tip}"));

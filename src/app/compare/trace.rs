@@ -1,19 +1,22 @@
 //! The load curve, traced while the load is dragged: what every pane has answered to the loads so far.
 
-use egui::{Align2, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
-use egui_plot::{Line, MarkerShape, PlotBounds, PlotPoints, Points, VLine};
+use egui::{Pos2, Ui, WidgetInfo, pos2};
+use egui_plot::PlotResponse;
+use nalgebra::Vector2;
 
 use super::pane::{Doing, Pane};
 use super::setting::PaneSetting;
 use crate::app::action::Action;
-use crate::app::budget::{marker, question};
+use crate::app::budget::question;
+use crate::app::figure::{self, CurvePlot, Parts};
 use crate::app::finder::Finder;
-use crate::app::language::{fill, tr};
-use crate::app::palette::{BODY, Palette, SMALL};
-use crate::app::plot::still;
+use crate::app::language::{fill, percent, tr};
+use crate::app::plot::{axes, displacement_words, pair, quantities, usual};
 use crate::scene::limits::{self, Limit};
 use crate::scene::{Load, MethodKind, Place, Scene};
+use crate::study::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
 use crate::study::{LoadCurve, Reference};
+use crate::truth::error_percent;
 use crate::words::{engineering, three_digits};
 
 /// Dots of a setting that are kept.
@@ -79,7 +82,8 @@ impl Axis {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Dot {
     load: f64,
-    deflection: f64,
+    /// Displacement of the first probe, m.
+    u: Vector2<f64>,
     /// Whether it is an equilibrium.
     good: bool,
 }
@@ -91,14 +95,19 @@ pub(super) struct Trace {
     family: Option<Scene>,
     direction: Option<[f64; 2]>,
     series: Vec<(PaneSetting, Vec<Dot>)>,
-    exact: Finder<Vec<[f64; 2]>>,
+    exact: Finder<Vec<Exact>>,
     /// The exact curve that was found last.
-    line: Vec<[f64; 2]>,
+    line: Vec<Exact>,
     /// What is true of the loads that were there: plane elasticity may differ from the exact beam.
-    truths: Vec<[f64; 2]>,
+    truths: Vec<Exact>,
     /// The load at the right edge.
     reach: f64,
+    /// Quantities that show most of this curve, once some of it is known.
+    usual: Option<CurvePlot>,
 }
+
+/// A load and the exact displacement of the first probe under it, m.
+type Exact = (f64, Vector2<f64>);
 
 impl Default for Trace {
     fn default() -> Self {
@@ -111,23 +120,28 @@ impl Default for Trace {
             line: Vec::new(),
             truths: Vec::new(),
             reach: 0.0,
+            usual: None,
         }
     }
 }
 
-/// The exact deflection of the first probe over the load that is traced.
-fn exact_line(scene: &Scene) -> Option<Vec<[f64; 2]>> {
+/// The exact displacement of the first probe over the load that is traced.
+fn exact_line(scene: &Scene) -> Option<Vec<Exact>> {
     let axis = Axis::of(scene).filter(|axis| axis.magnitude > 0.0)?;
     // Along the curve of several loads all of them would grow.
+    if has_several_loads(scene) || scene.probes.first()?.place != Place::from("right") {
+        return None;
+    }
+    let curve = LoadCurve::new(scene)?;
+    Some(curve.samples.iter().map(|s| (s.factor * axis.magnitude, s.truth)).collect())
+}
+
+fn has_several_loads(scene: &Scene) -> bool {
     let pulls = |load: &&Load| match load {
         Load::Force { force: v, .. } | Load::Gravity { acceleration: v, .. } => *v != [0.0; 2],
         Load::Moment { moment, .. } => *moment != 0.0,
     };
-    if scene.loads.iter().filter(pulls).count() > 1 || scene.probes.first()?.place != Place::from("right") {
-        return None;
-    }
-    let curve = LoadCurve::new(scene)?;
-    Some(curve.samples.iter().map(|s| [s.factor * axis.magnitude, s.truth.norm()]).collect())
+    scene.loads.iter().filter(pulls).count() > 1
 }
 
 impl Trace {
@@ -179,32 +193,32 @@ impl Trace {
     /// Whether the exact curve that is known ends before the load, or is too coarse for it.
     fn needs_exact(&self) -> bool {
         let (Some(end), Some(axis)) = (self.exact.get().and_then(|line| line.last()), self.axis) else { return false };
-        axis.magnitude > end[0] || axis.magnitude > 0.0 && TINY * axis.magnitude < end[0]
+        axis.magnitude > end.0 || axis.magnitude > 0.0 && TINY * axis.magnitude < end.0
     }
 
     /// Notes what is true of the present load.
     pub(super) fn record_truth(&mut self, truth: Option<&Reference>) {
         let (Some(axis), Some(truth)) = (self.axis, truth.and_then(Reference::first)) else { return };
-        let dot = [axis.magnitude, truth.displacement.norm()];
-        self.truths.retain(|other| (other[0] - dot[0]).abs() > SAME_LOAD * dot[0]);
+        let dot = (axis.magnitude, truth.displacement);
+        self.truths.retain(|other| (other.0 - dot.0).abs() > SAME_LOAD * dot.0);
         self.truths.push(dot);
         if self.truths.len() > MOST_DOTS {
             self.truths.remove(0);
         }
     }
 
-    /// The true deflection under a load, where that is known; else that of the exact beam.
-    fn exact_at(&self, load: f64) -> Option<f64> {
-        let truth = self.truths.iter().find(|dot| dot[0] == load).map(|dot| dot[1]);
-        let piece = || self.line.windows(2).find(|w| (w[0][0]..=w[1][0]).contains(&load));
-        let between = |w: &[[f64; 2]]| w[0][1] + (load - w[0][0]) / (w[1][0] - w[0][0]) * (w[1][1] - w[0][1]);
+    /// The true displacement under a load, where that is known; else that of the exact beam.
+    fn exact_at(&self, load: f64) -> Option<Vector2<f64>> {
+        let truth = self.truths.iter().find(|dot| dot.0 == load).map(|dot| dot.1);
+        let piece = || self.line.windows(2).find(|w| (w[0].0..=w[1].0).contains(&load));
+        let between = |w: &[Exact]| w[0].1 + (w[1].1 - w[0].1) * ((load - w[0].0) / (w[1].0 - w[0].0));
         truth.or_else(|| piece().map(between))
     }
 
     /// Notes what a pane has answered to the present load. Says whether that is new.
     pub(super) fn record(&mut self, scene: &Scene, pane: &Pane) -> bool {
         let (Some(axis), Some((probe, good))) = (self.axis, pane.answer()) else { return false };
-        let dot = Dot { load: axis.magnitude, deflection: probe.u.norm(), good };
+        let dot = Dot { load: axis.magnitude, u: probe.u, good };
         let setting = pane.setting.of(scene);
         let number = self.series.iter().position(|(own, _)| *own == setting).unwrap_or_else(|| {
             self.series.push((setting, Vec::new()));
@@ -223,10 +237,10 @@ impl Trace {
         true
     }
 
-    /// Every dot that is an equilibrium: setting, load, deflection.
-    pub(super) fn dots(&self) -> Vec<(PaneSetting, [f64; 2])> {
+    /// Every dot that is an equilibrium: setting, load, and both components of the displacement.
+    pub(super) fn dots(&self) -> Vec<(PaneSetting, [f64; 3])> {
         let dots = self.series.iter().flat_map(|(setting, dots)| dots.iter().map(move |dot| (*setting, *dot)));
-        dots.filter(|(_, dot)| dot.good).map(|(setting, dot)| (setting, [dot.load, dot.deflection])).collect()
+        dots.filter(|(_, dot)| dot.good).map(|(setting, dot)| (setting, [dot.load, dot.u.x, dot.u.y])).collect()
     }
 
     fn dots_of(&self, setting: PaneSetting) -> &[Dot] {
@@ -234,161 +248,189 @@ impl Trace {
     }
 
     /// Shows the curve of the panes; a press in it sets the load.
-    pub(super) fn show(&mut self, ui: &mut Ui, scene: &Scene, panes: &[Pane], actions: &mut Vec<Action>) {
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene,
+        panes: &[Pane],
+        chosen: Option<CurvePlot>,
+        actions: &mut Vec<Action>,
+    ) {
+        const OFFERED: [CurvePlot; 3] = [CurvePlot::Path, CurvePlot::X, CurvePlot::Y];
         let Some(axis) = self.axis else {
             ui.centered_and_justified(|ui| ui.weak(tr("The scene has no load whose curve could be traced.")));
             return;
         };
-        let list = (0.3 * ui.available_width()).clamp(150.0, 250.0);
-        let whole = ui.available_rect_before_wrap();
-        let split = whole.right() - list;
-        let plot = Rect::from_min_max(whole.min, pos2(split - 10.0, whole.bottom()));
-        ui.scope_builder(egui::UiBuilder::new().max_rect(plot), |ui| self.plot(ui, axis, scene, panes, actions));
-        let names = Rect::from_min_max(pos2(split, whole.top()), whole.max);
-        ui.scope_builder(egui::UiBuilder::new().max_rect(names), |ui| self.names(ui, axis, scene, panes));
-    }
-
-    fn plot(&mut self, ui: &mut Ui, axis: Axis, scene: &Scene, panes: &[Pane], actions: &mut Vec<Action>) {
-        let palette = Palette::new(ui.visuals());
         // A picture whose edge moved under a pointer that scrubs in it would run away.
         let pressed = ui.input(|i| i.pointer.any_down());
         let settled = axis.magnitude > 0.9 * self.reach || TINY * axis.magnitude < self.reach;
         if axis.magnitude > self.reach || settled && !pressed && axis.magnitude > 0.0 {
             self.reach = 1.25 * axis.magnitude;
         }
-        let reach = if self.reach > 0.0 { self.reach } else { 1.0 };
-        let seen = |p: &&[f64; 2]| p[0] <= 1.001 * reach;
-        let line: Vec<[f64; 2]> = self.line.iter().filter(seen).copied().collect();
-        let settings: Vec<PaneSetting> = panes.iter().map(|pane| pane.setting.of(scene)).collect();
-        let good = |linear: bool| {
-            let of = settings.iter().filter(move |s| linear || s.method != Some(MethodKind::Linear));
-            let dots = of.flat_map(|&s| self.dots_of(s)).filter(|dot| dot.good && dot.load <= reach);
-            dots.map(|dot| dot.deflection).fold(0.0, f64::max)
-        };
-        // Linear theory leaves the picture instead of stretching it.
-        let truths: Vec<[f64; 2]> = self.truths.iter().filter(seen).copied().collect();
-        let known = line.iter().chain(&truths).map(|p| p[1]).fold(good(false), f64::max);
-        let top = 1.2 * if known > 0.0 { known } else { good(true) };
-        let top = if top > 0.0 { top } else { 1.0 };
-        let unit = axis.limit.unit;
-        let probe = tr(scene.probes.first().map_or("probe", |probe| probe.name.as_str()));
-        let plot = still(&palette, "trace", (tr(axis.name), unit), (&fill!("%{probe} moves", probe = probe), "m"));
-        let response = plot.show(ui, |plot| {
-            plot.set_plot_bounds(PlotBounds::from_min_max([0.0, 0.0], [reach, top]));
-            let now = VLine::new(tr("now"), axis.magnitude).color(palette.load.gamma_multiply(0.7)).width(1.0);
-            plot.vline(now.allow_hover(false));
-            if !line.is_empty() {
-                plot.line(Line::new(tr("exact beam"), PlotPoints::from(line)).color(palette.exact).width(2.0));
-            }
-            plot.points(Points::new(tr("exact"), truths).color(palette.exact).radius(5.0).shape(MarkerShape::Plus));
-            // Dots in the same place lie in each other.
-            for (setting, smaller) in settings.iter().copied().zip([0.0, 1.0, 2.0, 3.0]) {
-                let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
-                let (color, shape) = (palette.method(method), marker(element).0);
-                let dots = self.dots_of(setting);
-                let drawn = |good: bool, now: bool| -> Vec<[f64; 2]> {
-                    let own = dots.iter().filter(|dot| dot.good == good && (dot.load == axis.magnitude) == now);
-                    let places = own.map(|dot| [dot.load, if good { dot.deflection } else { 0.03 * top }]);
-                    places.filter(|p| p[1] <= top && p[0] <= reach).collect()
-                };
-                let name = setting.words();
-                plot.points(
-                    Points::new(name.clone(), drawn(true, false)).color(color).radius(3.8 - 0.7 * smaller).shape(shape),
-                );
-                plot.points(
-                    Points::new(name.clone(), drawn(true, true)).color(color).radius(7.0 - 1.5 * smaller).shape(shape),
-                );
-                let failed = [drawn(false, false), drawn(false, true)].concat();
-                let failed = Points::new(fill!("%{setting} does not converge", setting = name), failed);
-                plot.points(failed.color(color).radius(4.0).shape(MarkerShape::Cross));
-            }
+        let shown = chosen.filter(|plot| OFFERED.contains(plot)).unwrap_or_else(|| self.usual(axis));
+        let drawn = self.figure(axis, scene, panes, shown);
+        let parts = Parts::of(ui.available_rect_before_wrap());
+        ui.scope_builder(egui::UiBuilder::new().max_rect(parts.plot), |ui| {
+            let response = figure::plot(ui, "trace", &drawn, Some(axis.magnitude));
+            self.set_load(response, axis, scene, &drawn, actions);
         });
-        let area = response.response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-        area.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, tr("Load curve")));
-        if area.is_pointer_button_down_on()
-            && let Some(at) = area.interact_pointer_pos()
-            && let Some(direction) = self.direction
-        {
-            /// A dot so near, points, is meant.
-            const NEAR: f32 = 5.0;
-            let load = |x: f32| response.transform.value_from_position(pos2(x, at.y)).x;
-            let (low, high) = (load(at.x - NEAR), load(at.x + NEAR));
-            let dots = settings.iter().flat_map(|&s| self.dots_of(s)).map(|dot| dot.load);
-            let dot = dots.filter(|l| (low..=high).contains(l)).min_by(|a, b| {
-                let off = |l: f64| (l - load(at.x)).abs();
-                off(*a).total_cmp(&off(*b))
-            });
-            let wanted = dot.unwrap_or_else(|| three_digits(load(at.x))).clamp(0.0, axis.limit.max.min(reach));
-            if wanted != axis.magnitude {
-                let mut scene = Box::new(scene.clone());
-                axis.set(&mut scene, direction, wanted);
-                actions.push(Action::Edit(axis.label, scene));
-            }
-        }
+        ui.scope_builder(egui::UiBuilder::new().max_rect(parts.table), |ui| {
+            figure::controls(ui, &drawn, &OFFERED, shown, actions);
+            figure::table(ui, &drawn);
+        });
     }
 
-    /// Who is who, and what each says of the present load.
-    fn names(&self, ui: &mut Ui, axis: Axis, scene: &Scene, panes: &[Pane]) {
-        let palette = Palette::new(ui.visuals());
-        ui.spacing_mut().item_spacing.y = 2.0;
-        let load = engineering(three_digits(axis.magnitude), axis.limit.unit);
-        let head = format!("{} {load}", tr(axis.name));
-        ui.add_space(2.0);
-        ui.label(egui::RichText::new(head).color(palette.load)).on_hover_text(tr("Press in the plot to set it"));
-        if !self.line.is_empty() || !self.truths.is_empty() {
-            let value = self.exact_at(axis.magnitude).map(|u| engineering(three_digits(u), "m"));
-            row(ui, &palette, palette.exact, None, tr("exact"), &value.unwrap_or_default(), false);
+    /// Quantities that show most of the curve: decided once, where the load reaches first.
+    fn usual(&mut self, axis: Axis) -> CurvePlot {
+        let known: Vec<Vector2<f64>> = self.exact_at(axis.magnitude).into_iter().collect();
+        let curved = |s: &&(PaneSetting, Vec<Dot>)| s.0.method != Some(MethodKind::Linear);
+        let answers =
+            self.series.iter().filter(curved).flat_map(|(_, dots)| dots).filter(|dot| dot.good).map(|dot| dot.u);
+        let known: Vec<Vector2<f64>> = known.into_iter().chain(answers).collect();
+        if self.usual.is_none() && !known.is_empty() {
+            self.usual = Some(usual(known.iter().copied()));
         }
+        self.usual.unwrap_or(CurvePlot::Y)
+    }
+
+    /// The curve of the panes, and their answers to the present load.
+    fn figure(&self, axis: Axis, scene: &Scene, panes: &[Pane], shown: CurvePlot) -> Figure {
+        let reach = if self.reach > 0.0 { self.reach } else { 1.0 };
+        let exact = |all: &[Exact]| -> Vec<FigurePoint> {
+            let seen = all.iter().filter(|(load, _)| *load <= 1.001 * reach);
+            seen.map(|&(load, u)| figure::point(load, u)).collect()
+        };
+        let series = |name: &str, ink, mark, may_leave, points| FigureSeries {
+            name: name.to_owned(),
+            ink,
+            mark,
+            may_leave,
+            points,
+        };
+        let exact_series = [
+            series(tr("exact beam"), Ink::Exact, Mark::Line, false, exact(&self.line)),
+            series(tr("exact"), Ink::Exact, Mark::Plus, false, exact(&self.truths)),
+        ];
+        let mut all: Vec<FigureSeries> = exact_series.into_iter().filter(|s| !s.points.is_empty()).collect();
+        let mut rows = Vec::new();
+        if !all.is_empty() {
+            let value = self.exact_at(axis.magnitude).map(pair).unwrap_or_default();
+            let (name, error) = (tr("exact").to_owned(), String::new());
+            rows.push(FigureRow { name, ink: Ink::Exact, mark: Mark::Line, value, error, is_bad: false });
+        }
+        let stretches = all.is_empty() && panes.iter().all(|p| p.setting.of(scene).method == Some(MethodKind::Linear));
         for pane in panes {
             let setting = pane.setting.of(scene);
             let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
-            let (value, bad) = match (pane.answer(), pane.doing()) {
+            let (name, ink, is_linear) = (setting.words(), Ink::Method(method), method == MethodKind::Linear);
+            let dots: Vec<&Dot> = self.dots_of(setting).iter().filter(|dot| dot.load <= reach).collect();
+            // Linear theory is in proportion to its one load.
+            if let Some(dot) = dots.iter().rfind(|dot| dot.good && dot.load > 0.0)
+                && is_linear
+                && !has_several_loads(scene)
+            {
+                let ends = [0.0, reach].map(|load| figure::point(load, dot.u * (load / dot.load)));
+                let name = fill!("%{setting}, in proportion", setting = name);
+                all.push(series(&name, ink, Mark::Line, true, ends.to_vec()));
+            }
+            let points = dots.iter().map(|dot| self.point(dot, axis.magnitude)).collect();
+            all.push(series(&name, ink, Mark::Element(element), is_linear && !stretches, points));
+            let (value, is_bad) = match (pane.answer(), pane.doing()) {
                 (_, Doing::Refused(_)) => (tr("no solution").to_owned(), true),
-                (Some((probe, true)), _) => (engineering(three_digits(probe.u.norm()), "m"), false),
+                (Some((probe, true)), _) => (pair(probe.u), false),
                 (Some((_, false)), _) => (tr("does not converge").to_owned(), true),
                 (None, _) => (tr("iterates").to_owned(), false),
             };
-            let mark = Some(marker(element).0);
-            row(ui, &palette, palette.method(method), mark, &setting.words(), &value, bad);
+            let error = pane.error.filter(|_| !is_bad).map(percent).unwrap_or_default();
+            rows.push(FigureRow { name, ink, mark: Mark::Element(element), value, error, is_bad });
+        }
+        let load = engineering(three_digits(axis.magnitude), axis.limit.unit);
+        let bounds = self.bounds(&all, reach, axes(shown));
+        let quantity = Quantity::new(axis.name, axis.limit.unit);
+        Figure {
+            title: format!("{}: {}", tr(&scene.name), tr("Load curve")),
+            quantities: quantities(quantity, scene),
+            axes: axes(shown),
+            bounds,
+            series: all,
+            head: [format!("{} {load}", tr(axis.name)), displacement_words(scene), ERROR.to_owned()],
+            error_name: fill!("error %{measure}", measure = ERROR),
+            rows,
+        }
+    }
+
+    /// A dot of the curve; one that is no equilibrium has no displacement.
+    fn point(&self, dot: &Dot, present: f64) -> FigurePoint {
+        let u = dot.good.then_some(dot.u);
+        let exact = self.exact_at(dot.load);
+        FigurePoint {
+            values: vec![Some(dot.load), u.map(|u| u.x), u.map(|u| u.y)],
+            error_percent: u.zip(exact).and_then(|(u, exact)| error_percent(u, exact)),
+            state: tr(if dot.good { "converged" } else { "does not converge" }).to_owned(),
+            is_present: dot.load == present,
+        }
+    }
+
+    /// Corners of the plot: loads up to the reach, whatever has been answered.
+    fn bounds(&self, series: &[FigureSeries], reach: f64, axes: [usize; 2]) -> Option<[[f64; 2]; 2]> {
+        if axes[0] != 0 {
+            return None;
+        }
+        let free = Figure { axes, series: series.to_vec(), ..Figure::default() };
+        let [low, high] = free.corners();
+        Some([[0.0, low[1]], [reach, high[1]]])
+    }
+
+    /// Sets the load where the plot is pressed: in the path, that of the nearest point.
+    fn set_load(
+        &self,
+        response: PlotResponse<()>,
+        axis: Axis,
+        scene: &Scene,
+        drawn: &Figure,
+        actions: &mut Vec<Action>,
+    ) {
+        /// A dot so near, points, is meant.
+        const NEAR: f32 = 5.0;
+        let transform = response.transform;
+        let area = response.response;
+        let cursor = if drawn.axes[0] == 0 { egui::CursorIcon::ResizeHorizontal } else { egui::CursorIcon::Crosshair };
+        let area = area.on_hover_cursor(cursor);
+        area.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, tr("Load curve")));
+        let pressed = area.is_pointer_button_down_on() || area.clicked();
+        let (Some(at), Some(direction)) = (area.interact_pointer_pos().filter(|_| pressed), self.direction) else {
+            return;
+        };
+        let reach = if self.reach > 0.0 { self.reach } else { 1.0 };
+        let dots = || drawn.series.iter().filter(|s| !s.mark.is_line()).flat_map(|s| &s.points);
+        let wanted = if drawn.axes[0] == 0 {
+            let load = |x: f32| transform.value_from_position(pos2(x, at.y)).x;
+            let near = load(at.x - NEAR)..=load(at.x + NEAR);
+            let loads = dots().filter_map(|dot| dot.values.first().copied().flatten()).filter(|l| near.contains(l));
+            let off = |l: f64| (l - load(at.x)).abs();
+            let dot = loads.min_by(|a, b| off(*a).total_cmp(&off(*b)));
+            Some(dot.unwrap_or_else(|| three_digits(load(at.x))))
+        } else {
+            let distance = |p: &FigurePoint| {
+                let [x, y] = drawn.place(p)?;
+                let place: Pos2 = transform.position_from_point(&egui_plot::PlotPoint::new(x, y));
+                Some((place.distance(at), p.values.first().copied().flatten()?))
+            };
+            let nearest = |points: &mut dyn Iterator<Item = &FigurePoint>| {
+                points.filter_map(distance).min_by(|a, b| a.0.total_cmp(&b.0))
+            };
+            let dot = nearest(&mut dots()).filter(|dot| dot.0 <= NEAR);
+            let whole = || nearest(&mut drawn.series.iter().flat_map(|s| &s.points));
+            dot.or_else(whole).map(|(_, load)| load)
+        };
+        let Some(wanted) = wanted.map(|load| load.clamp(0.0, axis.limit.max.min(reach))) else { return };
+        if wanted != axis.magnitude {
+            let mut scene = Box::new(scene.clone());
+            axis.set(&mut scene, direction, wanted);
+            actions.push(Action::Edit(axis.label, scene));
         }
     }
 }
 
-/// A mark, a name, and a value at the right.
-fn row(
-    ui: &mut Ui,
-    palette: &Palette,
-    color: egui::Color32,
-    mark: Option<MarkerShape>,
-    name: &str,
-    value: &str,
-    bad: bool,
-) {
-    const MARK: f32 = 18.0;
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
-    let painter = ui.painter();
-    let center = rect.left_center() + vec2(6.0, 0.0);
-    match mark {
-        None => _ = painter.line_segment([center - vec2(6.0, 0.0), center + vec2(6.0, 0.0)], Stroke::new(2.0, color)),
-        Some(MarkerShape::Up) => {
-            let corners = [vec2(0.0, -5.0), vec2(5.0, 4.0), vec2(-5.0, 4.0)].map(|d| center + d);
-            painter.add(egui::Shape::convex_polygon(corners.to_vec(), color, Stroke::NONE));
-        }
-        Some(MarkerShape::Square) => {
-            painter.rect_filled(Rect::from_center_size(center, vec2(8.0, 8.0)), 0.0, color);
-        }
-        Some(_) => _ = painter.circle_filled(center, 4.5, color),
-    }
-    let ink = if bad { palette.error } else { palette.text };
-    let value_galley = painter.layout_no_wrap(value.to_owned(), FontId::proportional(SMALL), ink);
-    let room = (rect.width() - MARK - value_galley.size().x - 8.0).max(0.0);
-    let mut job = egui::text::LayoutJob::simple_singleline(name.to_owned(), FontId::proportional(BODY), palette.text);
-    job.wrap = egui::text::TextWrapping::truncate_at_width(room);
-    let name_galley = painter.layout_job(job);
-    let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + vec2(MARK, 0.0), name_galley.size());
-    painter.galley(at.min, name_galley, palette.text);
-    let at = Align2::RIGHT_CENTER.anchor_size(rect.right_center(), value_galley.size());
-    painter.galley(at.min, value_galley, ink);
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {value}")));
-    response.on_hover_text(format!("{name}: {value}"));
-}
+/// The measure of errors, in symbols.
+const ERROR: &str = "|Δu|/|u|";

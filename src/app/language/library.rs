@@ -38,12 +38,12 @@ const SENTENCES: &[&str] = &[
     "no thread for the solve: %{error}",
     "no thread for the study: %{error}",
     // Axes of a load path.
-    "part of the load, %{unit}",
-    "turn of support %{place}, %{unit}",
-    "way of support (%{x}, %{y}), %{unit}",
-    "way of support %{place}, %{unit}",
-    "its reaction along the way, %{unit}",
-    "displacement of %{probe}, %{unit}",
+    "turn of support %{place}",
+    "way of support (%{x}, %{y})",
+    "way of support %{place}",
+    "first %{load}, the others in proportion",
+    "u_x of %{probe}",
+    "u_y of %{probe}",
     // What is refused.
     "expected a whole number, got %{got}",
     "expected one of %{known}, got %{got}",
@@ -174,8 +174,8 @@ mod tests {
         }
         for id in ["snap", "jump"] {
             let path = LoadPath::of(&open(id)).unwrap();
-            let drawn = path_chart::drawn(&path, &open(id), &path_chart::Ordinate::Usual);
-            texts.extend([drawn.x_label, drawn.y_label]);
+            let drawn = path_chart::figure(&path, &open(id), &path_chart::Ordinate::Usual);
+            texts.extend(drawn.quantities.into_iter().map(|quantity| quantity.name));
         }
         for text in texts {
             let said = translated(&text);
