@@ -10,6 +10,7 @@ use super::job::LISTEN;
 use super::language::{fill, joined, percent, tr, translated};
 use super::measured::{Choice, Group, Measured};
 use super::palette::Palette;
+use super::plot::{X_AXIS, segments};
 use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
@@ -349,6 +350,8 @@ pub(super) fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
 }
 
 fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
+    /// Room for the numbers and the title of the axis, points.
+    const BUDGET_Y_AXIS: f32 = 62.0;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
     let place = |choice: &Choice| budget.study.map_or([0.0; 2], |study| place(study, choice));
@@ -364,11 +367,13 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .custom_x_axes(vec![
             AxisHints::new_x()
                 .label(tr(time))
+                .min_thickness(X_AXIS)
                 .formatter(|mark, _| decade_words(mark))
                 // Powers of ten are short: a narrow plot has room for them.
                 .label_spacing(egui::Rangef::new(36.0, 60.0)),
         ])
         .y_axis_label(tr("error, %"))
+        .y_axis_min_width(BUDGET_Y_AXIS)
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
         .y_axis_formatter(|mark, _| decade_words(mark))
@@ -399,7 +404,9 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
                 plot.points(Points::new(group.name(), points).color(group.color(&palette)).shape(shape).radius(3.5));
             }
             let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(|m| place(&m)).collect();
-            plot.line(Line::new(tr("Pareto front"), PlotPoints::from(front)).color(text).width(1.5));
+            for piece in segments(&front) {
+                plot.line(Line::new(tr("Pareto front"), PlotPoints::from(piece)).color(text).width(1.5));
+            }
             let limit = palette.secondary;
             let style = LineStyle::dashed_dense();
             if let Some(time) = budget.demand.max_time_ms {

@@ -74,7 +74,7 @@ pub(super) fn show(
             if icon_button(ui, icon, word, Some(word), open).on_hover_text(tip).clicked() {
                 actions.push(Action::Toggle(Toggle::Drawer(drawer)));
             }
-            if input.simulation.motion().is_none() && ui.available_width() > 90.0 {
+            if input.simulation.motion().is_none() && ui.available_width() > 160.0 {
                 sparkline(ui, &palette, input);
             }
         });
@@ -247,7 +247,14 @@ pub(super) fn semibold(painter: &Painter, at: Pos2, galley: &Arc<Galley>, color:
 
 /// How the residual has fallen, iteration by iteration, down to what is asked for.
 fn sparkline(ui: &mut Ui, palette: &Palette, input: &PanelInput<'_>) {
-    let (rect, response) = ui.allocate_exact_size(vec2(84.0, 28.0), Sense::hover());
+    const NAME: f32 = 9.0;
+    let name = tr("residual").to_owned();
+    let name = ui.painter().layout_no_wrap(name, FontId::proportional(SMALL), palette.secondary);
+    let size = vec2(84.0 + NAME + name.size().x, 28.0);
+    let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
+    let at = pos2(whole.left(), whole.center().y - 0.5 * name.size().y);
+    let rect = Rect::from_min_max(pos2(whole.left() + name.size().x + NAME, whole.top()), whole.max);
+    ui.painter().galley(at, name, palette.secondary);
     let asked = input.scene.solver.tolerance.max(1e-300).log10();
     let decades = |residual: f64| residual.clamp(1e-300, 1e300).log10();
     let top = input.residuals.iter().map(|&r| decades(r)).fold(0.0_f64, f64::max);
@@ -266,7 +273,10 @@ fn sparkline(ui: &mut Ui, palette: &Palette, input: &PanelInput<'_>) {
         .zip(input.residuals)
         .map(|(i, &r)| pos2(rect.left() + rect.width() * f32::from(i) / last, y(decades(r))))
         .collect();
-    ui.painter().line(points, Stroke::new(1.5, palette.method(input.scene.solver.method)));
+    // Joints of one thick line would stick out where it turns sharply.
+    for pair in points.windows(2) {
+        ui.painter().line(pair.to_vec(), Stroke::new(1.5, palette.method(input.scene.solver.method)));
+    }
     let words = fill!(
         "Residual %{residual} after %{n} iterations",
         residual = format!("{:.1e}", input.simulation.residual()),
