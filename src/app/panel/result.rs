@@ -183,7 +183,11 @@ fn stages(ui: &mut Ui, input: &PanelInput<'_>) {
         ("factorize", times.factorize, "Sparse Cholesky"),
         ("solve", times.solve, "Forward and back substitution"),
     ];
-    Grid::new("stages").num_columns(stages.len()).min_col_width(58.0).spacing([10.0, 0.0]).show(ui, |ui| {
+    // The columns fit beside a scroll bar, too.
+    const GAP: f32 = 6.0;
+    let gaps = GAP * stages.len().saturating_sub(1) as f32;
+    let width = ((ui.available_width() - gaps) / stages.len() as f32).floor().max(0.0);
+    Grid::new("stages").num_columns(stages.len()).min_col_width(width).spacing([GAP, 0.0]).show(ui, |ui| {
         for (name, _, tip) in stages {
             ui.label(RichText::new(tr(name)).small().color(secondary)).on_hover_text(tr(tip));
         }
