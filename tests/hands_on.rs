@@ -6,12 +6,12 @@ mod common;
 use common::lab::{type_into, unfold};
 use common::{scene, solve_json};
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, Pos2, vec2};
+use egui::{Event, Key, Modifiers, Pos2, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
-use warpbeam::scene::{Analysis, Load, Source};
+use warpbeam::scene::{Analysis, Load, MethodKind, Source};
 use warpbeam::simulation::{Field, PointValues, Simulation, Status};
 
 /// Time between frames, s: two clicks within some of them are a double click.
@@ -936,10 +936,10 @@ fn a_beam_gets_another_length_and_height() {
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(*harness.state().scene(), before);
     // Small steps add up.
-    for tenth in 101..=150 {
-        type_into(&mut harness, "Length", &format!("{}", f64::from(tenth) * 0.01 * beam.length));
+    for step in 1..=12 {
+        type_into(&mut harness, "Length", &format!("{}", (1.0 + 0.0043 * f64::from(step)) * beam.length));
     }
-    assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, cells(1.5, 1.0));
+    assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, cells(1.0516, 1.0));
 }
 
 /// A cantilever becomes a simply supported beam under two loads, by buttons alone; every step can be undone.
@@ -1097,4 +1097,68 @@ fn the_card_of_a_point_is_of_one_deformation() {
             harness.run_steps(4);
         }
     }
+}
+
+/// All shapes that are painted, with those inside of others.
+fn shapes(harness: &Harness<'_, Lab>) -> Vec<egui::Shape> {
+    fn flatten(shape: &egui::Shape, found: &mut Vec<egui::Shape>) {
+        match shape {
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| flatten(shape, found)),
+            shape => found.push(shape.clone()),
+        }
+    }
+    let mut found = Vec::new();
+    harness.output().shapes.iter().for_each(|clipped| flatten(&clipped.shape, &mut found));
+    found
+}
+
+/// In a low view the arrow of a weight stands under the colour bar that is at the top.
+#[test]
+fn the_colour_bar_is_not_on_the_arrow_of_a_weight() {
+    for size in [[640.0, 480.0], [900.0, 420.0], [1280.0, 800.0]] {
+        let mut harness = harness("gravity");
+        harness.set_size(size.into());
+        harness.run();
+        let shapes = shapes(&harness);
+        let bar = shapes.iter().find_map(|shape| match shape {
+            egui::Shape::Text(text) if text.galley.text().starts_with("von Mises") => {
+                Some(Rect::from_min_size(text.pos, vec2(170.0, 46.0)))
+            }
+            _ => None,
+        });
+        let bar = bar.unwrap_or_else(|| unreachable!("no colour bar"));
+        // The shafts of arrows are three points wide.
+        let arrows = shapes.iter().filter_map(|shape| match shape {
+            egui::Shape::LineSegment { points, stroke } if stroke.width == 3.0 => {
+                Some(Rect::from_two_pos(points[0], points[1]))
+            }
+            _ => None,
+        });
+        let arrows: Vec<Rect> = arrows.collect();
+        assert_eq!(arrows.len(), 1, "{size:?}");
+        assert!(!bar.intersects(arrows[0]), "{size:?}: {bar:?} on {arrows:?}");
+    }
+}
+
+/// Whatever the force, the view that is fitted to it has the arrow's tip beside the colour bar.
+#[test]
+fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
+    let mut met = 0;
+    for (id, most) in [("article", 1.6), ("cantilever", 4.0), ("incline", 4.0)] {
+        for part in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
+            let mut harness = harness(id);
+            let mut scene = harness.state().scene().clone();
+            let factor = 1.0 + (most - 1.0) * part;
+            scene.solver.method = MethodKind::Newton;
+            scene.set_force(0, force(harness.state()).map(|v| v * factor)).unwrap();
+            harness.state_mut().set_scene(scene).unwrap();
+            harness.run();
+            let view = harness.state().view_rect();
+            let bar = Rect::from_min_max(view.right_bottom() - vec2(286.0, 66.0), view.right_bottom());
+            let tip = harness.state().arrow_tips()[0].1;
+            met += i32::from(bar.x_range().contains(tip.x));
+            assert!(!bar.contains(tip), "{id}, {factor}: {tip:?} in {bar:?}");
+        }
+    }
+    assert!(met > 0, "no arrow is over the bar");
 }

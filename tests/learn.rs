@@ -98,14 +98,14 @@ fn leaving_restores_what_was() {
     assert!(before.frame().lines.is_empty(), "without wires");
     harness.get_by_label("Learn").click();
     harness.run();
-    assert_eq!(harness.state().card(), Some((1, 8)));
+    assert_eq!(harness.state().card(), Some((1, 9)));
     assert_eq!(harness.state().scene().name, "The article's beam");
     for (key, card) in
         [(Key::ArrowRight, 2), (Key::Enter, 3), (Key::ArrowLeft, 2), (Key::ArrowLeft, 1), (Key::ArrowLeft, 1)]
     {
         harness.key_press(key);
         harness.run();
-        assert_eq!(harness.state().card(), Some((card, 8)), "{key:?}");
+        assert_eq!(harness.state().card(), Some((card, 9)), "{key:?}");
     }
     harness.get_by_label("Next \u{203a}").click();
     harness.run();
@@ -119,7 +119,7 @@ fn leaving_restores_what_was() {
     // The way goes on where it was left.
     harness.get_by_label("Learn").click();
     harness.run();
-    assert_eq!(harness.state().card(), Some((2, 8)));
+    assert_eq!(harness.state().card(), Some((2, 9)));
     harness.get_by_label("Leave").click();
     harness.run();
     assert_eq!(harness.state().scene(), &scene);
@@ -131,20 +131,20 @@ fn every_card_can_be_read_and_left_in_a_small_window() {
     for size in [[1280.0, 800.0], [800.0, 600.0], [640.0, 480.0]] {
         let mut harness = harness(size);
         let window = egui::Rect::from_min_size(Pos2::ZERO, size.into());
-        for card in 1..=8 {
+        for card in 1..=9 {
             harness.state_mut().show_card(card);
             harness.run();
             for name in ["\u{2039} Back", "Next \u{203a}", "Leave"] {
                 let rect = harness.get_by_label(name).rect();
                 assert!(window.contains_rect(rect) && rect.width() > 20.0, "{size:?}, card {card}: {name} at {rect:?}");
             }
-            assert!(harness.query_by_label(&format!("{card} of 8")).is_some());
+            assert!(harness.query_by_label(&format!("{card} of 9")).is_some());
             let view = harness.state().view_rect();
             assert!(view.height() > 0.3 * size[1], "{size:?}: the body has {view:?}");
-            if card < 8 {
+            if card < 9 {
                 harness.get_by_label("Next \u{203a}").click();
                 harness.run();
-                assert_eq!(harness.state().card(), Some((card + 1, 8)));
+                assert_eq!(harness.state().card(), Some((card + 1, 9)));
             }
         }
     }
@@ -203,7 +203,7 @@ fn a_clicked_triangle_says_its_f_r_and_s() {
         assert!((-60.0..-5.0).contains(&angle), "{angle}");
         let own = harness.state().simulation().state().rotations()[element];
         assert!((own.angle() - r.angle()).abs() < 1e-12);
-        let words = format!("Triangle {}, turned by {angle:.1}\u{b0}", element + 1);
+        let words = format!("Triangle {}, rotated by {angle:.1}\u{b0}", element + 1);
         assert_eq!(text(&harness, "Triangle"), minus(&words));
         let s = r.matrix().transpose() * f;
         assert!((s.m12 - s.m21).abs() < 1e-12);
@@ -256,7 +256,7 @@ fn triangles_are_turned_back_onto_their_shape_at_rest() {
     harness.drop_at(at);
     harness.run();
     assert!(text(&harness, "Triangle").starts_with("Triangle 2:"));
-    let slider = harness.get_by_role_and_label(Role::Slider, "Turned back").rect();
+    let slider = harness.get_by_role_and_label(Role::Slider, "Rotated back").rect();
     harness.drag_at(slider.right_center() - vec2(4.0, 0.0));
     harness.run();
     harness.hover_at(slider.left_center());
@@ -324,10 +324,10 @@ fn the_matrices_are_the_solvers() {
     assert!(cell(&mut harness, "the body's matrix", 24, 0, 23).starts_with("no entry"));
 }
 
-/// Card 5: an iteration a press; the residual falls by ρ, which newton's equilibrium knows too.
+/// Card 6: an iteration a press; the residual falls by ρ, which newton's equilibrium knows too.
 #[test]
 fn the_residual_falls_by_rho() {
-    let mut harness = at_card(5);
+    let mut harness = at_card(6);
     assert_eq!(harness.state().simulation().iterations(), 0, "it waits");
     let mut newton = harness.state().scene().clone();
     newton.solver.method = MethodKind::Newton;
@@ -352,10 +352,10 @@ fn the_residual_falls_by_rho() {
     assert!(harness.query_by_label(&words).is_some(), "{words}: {:?}", texts(&harness));
 }
 
-/// Card 6: ρ is above 1, warped gives up, newton gets there.
+/// Card 7: ρ is above 1, warped gives up, newton gets there.
 #[test]
 fn beyond_rho_one_newton_gets_there() {
-    let mut harness = at_card(6);
+    let mut harness = at_card(7);
     assert!(!harness.state().simulation().status().is_success());
     assert!(text_containing(&harness, "rho = ").contains("rho = 1.3"), "{:?}", texts(&harness));
     assert!(text(&harness, "given up after").contains("iterations"));
@@ -363,14 +363,14 @@ fn beyond_rho_one_newton_gets_there() {
     harness.run();
     let simulation = harness.state().simulation();
     assert_eq!((simulation.method(), simulation.status()), (MethodKind::Newton, &Status::Converged));
-    assert_eq!(text(&harness, "there after"), format!("there after {} iterations", simulation.iterations()));
+    assert_eq!(text(&harness, "converged after"), format!("converged after {} iterations", simulation.iterations()));
     assert!(simulation.certificate().and_then(|c| c.fixed_point_rho).is_some_and(|rho| rho > 1.0));
 }
 
-/// Card 7: each element's error is what `solve` says of it.
+/// Card 8: each element's error is what `solve` says of it.
 #[test]
 fn locking_has_each_elements_error() {
-    let mut harness = at_card(7);
+    let mut harness = at_card(8);
     for element in ["t3", "t6", "q4"] {
         let set = format!("beam.element={element}");
         let json = solve_json(&["article", "--set", "solver.method=newton", "--set", &set]);
@@ -389,10 +389,10 @@ fn locking_has_each_elements_error() {
     assert_eq!(harness.state().scene().element(), ElementKind::T3);
 }
 
-/// Card 8: the table has the fastest setting within the error, as it was measured.
+/// Card 9: the table has the fastest setting within the error, as it was measured.
 #[test]
 fn the_trade_is_measured_when_asked() {
-    let mut harness = at_card(8);
+    let mut harness = at_card(9);
     assert!(harness.query_by_label_contains("Nothing measured yet").is_some());
     harness.get_by_label("Measure").click();
     harness.run_steps(2);
@@ -406,4 +406,161 @@ fn the_trade_is_measured_when_asked() {
     assert!(harness.query_all_by_label(&words).next().is_some(), "{words}: {:?}", texts(&harness));
     // What keeps no such error says how close it gets.
     assert!(texts(&harness).iter().any(|t| t.starts_with("at most ")));
+}
+
+/// Every text that is painted.
+fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
+    fn texts(shape: &egui::Shape, found: &mut Vec<String>) {
+        match shape {
+            egui::Shape::Text(text) => found.push(text.galley.text().to_owned()),
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| texts(shape, found)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    harness.output().shapes.iter().for_each(|clipped| texts(&clipped.shape, &mut found));
+    found
+}
+
+/// Card 5: a step lights the next line; one line iterates, and the numbers are the simulation's.
+#[test]
+fn steps_walk_through_the_pseudocode() {
+    let mut harness = at_card(5);
+    let lit = |harness: &Harness<'_, Lab>| text(harness, "line ");
+    assert!(lit(&harness).starts_with("line 1: Ke = stiffness of each triangle at rest; 10 matrices"));
+    for (line, iterations) in
+        [(2, 0), (5, 0), (6, 0), (7, 0), (8, 1), (9, 1), (10, 1), (5, 1), (6, 1), (7, 1), (8, 2), (9, 2), (10, 2)]
+    {
+        if line % 2 == 0 {
+            harness.get_by_label("Next line").click();
+        } else {
+            harness.key_press(Key::N);
+        }
+        harness.run();
+        let simulation = harness.state().simulation();
+        assert_eq!(simulation.iterations(), iterations, "line {line}");
+        let words = lit(&harness);
+        assert!(words.starts_with(&format!("line {line}: ")), "{words}");
+        assert_eq!(texts(&harness).iter().filter(|text| text.starts_with("line ")).count(), 1);
+        let r = minus(&format!("{:.1e}", simulation.residual()));
+        let numbers = match line {
+            5 => {
+                let (rest, now) = corners(harness.state(), 6);
+                let f = Affine2::from_triangle(rest, now).unwrap().linear;
+                let [a, b, c, d] = [f.m11, f.m12, f.m21, f.m22].map(|v| minus(&format!("{v:.2}")));
+                format!("triangle 7: [{a} {b}; {c} {d}]")
+            }
+            6 => {
+                let angles = simulation.state().rotations().iter().map(|r| r.angle());
+                let largest = angles.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap();
+                format!("largest rotation: {}", minus(&format!("{:.1}\u{b0}", largest.to_degrees())))
+            }
+            7 => "A: 20 \u{d7} 20 (clamped nodes removed)".to_owned(),
+            8 => {
+                let largest = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+                format!("largest displacement: {}", engineering(three_digits(largest), "m"))
+            }
+            9 => format!("r = {r}"),
+            10 => format!("no: r = {r}, repeat"),
+            _ => "the beam at rest".to_owned(),
+        };
+        assert!(words.ends_with(&numbers), "{words}: {numbers}");
+    }
+    // To the end, and again from rest.
+    harness.get_by_label("Go on").click();
+    harness.run();
+    let iterations = harness.state().simulation().iterations();
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    assert!(lit(&harness).ends_with(&format!("yes, after {iterations} iterations")), "{}", lit(&harness));
+    harness.key_press(Key::N);
+    harness.run();
+    assert!(lit(&harness).starts_with("line 2: x = X"), "{}", lit(&harness));
+    assert_eq!(harness.state().simulation().iterations(), 0);
+}
+
+/// One force slider on a card; the panel comes with its key, and how it was before comes back at the end.
+#[test]
+fn the_panel_is_folded_away_on_the_cards() {
+    let has_panel = |harness: &Harness<'_, Lab>| harness.query_by_role_and_label(Role::Slider, "Force").is_some();
+    let mut harness = harness([1280.0, 800.0]);
+    for before in [true, false] {
+        assert_eq!(has_panel(&harness), before);
+        harness.get_by_label("Learn").click();
+        harness.run();
+        assert!(!has_panel(&harness));
+        assert!(harness.query_by_role_and_label(Role::Slider, "Tip force").is_some());
+        for shown in [true, false, true] {
+            harness.key_press(Key::P);
+            harness.run();
+            assert_eq!(has_panel(&harness), shown);
+        }
+        harness.get_by_label("Leave").click();
+        harness.run();
+        assert_eq!(has_panel(&harness), before);
+        harness.key_press(Key::P);
+        harness.run();
+    }
+}
+
+/// Card 1: the view has room for all that the slider reaches, and stands still while the force is dragged.
+#[test]
+fn growth_is_seen_as_growth() {
+    for size in [[1280.0, 800.0], [900.0, 600.0], [640.0, 480.0]] {
+        let mut harness = harness(size);
+        harness.state_mut().show_card(1);
+        harness.run();
+        wait(&mut harness, |lab| !lab.is_searching());
+        let camera = harness.state().camera();
+        let slider = harness.get_by_role_and_label(Role::Slider, "Tip force").rect();
+        let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+        harness.drag_at(at(0.74));
+        for share in [0.8, 1.2, 0.1, 0.6, 1.2] {
+            harness.hover_at(at(share));
+            harness.run();
+            assert_eq!(harness.state().camera(), camera, "{size:?}: {share}");
+            let lab = harness.state();
+            let view = lab.view_rect();
+            for element in 0..10 {
+                for corner in corners(lab, element).1 {
+                    assert!(view.shrink(10.0).contains(in_window(lab, corner)), "{size:?}, {share}: {corner:?}");
+                }
+            }
+            let (_, tip) = lab.arrow_tips()[0];
+            assert!(view.contains(tip + vec2(0.0, 20.0)), "{size:?}, {share}: {tip:?} in {view:?}");
+        }
+        harness.drop_at(at(1.2));
+        harness.run();
+        wait(&mut harness, |lab| !lab.is_searching());
+        assert_eq!(harness.state().camera(), camera);
+        assert!(painted(&harness).iter().any(|text| text == "area, linear"), "the bars say what they are of");
+    }
+}
+
+/// The first card names its sources.
+#[test]
+fn the_article_and_its_source_are_named() {
+    let harness = at_card(1);
+    let sources = text(&harness, "The article: ");
+    for part in
+        ["\u{5b9e}\u{65f6}\u{7269}\u{7406}\u{6a21}\u{62df}", "M\u{fc}ller", "Interactive Virtual Materials", "2004"]
+    {
+        assert!(sources.contains(part), "{sources}");
+    }
+    assert!(text(&harness, "K: ").contains("stiffness matrix (N/m). u: displacements of the nodes (m)"));
+}
+
+/// A formula that is wider than its column is set in smaller letters.
+#[test]
+fn no_formula_is_wider_than_its_column() {
+    let mut harness = harness([640.0, 480.0]);
+    for (card, formula) in [
+        (1, "det ( I + \u{3b8} J ) = 1 + \u{3b8}2"),
+        (7, "\u{3c1} = | \u{3bb} |max ( A\u{2212}1 G )"),
+        (9, "error \u{2264} mesh + iteration + theory"),
+    ] {
+        harness.state_mut().show_card(card);
+        harness.run();
+        let rect = harness.get_by_label(formula).rect();
+        assert!(rect.right() < 290.0 && rect.width() > 100.0, "{formula}: {rect:?}");
+    }
 }

@@ -70,6 +70,8 @@ const HEADLINE_HEIGHT: f32 = 42.0;
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 /// The same over a card, which leaves less of the view.
 const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
+/// The same beside a colour bar at the top.
+const BESIDE_MARGINS: Margins = Margins { sides: 284.0, top: 40.0, bottom: 30.0 };
 /// The same over anything else that leaves less of the view: the status stands in it.
 const LOW_MARGINS: Margins = Margins { bottom: 84.0, ..CARD_MARGINS };
 
@@ -543,6 +545,9 @@ impl Lab {
                 note_residual(&self.simulation, &mut self.residuals);
             }
         }
+        if let Some(learn) = &mut self.learn {
+            learn.line = learn::UNTIL;
+        }
     }
 
     /// Whether the next frame changes the body.
@@ -778,8 +783,9 @@ impl Lab {
         let mut gallery = std::mem::take(&mut self.gallery);
         top.show(ui, |ui| toolbar::show(ui, &self.input(), &mut gallery, &self.view, actions));
         self.gallery = gallery;
-        // Compared panes have each their own.
-        if self.view.mode != Mode::Compare {
+        // Compared panes have each their own; over a card a low window has no room for it.
+        let is_low_card = self.learn.is_some() && learn::is_low(ui.ctx());
+        if self.view.mode != Mode::Compare && !is_low_card {
             let bottom = Panel::bottom("headline").exact_size(HEADLINE_HEIGHT).resizable(false).frame(bar(ui));
             bottom.show(ui, |ui| headline::show(ui, &self.input(), &errors, &self.view, actions));
         }
@@ -972,8 +978,10 @@ impl Lab {
                 lab.settings = std::mem::take(&mut self.settings);
                 lab.gallery = std::mem::take(&mut self.gallery);
                 lab.eases = self.eases;
-                let (bars, panel, narrow) = (self.view.bars, self.view.panel, self.view.narrow);
-                lab.view = ViewOptions { mode: Mode::Learn, bars, panel, narrow, raw: true, ..ViewOptions::default() };
+                // A card has the controls that it needs: the panel is folded away until it is asked for.
+                let (bars, narrow) = (self.view.bars, self.view.narrow);
+                let (mode, panel, raw) = (Mode::Learn, false, true);
+                lab.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };
                 (lab.view_rect, lab.card) = (self.view_rect, self.card);
                 self.intro = None;
                 self.view.mode = Mode::Explore;
@@ -1008,9 +1016,19 @@ impl Lab {
         let Some(setup) = self.learn.as_ref().map(|learn| learn.card().setup) else { return };
         let Some((source, mut scene)) = learn::article() else { return };
         (setup.edit)(&mut scene);
+        let reach = setup.reach.and_then(|reach| {
+            let mut scene = scene.clone();
+            reach(&mut scene);
+            let mut simulation = Simulation::new(&scene).ok()?;
+            simulation.solve();
+            Some(simulation)
+        });
         // The article's beam has every card's scene.
         if self.set_scene(scene).is_err() {
             return;
+        }
+        if let Some(learn) = &mut self.learn {
+            learn.reach = reach;
         }
         self.document = Document::new(source, self.scene.clone());
         self.edits = Edits::default();
@@ -1024,10 +1042,13 @@ impl Lab {
         if setup.start != Start::Now {
             self.reset();
             // The view follows what has converged; until then there is room for the beam to bend, and for its arrow.
-            const ARROW: f64 = 120.0;
-            self.margins = Margins { bottom: CARD_MARGINS.bottom + ARROW, ..CARD_MARGINS };
             let (low, high) = self.simulation.system().mesh().bounds();
-            self.eye.follow([low - Vector2::new(0.3, 1.15) * (high.x - low.x), high]);
+            let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
+            self.eye.follow([low, high]);
+            let least =
+                self.least_margins([low, high], [self.view_rect.width(), self.view_rect.height()].map(f64::from));
+            let arrow = f64::from(0.25 * self.view_rect.height()).clamp(30.0, 120.0);
+            self.margins = Margins { bottom: least.bottom + arrow, ..least };
         }
     }
 
@@ -1139,15 +1160,24 @@ impl Lab {
     /// How it stands, over the body; why; and what would help.
     fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
         const WIDEST: f32 = 460.0;
+        /// The same beside a small body.
+        const WIDEST_BESIDE: f32 = 250.0;
         let input = self.input();
         let palette = Palette::new(ui.visuals());
         let narrow = rect.width() < 640.0;
         // Where two lines would lie over the body there is one.
         let is_low = rect.height() < 220.0;
+        let (words, bad) = verdict::summary(&input);
+        // A card that leaves the body little room says itself that all is well.
+        let is_tight = self.learn.is_some() && rect.height() < 300.0;
+        if is_tight && !(bad || self.view.why || verdict::is_stale(&input)) {
+            return;
+        }
         let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
         let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
         let id = egui::Id::unique("status");
-        let (pivot, at, width) = self.place_off_handles(rect, above, WIDEST.min(rect.width() - 28.0));
+        let widest = if is_tight { WIDEST_BESIDE } else { WIDEST };
+        let (pivot, at, width) = self.place_off_handles(rect, above, widest.min(rect.width() - 28.0));
         let area = egui::Area::new(id).order(egui::Order::Middle).fixed_pos(at).pivot(pivot).constrain_to(rect);
         area.show(ui.ctx(), |ui| {
             ui.set_max_width(width);
@@ -1172,7 +1202,6 @@ impl Lab {
                     });
                 });
             }
-            let (words, bad) = verdict::summary(&input);
             let tint = if bad { palette.error_chip } else { palette.panel };
             chip(tint).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
@@ -1355,9 +1384,12 @@ impl Lab {
                 }
             }
             include(&mut self.exact().iter().flatten().copied());
+            if let Some(reach) = self.reach() {
+                include(&mut positions(reach).into_iter());
+            }
             self.swept = Some([low, high]).filter(|_| self.moves());
             self.eye.follow([low, high]);
-            self.margins = self.with_room_for_arrows(Camera::fit(low, high, size, self.least_margins(size)), size);
+            self.margins = self.with_room_for_arrows(self.least_margins([low, high], size), [low, high], size);
         }
         let [low, high] = self.eye.whole();
         let fitted = self.fit(low, high, size);
@@ -1383,32 +1415,55 @@ impl Lab {
         Camera::fit(low, high, view, self.margins)
     }
 
-    /// What is kept free around the body, whatever its loads.
-    fn least_margins(&self, [_, height]: [f64; 2]) -> Margins {
-        match (self.learn.is_some(), overlay::has_legend_on_top(height as f32)) {
+    /// Returns the margins around a box, m, whatever the loads.
+    fn least_margins(&self, [low, high]: [Vector2<f64>; 2], view: [f64; 2]) -> Margins {
+        let has_legend_on_top = overlay::has_legend_on_top(view[1] as f32);
+        if self.learn.is_some() && has_legend_on_top {
+            // Under the colour bar or beside it, whichever shows more.
+            let scale = |margins: &Margins| Camera::fit(low, high, view, *margins).scale;
+            return if scale(&BESIDE_MARGINS) > scale(&CARD_MARGINS) { BESIDE_MARGINS } else { CARD_MARGINS };
+        }
+        match (self.learn.is_some(), has_legend_on_top) {
             (true, _) => CARD_MARGINS,
             (false, true) => LOW_MARGINS,
             (false, false) => FIT_MARGINS,
         }
     }
 
-    /// What is kept free around the body: also what the loads' arrows need beyond the view of this camera.
-    fn with_room_for_arrows(&self, camera: Camera, view: [f64; 2]) -> Margins {
+    /// The largest body that the slider of a card reaches, while the card has its own mesh.
+    fn reach(&self) -> Option<&Simulation> {
+        let reach = self.learn.as_ref()?.reach.as_ref()?;
+        has_mesh_of(reach.scene(), self.simulation.scene()).then_some(reach)
+    }
+
+    /// Returns the margins around a box, m: the least ones, and the room that arrows need beyond them.
+    fn with_room_for_arrows(&self, least: Margins, [low, high]: [Vector2<f64>; 2], view: [f64; 2]) -> Margins {
         /// Beyond a tip, points: its force stands there.
         const BEYOND: f32 = 36.0;
         let size = egui::vec2(view[0] as f32, view[1] as f32);
+        let camera = Camera::fit(low, high, view, least);
         let projection = Projection { camera, rect: Rect::from_min_size(egui::Pos2::ZERO, size) };
-        let least = self.least_margins(view);
         if self.is_apart() {
             return least;
         }
-        self.forces().arrows(&projection).iter().fold(least, |margins, arrow| {
+        let mut arrows = self.forces().arrows(&projection);
+        if let Some(reach) = self.reach() {
+            let forces =
+                Forces { scene: reach.scene(), system: reach.system(), positions: &positions(reach), ..self.forces() };
+            arrows.extend(forces.arrows(&projection));
+        }
+        let on_top = overlay::has_legend_on_top(size.y);
+        arrows.iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
+            // Beside the colour bar, not on it.
+            let bar = if tip.x > size.x - overlay::LEGEND_WIDTH { overlay::LEGEND_HEIGHT } else { 0.0 };
+            let above = if on_top && arrow.way.y < 0.0 { bar } else { 0.0 };
+            let below = if on_top { 0.0 } else { bar };
             let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
             Margins {
                 sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x))),
-                top: margins.top.max(least.top + beyond(-tip.y)),
-                bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y)),
+                top: margins.top.max(least.top + beyond(above - tip.y)),
+                bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y + below)),
             }
         })
     }
@@ -1478,10 +1533,18 @@ impl Lab {
             }
             Action::Step => {
                 self.running = false;
-                if !self.moves() && self.simulation.is_at_rest() {
+                let ended = !self.moves() && self.simulation.is_at_rest();
+                // On the card of the pseudocode a step goes to the next line, and one line iterates.
+                let line = self.learn.as_ref().and_then(|learn| learn.next_line(&self.simulation, ended));
+                if ended && line.is_none_or(|line| line == learn::AT_REST) {
                     self.reset();
                 }
-                self.iterate(1);
+                if line.is_none_or(|line| line == learn::SOLVE) {
+                    self.iterate(1);
+                }
+                if let (Some(learn), Some(line)) = (&mut self.learn, line) {
+                    learn.line = line;
+                }
             }
             Action::Reset => self.reset(),
             Action::Mark => {
@@ -1588,6 +1651,9 @@ impl Lab {
         self.playback.reset(&mut self.simulation);
         self.residuals.clear();
         self.swept = None;
+        if let Some(learn) = &mut self.learn {
+            learn.line = 0;
+        }
     }
 
     /// Changes the scene under the body; it goes on from where it is if it can. A large one is taken on beside the
@@ -1868,6 +1934,11 @@ impl Lab {
         said.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, message));
         ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));
     }
+}
+
+/// Where the nodes of a body are, m.
+fn positions(simulation: &Simulation) -> Vec<Vector2<f64>> {
+    simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u).collect()
 }
 
 /// Whether both have the same mesh.

@@ -48,7 +48,7 @@ pub(super) const MODES: &[ModeEntry] = &[
     ModeEntry {
         mode: Mode::Learn,
         name: "Learn",
-        about: "The article's method, walked through on eight cards; your own scene comes back at the end",
+        about: "The article's method, walked through on nine cards; your own scene comes back at the end",
         serves: |_| true,
         unless: "",
         show: Lab::learn,

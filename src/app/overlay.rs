@@ -111,9 +111,11 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         return;
     }
     let palette = Palette::new(visuals);
-    body(painter, rect, overlay, visuals);
-    legend(painter, rect, overlay, &palette, visuals);
-    key(painter, rect, overlay, &palette, visuals);
+    // Under the arrows: their tips can be seen and taken wherever they are dragged.
+    let names = key(painter, rect, overlay, &palette, visuals);
+    let legend = legend(painter, rect, names, overlay, &palette, visuals);
+    let below = legend.filter(|_| has_legend_on_top(rect.height())).map_or(0.0, |frame| frame.bottom() - rect.top());
+    body_below(painter, rect, overlay, visuals, below);
     scale_bar(painter, rect, &overlay.camera, &palette);
     if let Some((hand, force)) = overlay.hand {
         pull(painter, &Projection { camera: overlay.camera, rect }, overlay, hand, force, visuals);
@@ -126,6 +128,11 @@ pub(super) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
 
 /// Paints what belongs to the body: outlines, supports, loads.
 pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
+    body_below(painter, rect, overlay, visuals, 0.0);
+}
+
+/// The same under a colour bar that ends so far below the top, points: the arrow of a weight stands under that.
+fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, below: f32) {
     let palette = Palette::new(visuals);
     let Overlay { drawing, system, camera, .. } = *overlay;
     let projection = Projection { camera, rect };
@@ -183,6 +190,7 @@ pub(super) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
     if !overlay.apart {
         supports(painter, &projection, overlay, &palette);
         loads(painter, &projection, overlay, &palette, visuals);
+        weights(painter, rect, below, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
     }
 }
@@ -315,8 +323,6 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
 }
 
 fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    /// Length of the arrow of a weight, which tells its direction only, points.
-    const WEIGHT: f32 = 58.0;
     let Overlay { scene, system, positions, time, .. } = *overlay;
     let forces = Forces { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
     let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
@@ -329,14 +335,23 @@ fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
     if let Some((taken, drag)) = overlay.hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
         taken.paint(painter, drag, palette.load);
     }
-    for load in scene.loads.iter().filter(|load| arrow::is_seen(load, time)) {
+}
+
+/// The arrows of weights, in a corner under a colour bar that ends so far below the top, points.
+fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+    /// Length of the arrow, which tells its direction only, points.
+    const WEIGHT: f32 = 58.0;
+    for load in overlay.scene.loads.iter().filter(|load| arrow::is_seen(load, overlay.time)) {
         let Load::Gravity { acceleration: [x, y], .. } = load else { continue };
         let direction = vec2(*x as f32, -*y as f32).normalized();
         if direction == Vec2::ZERO || !direction.is_finite() {
             continue;
         }
-        let from = projection.rect.right_top() + vec2(-64.0, 30.0);
-        let tip = arrow::paint_arrow(painter, from, direction * WEIGHT, palette.load);
+        // One that points up begins where one that points down ends.
+        let top = if below > 0.0 { below + 8.0 } else { 30.0 };
+        let way = direction * WEIGHT;
+        let from = rect.right_top() + vec2(-64.0, top + (-way.y).max(0.0));
+        let tip = arrow::paint_arrow(painter, from, way, palette.load);
         let label = engineering(x.hypot(*y), "m/s²");
         boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
     }
@@ -394,18 +409,31 @@ pub(super) fn boxed_text(
 /// Room that the colour bar takes at the bottom or the top of the view, points.
 pub(super) const LEGEND_HEIGHT: f32 = 66.0;
 
+/// Width of the same on the right of the view, points.
+pub(super) const LEGEND_WIDTH: f32 = 290.0;
+
 /// Whether a view is so low, points, that the colour bar is at its top: at the bottom it would be in the arrows' way.
 pub(super) fn has_legend_on_top(height: f32) -> bool {
     height < 400.0
 }
 
-/// The colour bar with its title and round values, in a corner on the right.
-fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    const BAR: Vec2 = vec2(240.0, 10.0);
+/// Paints the colour bar with its title and round values in a corner on the right and returns where; `names` are the
+/// solutions' names.
+fn legend(
+    painter: &Painter,
+    rect: Rect,
+    names: Rect,
+    overlay: &Overlay<'_>,
+    palette: &Palette,
+    visuals: &Visuals,
+) -> Option<Rect> {
     const MOST_TICKS: u32 = 5;
     if rect.width() < 420.0 || rect.height() < 120.0 {
-        return;
+        return None;
     }
+    // A low view of little width has the body beside it.
+    let is_small = has_legend_on_top(rect.height()) && rect.width() < 700.0;
+    let size = vec2(if is_small { 170.0 } else { 240.0 }, 10.0);
     let field = overlay.options.field;
     let [low, high] = overlay.color_range;
     let font = FontId::proportional(SMALL);
@@ -415,17 +443,17 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
     let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
     let title = painter.layout_no_wrap(format!("{}{unit}{raw}{range}", tr(field.name())), font.clone(), palette.text);
     // Beside the solutions' names, or under them where there is no room.
-    const NAMES: f32 = 380.0;
-    let top = if rect.width() < NAMES + BAR.x + 40.0 { 34.0 } else { 12.0 };
+    let left = rect.right() - (size.x + 46.0);
+    let top = if names.right() > left { names.bottom() - rect.top() + 6.0 } else { 12.0 };
     let corner = if has_legend_on_top(rect.height()) {
-        rect.right_top() + vec2(-(BAR.x + 32.0), top)
+        rect.right_top() + vec2(-(size.x + 32.0), top)
     } else {
-        rect.right_bottom() - vec2(BAR.x + 32.0, LEGEND_HEIGHT - 6.0)
+        rect.right_bottom() - vec2(size.x + 32.0, LEGEND_HEIGHT - 6.0)
     };
-    let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(BAR.x + 34.0, 56.0));
+    let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(size.x + 34.0, 56.0));
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     painter.galley(corner, title, palette.text);
-    let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), BAR);
+    let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), size);
     color_bar(painter, bar, palette.map(field));
     for value in ticks(low, high, MOST_TICKS) {
         let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
@@ -433,6 +461,7 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
         let words = engineering(value / 10f64.powi(power), "");
         painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, words, font.clone(), palette.text);
     }
+    Some(frame)
 }
 
 /// The colours of a map, from the lowest to the highest.
@@ -448,8 +477,8 @@ pub(super) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
     painter.add(mesh);
 }
 
-/// Which line is what, and how far off each is.
-fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+/// Paints which line is what, and how far off each is; returns where.
+fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Rect {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
     let with_error = |word: &str, error: Option<f64>| match error {
@@ -494,12 +523,14 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         .collect();
     let corner = rect.left_top() + vec2(16.0, 12.0);
     let frame = Rect::from_min_size(corner, vec2(widest, at.y + ROW));
-    painter.rect_filled(frame.expand2(vec2(8.0, 4.0)), 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    let frame = frame.expand2(vec2(8.0, 4.0));
+    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     for (color, mark, galley, place) in placed {
         let left = corner + place + vec2(0.0, 0.5 * ROW);
         mark.paint(painter, left, color);
         painter.galley(left + vec2(Mark::WIDTH + 6.0, -0.5 * galley.size().y), galley, palette.text);
     }
+    frame
 }
 
 /// A bar of a round length.

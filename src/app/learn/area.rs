@@ -6,10 +6,13 @@ use nalgebra::Vector2;
 use super::{Learn, Shown, triangle};
 use crate::app::action::Action;
 use crate::app::field::{NumberField, SliderScale};
-use crate::app::language::{fill, percent, tr};
+use crate::app::language::{fill, percent, spaced, tr};
 use crate::app::palette::{HEADLINE, Palette, SMALL};
 use crate::scene::limits::Limit;
 use crate::scene::{Load, MethodKind};
+
+/// Largest force of the slider, N.
+pub(super) const LARGEST_FORCE: f64 = 4e4;
 
 /// The force on the tip, and the area of the body beside that of the exact solution.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
@@ -29,7 +32,17 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)
     });
     row(ui, &palette, "exact", exact, palette.exact);
+    ui.add_space(6.0);
+    let sources = RichText::new(tr(SOURCES)).size(SMALL).color(palette.secondary);
+    ui.add(egui::Label::new(spaced(sources, SMALL)).wrap());
 }
+
+/// The article, and the paper that it explains.
+const SOURCES: &str = "The article: \u{201c}\u{5b9e}\u{65f6}\u{7269}\u{7406}\u{6a21}\u{62df}\u{4e4b} Warped Stiffness \
+                       \u{65b9}\u{6cd5}\u{201d} (the warped stiffness method in real-time physical simulation), study \
+                       notes in Chinese in the style of Zhihu, without the author\u{2019}s name. The method: Matthias \
+                       M\u{fc}ller and Markus Gross, \u{201c}Interactive Virtual Materials\u{201d}, Graphics Interface \
+                       2004.";
 
 /// The size of the first force, which keeps its direction.
 fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
@@ -46,7 +59,7 @@ fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Ac
         label: "Tip force",
         tooltip: "The size of the force on the tip",
         limit: Limit { unit: "N", min: 1.0, max: 1e6 },
-        slider: 1e3..=4e4,
+        slider: 1e3..=LARGEST_FORCE,
         scale: SliderScale::Linear,
         whole: false,
     };
@@ -77,10 +90,10 @@ pub(super) fn growth_words(growth: f64) -> String {
 
 fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: egui::Color32) {
     /// Percent, at the end of the bar.
-    const FULL: f64 = 100.0;
-    const NAME: f32 = 56.0;
+    const FULL: f64 = 110.0;
+    const NAME: f32 = 84.0;
     const NUMBER: f32 = 78.0;
-    let name = tr(name);
+    let name = fill!("area, %{name}", name = tr(name));
     let words = growth.map_or_else(|| "\u{2013}".to_owned(), growth_words);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     let painter = ui.painter();
@@ -88,7 +101,7 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
         let galley = egui::WidgetText::from(text).into_galley(ui, None, f32::INFINITY, egui::TextStyle::Body);
         painter.galley(egui::pos2(x, rect.center().y - 0.5 * galley.size().y), galley, palette.text);
     };
-    put(rect.left(), RichText::new(name).size(SMALL).color(palette.secondary));
+    put(rect.left(), RichText::new(&name).size(SMALL).color(palette.secondary));
     put(rect.left() + NAME, RichText::new(&words).size(HEADLINE).color(color));
     let left = rect.left() + NAME + NUMBER;
     let bar =
@@ -98,8 +111,6 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
         let part = (growth.unwrap_or(0.0).abs() / FULL).min(1.0) as f32;
         painter.rect_filled(bar.with_max_x(bar.left() + part * bar.width()), 2.0, color);
     }
-    response.widget_info(|| {
-        WidgetInfo::labeled(Role::Label, true, fill!("area, %{name}: %{growth}", name = name, growth = words))
-    });
-    response.on_hover_text(tr("Area over that at rest"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}: {words}")));
+    response.on_hover_text(tr("Growth of the area of the beam since rest"));
 }

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use super::frames::{angle_words, paint_picked};
 use super::triangle::{Triangle, frames};
-use super::{Learn, Shown, View, not_triangles};
+use super::{Learn, NOT_TRIANGLES, Shown, View, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
 use crate::app::palette::{Palette, SMALL};
@@ -59,19 +59,19 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     ui.horizontal(|ui| {
         ui.label(tr("As it is"));
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).clamp(60.0, 260.0);
-        let name = "Turned back";
+        let name = "Rotated back";
         let slider = ui.add(Slider::new(&mut learn.turned, 0.0..=1.0).show_value(false));
         let label = ui.label(tr(name));
         slider
             .labelled_by(label.id)
-            .on_hover_text(tr("From the bent beam to its triangles, each turned back by its own R"));
+            .on_hover_text(tr("From the bent beam to its triangles, each rotated back by its own R"));
     });
     ui.add_space(6.0);
     let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
-        return not_triangles(ui, learn, actions);
+        return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let angle = angle_words(triangle.rotation);
-    ui.label(fill!("Triangle %{n}: turned by %{angle},", n = learn.picked + 1, angle = angle));
+    ui.label(fill!("Triangle %{n}: rotated by %{angle},", n = learn.picked + 1, angle = angle));
     let s = triangle.stretch;
     ui.label(fill!(
         "strain \u{3b5}: along %{along}, across %{across}, shear %{shear}",
@@ -79,7 +79,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         across = signed_percent(s.m22 - 1.0),
         shear = signed_percent(s.m12),
     ));
-    ui.label(small(tr("Line: the shape at rest. Colour: the largest strain, of which K makes the forces.")));
+    ui.label(small(tr("Line: the shape at rest. Colour: the largest strain; K turns strain into force.")));
 }
 
 /// A strain, percent.

@@ -1,14 +1,20 @@
 //! Formulas set over egui's text: letters slanted, `^{…}` raised, `_{…}` lowered, `` `…` `` upright words.
 
+use std::sync::Arc;
+
 use egui::text::LayoutJob;
-use egui::{Align, Color32, FontId, TextFormat};
+use egui::{Align, Color32, FontId, Galley, Painter, TextFormat};
 
 use crate::app::language::tr;
 
 /// Size of a formula, points.
 pub(super) const SIZE: f32 = 19.0;
-/// Size of what is raised or lowered.
-const SCRIPT: f32 = 12.5;
+/// The same where there is little room.
+pub(super) const LOW_SIZE: f32 = 16.0;
+/// Size of what is raised or lowered, over that of the line.
+const SCRIPT: f32 = 0.66;
+/// Largest distance by which a slanted letter leans over its right edge, over its size.
+const LEAN: f32 = 0.13;
 
 /// Where letters stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,22 +26,50 @@ enum Level {
 
 /// Sets a formula.
 pub(super) fn set(markup: &str, color: Color32) -> LayoutJob {
+    sized(markup, SIZE, color)
+}
+
+/// Sets a formula whose letters have this size, points.
+pub(super) fn sized(markup: &str, size: f32, color: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
+    let mut leans = false;
     for (text, level, slanted) in pieces(markup) {
-        let (size, valign) = match level {
-            Level::Line => (SIZE, Align::Center),
-            Level::Raised => (SCRIPT, Align::TOP),
-            Level::Lowered => (SCRIPT, Align::BOTTOM),
+        let (script, valign) = match level {
+            Level::Line => (size, Align::Center),
+            Level::Raised => (SCRIPT * size, Align::TOP),
+            Level::Lowered => (SCRIPT * size, Align::BOTTOM),
         };
-        let font_id = FontId::proportional(size);
-        job.append(&text, 0.0, TextFormat { font_id, color, italics: slanted, valign, ..Default::default() });
+        // egui slants letters without making them wider: what follows would touch them.
+        let lead = if leans && level != Level::Lowered { LEAN * size } else { 0.0 };
+        let font_id = FontId::proportional(script);
+        job.append(&text, lead, TextFormat { font_id, color, italics: slanted, valign, ..Default::default() });
+        leans = slanted && level == Level::Line;
     }
     job
+}
+
+/// Sets a formula in letters of this size, or smaller ones where it is wider than `width`, points.
+pub(super) fn fitted(painter: &Painter, markup: &str, size: f32, color: Color32, width: f32) -> Arc<Galley> {
+    const SMALLEST: f32 = 11.0;
+    let galley = painter.layout_job(sized(markup, size, color));
+    if galley.size().x <= width {
+        return galley;
+    }
+    let mut job = sized(markup, (size * width / galley.size().x).max(SMALLEST), color);
+    job.wrap.max_width = width + 1.0;
+    painter.layout_job(job)
 }
 
 /// The formula as a line of plain text, for who cannot see it.
 pub(super) fn plain(markup: &str) -> String {
     pieces(markup).into_iter().map(|(text, _, _)| text).collect()
+}
+
+/// The letters of a formula that stand for something, without indices.
+#[cfg(test)]
+pub(super) fn variables(markup: &str) -> Vec<char> {
+    let on_the_line = pieces(markup).into_iter().filter(|(_, level, slanted)| *level == Level::Line && *slanted);
+    on_the_line.flat_map(|(text, _, _)| text.chars().collect::<Vec<_>>()).filter(|c| c.is_alphabetic()).collect()
 }
 
 /// Runs of letters that are set alike: text, level, whether slanted.
@@ -87,5 +121,13 @@ mod tests {
             ]
         );
         assert_eq!(plain("R K R^{T} x = f"), "R K RT x = f");
+    }
+
+    /// A raised letter keeps off the slanted one before it; a lowered one need not.
+    #[test]
+    fn slanted_letters_do_not_touch_what_is_raised_beside_them() {
+        let lead = |markup: &str, section: usize| set(markup, Color32::WHITE).sections[section].leading_space;
+        assert!(lead("\u{3b8}^{2}", 1) >= 2.0 && lead("R^{T}", 1) >= 2.0);
+        assert_eq!((lead("x_{k}", 1), lead("`const`^{2}", 1)), (0.0, 0.0));
     }
 }

@@ -4,7 +4,7 @@ use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, 
 use nalgebra::{Matrix2, Vector2};
 
 use super::triangle::{Triangle, frames};
-use super::{Learn, Shown, View, formula, not_triangles};
+use super::{Learn, NOT_TRIANGLES, Shown, View, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, tr};
 use crate::app::palette::{BODY, Palette, SMALL};
@@ -63,11 +63,11 @@ fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
 /// F = R S with the numbers of the clicked triangle.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
-        return not_triangles(ui, learn, actions);
+        return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let palette = Palette::new(ui.visuals());
     let angle = angle_words(triangle.rotation);
-    ui.label(fill!("Triangle %{n}, turned by %{angle}", n = learn.picked + 1, angle = angle));
+    ui.label(fill!("Triangle %{n}, rotated by %{angle}", n = learn.picked + 1, angle = angle));
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
@@ -80,7 +80,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     });
     ui.add_space(4.0);
     ui.label(
-        egui::RichText::new(tr("S is symmetric: it stretches along two axes at right angles, and turns nothing."))
+        egui::RichText::new(tr("S is symmetric: it stretches along two axes at right angles, and rotates nothing."))
             .size(SMALL)
             .color(palette.secondary),
     );

@@ -4,7 +4,7 @@ use egui::{Color32, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeK
 use nalgebra::DMatrix;
 
 use super::triangle::{Triangle, assembled, frames};
-use super::{Learn, Shown, formula, not_triangles};
+use super::{Learn, NOT_TRIANGLES, Shown, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::palette::{Palette, SMALL};
@@ -25,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     let triangle = Triangle::of(simulation, learn.picked);
     let stiffness = triangle.and_then(|triangle| Some((triangle, triangle.stiffness(simulation)?)));
     let Some((triangle, stiffness)) = stiffness else {
-        return not_triangles(ui, learn, actions);
+        return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let palette = Palette::new(ui.visuals());
     let rotation = frames(simulation).get(learn.picked).copied().unwrap_or(triangle.rotation);

@@ -11,7 +11,7 @@ use super::finder::Finder;
 use super::lab::Lab;
 use super::language::{fill, spaced, tr};
 use super::mode::Mode;
-use super::palette::{BODY, HEADLINE, Palette};
+use super::palette::{BODY, HEADLINE, Palette, SMALL};
 use super::panel::PanelInput;
 use crate::render::Camera;
 use crate::scene::{self, Analysis, MethodKind, Scene, SolverSettings, Source, registry};
@@ -20,6 +20,7 @@ use crate::study::Study;
 
 mod area;
 mod cards;
+mod code;
 mod exploded;
 mod formula;
 mod frames;
@@ -30,17 +31,23 @@ mod trade;
 mod triangle;
 
 pub(super) use cards::{CARDS, Card, Start};
+pub(super) use code::{AT_REST, SOLVE, UNTIL};
 
 use locking::ElementError;
 
 /// Height of the row of cards, points; at most a part of the window's.
 const HEIGHT: f32 = 258.0;
 const SHARE: f32 = 0.42;
+/// The same in a low window, which has no status bar here.
+const LOW_SHARE: f32 = 0.46;
 /// A row of less height, points, has no room for most cards.
 const LOW: f32 = 240.0;
 
 /// Below this width, points, what is beside the words is under them.
 const TWO_COLUMNS: f32 = 560.0;
+
+/// A window below this height, points, has no room for a status bar beside the cards.
+const LOW_WINDOW: f32 = 560.0;
 
 /// More elements than this are not painted over one by one.
 const MOST_ELEMENTS: usize = 3000;
@@ -93,6 +100,12 @@ pub(super) struct Learn {
     rho: Known<f64>,
     errors: Known<Vec<ElementError>>,
     messages: Messages,
+    /// Highlighted line of the pseudocode, from 0.
+    pub line: usize,
+    /// The same in the last frame.
+    shown_line: usize,
+    /// The largest body that the card's slider reaches.
+    pub reach: Option<Simulation>,
 }
 
 /// What a card shows numbers of.
@@ -166,6 +179,9 @@ impl Learn {
                 scene
             }),
             messages: Messages::new(),
+            line: 0,
+            shown_line: 0,
+            reach: None,
         }
     }
 
@@ -197,6 +213,11 @@ impl Learn {
     /// Whether the elements are drawn apart.
     pub(super) fn is_apart(&self) -> bool {
         self.card().apart && self.turned > 0.0
+    }
+
+    /// The line of the pseudocode that a step goes to; `None` on other cards.
+    pub(super) fn next_line(&self, simulation: &Simulation, ended: bool) -> Option<usize> {
+        (self.card().lines && code::describes(simulation)).then(|| code::after(self.line, ended))
     }
 
     /// ρ at the equilibrium, once it is known.
@@ -276,7 +297,8 @@ impl Learn {
         if keys {
             actions.extend(self.keys(ui.ctx()));
         }
-        let height = HEIGHT.min(SHARE * ui.ctx().content_rect().height());
+        let share = if is_low(ui.ctx()) { LOW_SHARE } else { SHARE };
+        let height = HEIGHT.min(share * ui.ctx().content_rect().height());
         let frame = egui::Frame::side_top_panel(ui.style()).fill(egui::Color32::TRANSPARENT);
         let frame = frame.inner_margin(egui::Margin { left: 14, right: 10, top: 6, bottom: 4 });
         Panel::bottom("learn").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
@@ -381,13 +403,20 @@ impl Learn {
     }
 }
 
+/// `true` in a window that has no room for a status bar beside the cards.
+pub(super) fn is_low(ctx: &Context) -> bool {
+    ctx.content_rect().height() < LOW_WINDOW
+}
+
 /// The places of the words, and of what is beside them.
 fn split(rect: Rect) -> (Rect, Rect) {
     /// Lines of more letters than fit in this are hard to read.
     const WIDEST: f32 = 470.0;
     const GUTTER: f32 = 24.0;
+    const WIDEST_DRAWING: f32 = 620.0;
     let words = (0.48 * (rect.width() - GUTTER)).min(WIDEST);
-    (rect.with_max_x(rect.left() + words), rect.with_min_x(rect.left() + words + GUTTER))
+    let drawing = rect.with_min_x(rect.left() + words + GUTTER);
+    (rect.with_max_x(rect.left() + words), drawing.with_max_x(drawing.right().min(drawing.left() + WIDEST_DRAWING)))
 }
 
 /// A dot a card; a click goes there.
@@ -412,22 +441,38 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
     ui.add_space(6.0);
 }
 
-/// Sentences, formula, and what to do.
+/// Sentences, formula, its symbols, and what to do.
 fn text(ui: &mut Ui, card: &Card) {
     let palette = Palette::new(ui.visuals());
+    let is_low = is_low(ui.ctx());
     let words = spaced(RichText::new(tr(card.words)), BODY).color(palette.text);
     ui.add(egui::Label::new(words).wrap());
     ui.add_space(4.0);
     let chip = egui::Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(egui::Margin::symmetric(12, 5));
     chip.show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing.x = 36.0;
-            for part in card.formula {
-                let response = ui.add(egui::Label::new(formula::set(part, palette.text)).extend());
+            let width = ui.max_rect().width();
+            let size = if is_low { formula::LOW_SIZE } else { formula::SIZE };
+            let set = |part: &&str| formula::fitted(ui.painter(), part, size, palette.text, width);
+            let galleys: Vec<_> = card.formula.iter().map(set).collect();
+            // Closer together where they would not be in one row.
+            let gaps = width - galleys.iter().map(|galley| galley.size().x).sum::<f32>();
+            let gap = gaps / card.formula.len().saturating_sub(1).max(1) as f32;
+            ui.spacing_mut().item_spacing.x = gap.floor().clamp(14.0, 36.0);
+            for (part, galley) in card.formula.iter().zip(galleys) {
+                let response = ui.add(egui::Label::new(galley).extend());
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, formula::plain(part)));
             }
         });
     });
+    let symbols = |ui: &mut Ui| {
+        ui.add_space(2.0);
+        let symbols = RichText::new(tr(card.symbols)).size(SMALL).color(palette.secondary);
+        ui.add(egui::Label::new(spaced(symbols, SMALL)).wrap());
+    };
+    if !is_low {
+        symbols(ui);
+    }
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 16.0), Sense::hover());
@@ -435,12 +480,18 @@ fn text(ui: &mut Ui, card: &Card) {
         ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
         ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
     });
+    // In a low row that scrolls, the task comes first.
+    if is_low {
+        symbols(ui);
+    }
 }
 
-/// Says that a card is of three-node triangles, with a button that sets it up again.
-fn not_triangles(ui: &mut Ui, learn: &Learn, actions: &mut Vec<Action>) {
+const NOT_TRIANGLES: &str = "These numbers are of three-node triangles.";
+
+/// Says why a card has nothing to show of the scene, with a button that sets the card up again.
+fn not_triangles(ui: &mut Ui, words: &str, learn: &Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        ui.label(tr("These numbers are of three-node triangles."));
+        ui.label(tr(words));
         if ui.button(tr("Back to the article\u{2019}s beam")).clicked() {
             actions.push(Action::Card(learn.card));
         }
@@ -475,7 +526,7 @@ mod tests {
     fn the_fonts_have_every_letter_of_the_cards() {
         let ctx = Context::default();
         ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
-        let mut all: String = CARDS.iter().flat_map(|c| [c.title, c.words, c.task]).collect();
+        let mut all: String = CARDS.iter().flat_map(|c| [c.title, c.words, c.symbols, c.task]).collect();
         all.extend(CARDS.iter().flat_map(|card| card.formula).map(|part| formula::plain(part)));
         all.push_str("\u{2039}\u{203a}\u{2212}\u{3a3}\u{3b5}\u{b7}\u{d7}\u{2013}\u{b0}\u{201c}\u{201d}");
         for size in [super::super::palette::BODY, formula::SIZE] {
@@ -492,14 +543,28 @@ mod tests {
 
     #[test]
     fn every_card_sets_up_a_scene_and_says_something() {
-        assert_eq!(CARDS.len(), 8);
+        assert_eq!(CARDS.len(), 9);
         for card in CARDS {
             let (_, mut scene) = article().unwrap();
             (card.setup.edit)(&mut scene);
             assert!(scene.validate().is_ok(), "{}", card.title);
             let sentences = card.words.split_inclusive(['.', '?']).filter(|s| s.trim().len() > 3).count();
             assert!((2..=4).contains(&sentences), "{}: {sentences} sentences", card.title);
-            assert!(!card.formula.is_empty() && !card.task.is_empty());
+            assert!(!card.formula.is_empty() && !card.symbols.is_empty() && !card.task.is_empty());
+        }
+    }
+    /// Every variable is defined on the card where it first appears, or before.
+    #[test]
+    fn every_letter_of_the_formulas_is_defined() {
+        let mut defined = String::new();
+        for card in CARDS {
+            defined.push_str(card.symbols);
+            defined.push_str(card.words);
+            for letter in card.formula.iter().flat_map(|markup| formula::variables(markup)) {
+                let is_defined = [":", ",", "x:"].iter().any(|end| defined.contains(&format!("{letter}{end}")))
+                    || ["angle", "strain", "by"].iter().any(|before| defined.contains(&format!("{before} {letter}")));
+                assert!(is_defined, "{}: {letter}", card.title);
+            }
         }
     }
 }

@@ -26,7 +26,8 @@ pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: 
             }
         }
         if let Some(ratio) = last_ratio(shown.input.residuals) {
-            ui.label(fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio)));
+            let words = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
+            ui.add(egui::Label::new(words).extend());
         }
     });
     plot(ui, shown, learn);
@@ -46,11 +47,12 @@ pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions
         }
         let simulation = shown.input.simulation;
         let iterations = count(simulation.iterations(), "iteration");
-        ui.label(match simulation.status() {
-            Status::Converged => fill!("there after %{iterations}", iterations = iterations),
+        let words = match simulation.status() {
+            Status::Converged => fill!("converged after %{iterations}", iterations = iterations),
             Status::Running => iterations,
             _ => fill!("given up after %{iterations}", iterations = iterations),
-        });
+        };
+        ui.add(egui::Label::new(words).extend());
     });
     plot(ui, shown, learn);
 }
