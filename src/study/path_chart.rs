@@ -188,6 +188,6 @@ fn bifurcations<'a>(path: &'a LoadPath, points: &'a [FigurePoint]) -> impl Itera
 }
 
 /// Name of the unstable part of a path: where a support moves, it is unstable only once that is let go of.
-fn unstable_words(path: &LoadPath) -> &'static str {
+pub(crate) fn unstable_words(path: &LoadPath) -> &'static str {
     if path.driven.is_some() { "unstable under force control" } else { "unstable" }
 }
