@@ -126,6 +126,15 @@ impl State {
         self.time
     }
 
+    /// Memory that its numbers take, bytes.
+    #[must_use]
+    pub(crate) fn bytes(&self) -> usize {
+        let vectors = 2 * self.displacement.len() + self.velocity.len() + self.net_force.len();
+        size_of::<Vector2<f64>>() * vectors
+            + size_of_val(self.rotations.as_slice())
+            + size_of_val(self.turns.as_slice())
+    }
+
     /// Whether every number is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {

@@ -100,6 +100,8 @@ const SAME: &[&str] = &[
     "Enter",
     "Esc",
     "Escape",
+    "Comma",
+    "Period",
     "BDF",
     "bdf",
     "det",

@@ -42,6 +42,12 @@ pub(super) enum Action {
     ToggleRun,
     /// One iteration.
     Step,
+    /// Show the moment of a motion next to a time, s, and pause there.
+    Scrub(f64),
+    /// Show the moment before, and pause there.
+    Back,
+    /// Show the moment after, or take a step from the last one.
+    Forward,
     /// Back to rest, or to where the motion starts.
     Reset,
     /// A reset goes to where the body is now; or to the start again.

@@ -9,6 +9,7 @@ use egui::{
 
 use super::action::{Action, Drawer, Toggle, ViewOptions};
 use super::language::{fill, percent, tr, translated};
+use super::pace::fraction;
 use super::palette::{HEADLINE, Palette, SMALL};
 use super::panel::PanelInput;
 use super::toolbar::{Icon, icon_button};
@@ -153,7 +154,7 @@ fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Hea
         },
         Headline {
             name: "PACE",
-            value: pace.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {factor:.2}")),
+            value: pace.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {}", fraction(factor))),
             word: if pace.lags() { "too slow" } else { "" },
             tip: tr("Simulated seconds a second; a machine that cannot keep up slows the motion down").to_owned(),
             color: if pace.lags() { palette.error } else { palette.text },

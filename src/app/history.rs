@@ -39,6 +39,11 @@ impl History {
         self.samples.clear();
     }
 
+    /// Forgets what came after a time, s.
+    pub(super) fn forget_after(&mut self, time: f64) {
+        self.samples.truncate(self.samples.partition_point(|sample| sample.time <= time));
+    }
+
     /// Adds where a motion is now; nothing of a search.
     pub(super) fn record(&mut self, simulation: &Simulation) {
         let Some(motion) = simulation.motion() else { return };
@@ -76,6 +81,20 @@ impl History {
         let end = self.samples.back().map_or(0.0, |s| s.time);
         let first = self.samples.partition_point(|s| s.time < end - duration);
         self.samples.range(first..)
+    }
+
+    /// Samples of the `duration` seconds before a time, s, the oldest first.
+    pub(super) fn before(&self, time: f64, duration: f64) -> impl Iterator<Item = &Sample> {
+        let [first, end] = [
+            self.samples.partition_point(|s| s.time < time - duration),
+            self.samples.partition_point(|s| s.time <= time),
+        ];
+        self.samples.range(first.min(end)..end)
+    }
+
+    /// The sample at a time, s: the last one not after it.
+    pub(super) fn at(&self, time: f64) -> Option<&Sample> {
+        self.samples.get(self.samples.partition_point(|s| s.time <= time).checked_sub(1)?)
     }
 
     /// The axis along which the probe has moved more: 0 or 1.

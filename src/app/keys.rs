@@ -37,6 +37,8 @@ impl Shortcut {
 pub(super) const SHORTCUTS: &[Shortcut] = &[
     key(Key::Space, "Run or pause", || Action::ToggleRun),
     key(Key::N, "One iteration, or one time step", || Action::Step),
+    key(Key::Comma, "In motion: pause, and back by a picture", || Action::Back),
+    key(Key::Period, "In motion: pause, and on by a picture or a time step", || Action::Forward),
     key(Key::R, "Reset to rest, or to the start of the motion", || Action::Reset),
     key(Key::H, "In motion: reset to here from now on; again: to the start", || Action::Mark),
     key(Key::F, "Fit the view", || Action::Fit),

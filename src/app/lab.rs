@@ -39,7 +39,7 @@ use super::settings::Settings;
 use super::shape::Shape;
 use super::stage::viewport;
 use super::verdict::{self, Errors};
-use super::{figure, headline, help, keys, motion_plot, plot, probe, toolbar};
+use super::{figure, headline, help, keys, motion_plot, plot, probe, time_line, toolbar};
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::mesh::MaterialPoint;
@@ -596,7 +596,7 @@ impl Lab {
         }
     }
 
-    /// Sets the speed of a motion, simulated seconds a second: 1/8 to 1.
+    /// Sets the speed of a motion, simulated seconds a second: 1, or slow motion.
     pub fn set_speed(&mut self, speed: f64) {
         self.playback.pace.set_speed(speed);
     }
@@ -638,8 +638,9 @@ impl Lab {
         self.shows_converged = self.hides_divergence();
         let own = self.converged.as_ref().filter(|_| self.shows_converged).unwrap_or(&self.simulation);
         let simulation = self.intro.as_ref().map_or(own, Intro::simulation);
-        // Colours that jump from frame to frame say nothing of a motion: its range only grows.
-        self.shape.update(simulation, &self.drawing, &self.view, self.swept.is_some());
+        // Colours that jump from frame to frame say nothing of a motion.
+        let played = self.swept.is_some().then(|| self.playback.played());
+        self.shape.update(simulation, &self.drawing, &self.view, played);
         self.shape.color(visuals, self.view.field);
     }
 
@@ -697,6 +698,7 @@ impl Lab {
                 _ => self.simulation.is_at_rest() && !self.playback.companions_move(),
             },
             playback: &self.playback,
+            frequency: self.frequency.latest().copied(),
             iterations: self.iterations,
             timings: &self.timings,
             residuals: &self.residuals,
@@ -849,9 +851,7 @@ impl Lab {
     /// Looks for what is known of the scene and of its result, once the body is at rest: a dragged slider need not wait.
     fn find_out(&mut self, ctx: &egui::Context) {
         if self.moves() {
-            if self.view.drawer == Some(Drawer::Motion) {
-                self.frequency.ask(&self.scene, ctx);
-            }
+            self.frequency.ask(&self.scene, ctx);
             return;
         }
         if self.iterates() || self.is_working() {
@@ -1126,6 +1126,11 @@ impl Lab {
             warning: (bad && !self.view.bars).then_some(&words),
         };
         overlay::paint(&painter, rect, &overlay, ui.visuals());
+        if self.view.bars && self.moves() && self.learn.is_none() {
+            let taken = (overlay::scale_bar_width(&self.camera()), overlay::has_legend_below(rect.size()));
+            let now = self.simulation.state().time();
+            time_line::show(ui, rect, taken, (&self.playback, now), actions);
+        }
         if let Some(learn) = &mut self.learn {
             let view = learn::View {
                 simulation: &self.simulation,
@@ -1545,6 +1550,24 @@ impl Lab {
                 if let (Some(learn), Some(line)) = (&mut self.learn, line) {
                     learn.line = line;
                 }
+            }
+            Action::Scrub(_) | Action::Back | Action::Forward if !self.moves() || self.is_beside() => {}
+            Action::Scrub(time) => {
+                self.running = false;
+                self.playback.show_moment(time, &mut self.simulation);
+                ctx.request_repaint();
+            }
+            Action::Back => {
+                self.running = false;
+                self.playback.show_neighbour(false, &mut self.simulation);
+                ctx.request_repaint();
+            }
+            Action::Forward => {
+                self.running = false;
+                if !self.playback.show_neighbour(true, &mut self.simulation) {
+                    self.iterate(1);
+                }
+                ctx.request_repaint();
             }
             Action::Reset => self.reset(),
             Action::Mark => {

@@ -1,7 +1,7 @@
 //! The plots of a motion: energy by kind, the tip over time and its phase, and the spectrum of its motion.
 
 use egui::{Color32, Ui};
-use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, VLine};
+use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Points, VLine};
 use realfft::RealFftPlanner;
 
 use super::history::{History, Sample};
@@ -69,19 +69,31 @@ pub(super) fn show(
     let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
     let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
     let axis = playback.history.axis();
+    // Of the moment that is shown, where it is not the latest.
+    let cursor = playback.shown_time();
     let name = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
     match chosen {
-        MotionPlot::Energy => energy(ui, &playback.history, &motions),
+        MotionPlot::Energy => energy(ui, &playback.history, &motions, cursor),
         MotionPlot::Tip => {
             let lines =
                 motions.iter().map(|(kind, history)| (*kind, thinned(history, |s| [s.time, s.displacement[axis]])));
-            curves(ui, "tip", (tr("time"), "s"), (&name, "m"), Some(&playback.history), lines, &palette);
+            let plot = over_time(plot(&palette, "tip", (tr("time"), "s"), (&name, "m")), &playback.history);
+            plot.show(ui, |plot| {
+                curves(plot, lines, &palette);
+                time_cursor(plot, cursor, &palette);
+            });
         }
         MotionPlot::Phase => {
             let lines = motions
                 .iter()
                 .map(|(kind, history)| (*kind, thinned(history, |s| [s.displacement[axis], s.velocity[axis]])));
-            curves(ui, "phase", (&name, "m"), (tr("velocity"), "m/s"), None, lines, &palette);
+            plot(&palette, "phase", (&name, "m"), (tr("velocity"), "m/s")).show(ui, |plot| {
+                curves(plot, lines, &palette);
+                if let Some(sample) = cursor.and_then(|time| playback.history.at(time)) {
+                    let at = Points::new("", [sample.displacement[axis], sample.velocity[axis]]);
+                    plot.points(at.color(palette.text).radius(4.0));
+                }
+            });
         }
         MotionPlot::Spectrum => spectra(ui, &motions, axis, frequency, &palette),
     }
@@ -105,29 +117,24 @@ fn over_time<'a>(plot: Plot<'a>, history: &History) -> Plot<'a> {
     plot.include_x(last + LEGEND_ROOM * (last - first).max(1e-9))
 }
 
-fn curves(
-    ui: &mut Ui,
-    id: &str,
-    x: (&str, &'static str),
-    y: (&str, &'static str),
-    in_time: Option<&History>,
-    lines: impl Iterator<Item = (IntegratorKind, Vec<PlotPoint>)>,
-    palette: &Palette,
-) {
-    let plot = plot(palette, id, x, y);
-    let plot = if let Some(history) = in_time { over_time(plot, history) } else { plot };
-    plot.show(ui, |plot| {
-        for (kind, points) in lines {
-            let line = Line::new(tr(kind.id()), PlotPoints::Owned(points));
-            plot.line(line.color(palette.integrator(kind)).width(1.5));
-        }
-    });
+/// Marks the moment that is shown.
+fn time_cursor(plot: &mut PlotUi<'_>, time: Option<f64>, palette: &Palette) {
+    if let Some(time) = time {
+        plot.vline(VLine::new("", time).color(palette.text).width(1.0));
+    }
+}
+
+fn curves(plot: &mut PlotUi<'_>, lines: impl Iterator<Item = (IntegratorKind, Vec<PlotPoint>)>, palette: &Palette) {
+    for (kind, points) in lines {
+        let line = Line::new(tr(kind.id()), PlotPoints::Owned(points));
+        plot.line(line.color(palette.integrator(kind)).width(1.5));
+    }
 }
 
 /// What it is called, its colour, and its value, J.
 type EnergyKind = (&'static str, Color32, fn(&Sample) -> f64);
 
-fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]) {
+fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)], cursor: Option<f64>) {
     let palette = Palette::new(ui.visuals());
     let sum = palette.text;
     let [kinetic, elastic, potential, dissipated, lost, put_in] = palette.energies();
@@ -158,6 +165,7 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
             };
             plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(2.5));
         }
+        time_cursor(plot, cursor, &palette);
     });
 }
 

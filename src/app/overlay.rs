@@ -161,7 +161,7 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
     if let Some(linear) = overlay.ghost {
         draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.method(MethodKind::Linear)));
     }
-    for companion in overlay.playback.companions() {
+    for companion in overlay.playback.companions().iter().filter(|companion| !companion.is_absent) {
         let u = companion.simulation.displacement();
         let color = palette.integrator(companion.integrator);
         draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
@@ -222,10 +222,12 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     const DURATION: f64 = 2.0;
     const MOST_PIECES: usize = 400;
     let playback = overlay.playback;
-    let companions = playback.companions().iter();
+    let companions = playback.companions().iter().filter(|companion| !companion.is_absent);
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
     for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
-        let points: Vec<Vector2<f64>> = history.last(DURATION).map(|s| s.position).collect();
+        let end = playback.shown_time().unwrap_or(f64::INFINITY);
+        let end = end.min(history.samples().back().map_or(0.0, |s| s.time));
+        let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(|s| s.position).collect();
         let stride = points.len().div_ceil(MOST_PIECES).max(1);
         let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
         for (i, ends) in kept.windows(2).enumerate() {
@@ -409,8 +411,16 @@ pub(super) fn boxed_text(
 /// Room that the colour bar takes at the bottom or the top of the view, points.
 pub(super) const LEGEND_HEIGHT: f32 = 66.0;
 
-/// Width of the same on the right of the view, points.
-pub(super) const LEGEND_WIDTH: f32 = 290.0;
+/// Room that it takes on the right of the view, points.
+pub(super) const LEGEND_WIDTH: f32 = 300.0;
+
+/// Least size of a view with a colour bar, points.
+const LEGEND_VIEW: Vec2 = vec2(420.0, 120.0);
+
+/// `true` if a view has a colour bar at its bottom.
+pub(super) fn has_legend_below(view: Vec2) -> bool {
+    view.x >= LEGEND_VIEW.x && view.y >= LEGEND_VIEW.y && !has_legend_on_top(view.y)
+}
 
 /// Whether a view is so low, points, that the colour bar is at its top: at the bottom it would be in the arrows' way.
 pub(super) fn has_legend_on_top(height: f32) -> bool {
@@ -428,7 +438,7 @@ fn legend(
     visuals: &Visuals,
 ) -> Option<Rect> {
     const MOST_TICKS: u32 = 5;
-    if rect.width() < 420.0 || rect.height() < 120.0 {
+    if rect.width() < LEGEND_VIEW.x || rect.height() < LEGEND_VIEW.y {
         return None;
     }
     // A low view of little width has the body beside it.
@@ -533,14 +543,27 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
     frame
 }
 
+/// Space between the left side of the view and the scale bar, points.
+const SCALE_BAR_LEFT: f32 = 18.0;
+
+/// Length of the scale bar, m and points.
+fn scale(camera: &Camera) -> (f64, f32) {
+    let length = round_down(110.0 / camera.scale);
+    (length, (length * camera.scale) as f32)
+}
+
+/// Space that the scale bar takes on the left of the view, points.
+pub(super) fn scale_bar_width(camera: &Camera) -> f32 {
+    SCALE_BAR_LEFT + scale(camera).1
+}
+
 /// A bar of a round length.
 pub(super) fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
     if rect.width() < 220.0 || rect.height() < 80.0 {
         return;
     }
-    let length = round_down(110.0 / camera.scale);
-    let bar = (length * camera.scale) as f32;
-    let left = rect.left_bottom() + vec2(18.0, -20.0);
+    let (length, bar) = scale(camera);
+    let left = rect.left_bottom() + vec2(SCALE_BAR_LEFT, -20.0);
     let stroke = Stroke::new(1.5, palette.text);
     painter.line_segment([left, left + vec2(bar, 0.0)], stroke);
     for x in [0.0, bar] {

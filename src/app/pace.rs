@@ -1,11 +1,29 @@
 //! Keeps the time of a motion in step with the clock on the wall: steps are due as time goes by, whatever the frame rate.
 
-/// Slow motion goes down to this fraction of real time.
-pub(super) const SLOWEST: f64 = 0.125;
+use crate::words::two_digits;
+
+/// Least speed, simulated seconds per second.
+const SLOWEST: f64 = 1e-6;
+/// Slowest of the speeds that every motion offers.
+const SLOW: f64 = 0.125;
+/// Periods per second, Hz, that can still be watched.
+const WATCHABLE: f64 = 2.0;
 /// A frame that was away for longer, s, makes up for no more than this.
 const LONGEST_FRAME: f64 = 0.1;
 /// Over so much time, s, the real-time factor is measured.
 const WINDOW: f64 = 0.5;
+
+/// The speed, simulated seconds per second, that shows one period of a frequency, Hz, per second: a whole number's inverse.
+/// `None` where slow motion at 1/8 is slow enough.
+pub(super) fn speed_of_period(frequency: f64) -> Option<f64> {
+    let is_fast = frequency.is_finite() && frequency * SLOW > WATCHABLE;
+    is_fast.then(|| 1.0 / two_digits(frequency).round())
+}
+
+/// A speed in words: as a number, or as a fraction with numerator 1 where it is small.
+pub(super) fn fraction(speed: f64) -> String {
+    if speed > 0.0 && speed < 0.1 { format!("1/{:.0}", 1.0 / speed) } else { format!("{speed:.2}") }
+}
 
 /// How much time a motion owes.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,5 +150,13 @@ mod tests {
         let due = pace.begin(0.0, 0.01);
         pace.end(due, due, 0.01);
         assert!(pace.begin(3600.0, 0.01) <= 10);
+    }
+    #[test]
+    fn what_vibrates_fast_is_shown_a_period_a_second() {
+        let offered: Vec<String> =
+            [0.5, 10.0, 16.0, 41.3, 4873.0].into_iter().filter_map(speed_of_period).map(fraction).collect();
+        assert_eq!(offered, ["1/41", "1/4900"]);
+        assert_eq!([1.0, 0.125, 0.0].map(fraction), ["1.00", "0.12", "0.00"]);
+        assert!([f64::NAN, f64::INFINITY, -1.0].into_iter().all(|frequency| speed_of_period(frequency).is_none()));
     }
 }

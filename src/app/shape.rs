@@ -38,6 +38,8 @@ pub(super) struct Shape {
     pub range: [f64; 2],
     /// What the range is of.
     field: Option<Field>,
+    /// Extremes of the field in the last seconds of a motion.
+    recent: Recent,
     /// What the values are of, beside the places of the nodes.
     of: Option<Values>,
     line_color: [u8; 4],
@@ -45,6 +47,47 @@ pub(super) struct Shape {
     surround: [u8; 3],
     absent_color: [u8; 3],
     map: ColorMap,
+}
+
+/// The extremes of a field that is shown in motion, over the last seconds of play: in two windows, one after the other.
+#[derive(Clone, Copy, Debug, Default)]
+struct Recent {
+    /// When the window began, s.
+    since: f64,
+    /// When it was last extended, s.
+    now: f64,
+    /// Extremes in it, and in the window before.
+    window: [f64; 2],
+    before: [f64; 2],
+}
+
+impl Recent {
+    /// Length of a window, s: longer than a period of what is watched.
+    const WINDOW: f64 = 2.5;
+    /// Time constant, s, with which a range becomes narrower.
+    const EASE: f64 = 0.7;
+
+    fn new(now: f64, range: [f64; 2]) -> Self {
+        Self { since: now, now, window: range, before: range }
+    }
+
+    /// Adds the field's extremes at `now`, s of play. Returns the range to show after the range `shown`: it widens at once,
+    /// and narrows slowly to the extremes of both windows.
+    fn extend(&mut self, now: f64, range: [f64; 2], shown: [f64; 2]) -> [f64; 2] {
+        if now - self.since >= Self::WINDOW {
+            *self = Self { since: now, now: self.now, window: range, before: self.window };
+        }
+        self.window = union(self.window, range);
+        let recent = union(self.window, self.before);
+        let left = (-(now - self.now).max(0.0) / Self::EASE).exp();
+        self.now = now;
+        let eased = [0, 1].map(|end| recent[end] + (shown[end] - recent[end]) * left);
+        union(eased, recent)
+    }
+}
+
+fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
 }
 
 /// What decides the values of a body's field, but for where its nodes are.
@@ -82,8 +125,15 @@ fn stamp() -> u64 {
 }
 
 impl Shape {
-    /// Takes the state of a body on. A range that `grows` keeps what it has spanned of the field.
-    pub(super) fn update(&mut self, simulation: &Simulation, drawing: &Drawing, view: &ViewOptions, grows: bool) {
+    /// Takes the state of a body on. In motion, after so many seconds of play, the range of colours is that of the last
+    /// seconds.
+    pub(super) fn update(
+        &mut self,
+        simulation: &Simulation,
+        drawing: &Drawing,
+        view: &ViewOptions,
+        played: Option<f64>,
+    ) {
         let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
         let of = Values::of(simulation, view);
         // The values of a large body are dear, and most pictures are of the state before.
@@ -109,10 +159,13 @@ impl Shape {
             let reach = high.abs().max(low.abs());
             (low, high) = (-reach, reach);
         }
-        let before = Some(self.range).filter(|_| grows && self.field == Some(view.field));
-        let grown = before.map_or([low, high], |range| [low.min(range[0]), high.max(range[1])]);
+        let now = played.unwrap_or_default();
+        let goes_on = played.is_some() && self.field == Some(view.field) && view.fixed_range.is_none();
+        if !goes_on {
+            (self.recent, self.range) = (Recent::new(now, [low, high]), [low, high]);
+        }
         self.field = Some(view.field);
-        self.range = view.fixed_range.unwrap_or(grown);
+        self.range = view.fixed_range.unwrap_or_else(|| self.recent.extend(now, [low, high], self.range));
     }
 
     /// Where the drawn points are, m.

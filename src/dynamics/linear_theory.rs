@@ -140,6 +140,11 @@ impl LinearTheory {
         Ok(accepted)
     }
 
+    /// Sets that the present state is linear theory's, or that it is not.
+    pub fn set_in_use(&mut self, in_use: bool) {
+        self.in_use = in_use;
+    }
+
     /// The present state is no longer linear theory's.
     pub fn leave(&mut self) {
         self.in_use = false;

@@ -26,7 +26,7 @@ mod results;
 mod search;
 mod status;
 
-pub use self::motion::Motion;
+pub use self::motion::{Moment, Motion};
 pub use field::Field;
 pub use point::{PointState, PointValues};
 pub use results::{
@@ -245,6 +245,34 @@ impl Simulation {
         self.body.state.accept(state)?;
         self.body.state.copy_from(state);
         self.begin();
+        Ok(())
+    }
+
+    /// The motion as it stands, to go back to; `None` of a search.
+    #[must_use]
+    pub fn moment(&self) -> Option<Moment> {
+        self.motion().map(|motion| Moment::of(motion, &self.body))
+    }
+
+    /// Stores the motion as it stands in an earlier moment of the same body, without allocating. Nothing of a search.
+    pub fn copy_moment(&self, moment: &mut Moment) {
+        if let Process::Motion(motion) = &self.process {
+            moment.copy_from(motion, &self.body);
+        }
+    }
+
+    /// Goes back to a moment of this motion. Steps from there are those after [`Self::restore`]; energies and counts are
+    /// those of the moment. A search restores the state alone.
+    ///
+    /// # Errors
+    /// [`StateError`] where it is another body's moment. Nothing is changed then.
+    pub fn return_to(&mut self, moment: &Moment) -> Result<(), StateError> {
+        self.body.state.accept(moment.state())?;
+        match &mut self.process {
+            Process::Search(_) => return self.restore(moment.state()),
+            Process::Motion(motion) => motion.return_to(&mut self.body, moment),
+        }
+        self.judge();
         Ok(())
     }
 

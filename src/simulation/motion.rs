@@ -50,6 +50,52 @@ pub struct Motion {
     last_step: Timings,
 }
 
+/// A motion at an instant: its state, energies and counts. [`super::Simulation::return_to`] goes back to it.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    state: State,
+    ledger: Ledger,
+    counts: Counts,
+    report: MotionReport,
+    is_linear: bool,
+    method: MethodKind,
+}
+
+impl Moment {
+    pub(super) fn of(motion: &Motion, Body { state, scene, .. }: &Body) -> Self {
+        let Motion { ledger, counts, report, linear, .. } = motion;
+        let (ledger, counts, report) = (*ledger, *counts, *report);
+        let (is_linear, method) = (linear.is_in_use(), scene.solver.method);
+        Self { state: state.clone(), ledger, counts, report, is_linear, method }
+    }
+
+    /// Becomes another moment of the same body, without allocating.
+    pub(super) fn copy_from(&mut self, motion: &Motion, Body { state, scene, .. }: &Body) {
+        self.state.copy_from(state);
+        self.method = scene.solver.method;
+        (self.ledger, self.counts, self.report) = (motion.ledger, motion.counts, motion.report);
+        self.is_linear = motion.linear.is_in_use();
+    }
+
+    /// State of the body.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Energy ledger up to this moment.
+    #[must_use]
+    pub fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// Memory that it takes, bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + self.state.bytes()
+    }
+}
+
 impl Motion {
     /// One that begins where the body is, with the velocity it has.
     pub(super) fn new(body: &mut Body) -> Result<Self, SolverError> {
@@ -78,22 +124,42 @@ impl Motion {
 
     /// Begins where the body is, with the velocity it has.
     pub(super) fn begin(&mut self, body: &mut Body) {
-        let Body { scene, problem, state } = body;
         self.linear.forget();
+        body.problem.system().follow(&mut body.state, self.kinematics(&body.scene));
+        self.begin_steps(body);
+        let Body { scene, problem, state } = body;
+        self.counts = Counts::default();
+        self.report = MotionReport::default();
+        self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
+        self.find_critical_step(scene, problem);
+    }
+
+    /// Goes back to a moment, with the energies and counts of then. The next step is as after [`Self::begin`].
+    pub(super) fn return_to(&mut self, body: &mut Body, moment: &Moment) {
+        let Moment { state, ledger, counts, report, is_linear, method } = moment;
+        body.state.copy_from(state);
+        self.linear.forget();
+        self.linear.set_in_use(*is_linear);
+        // Rotations of edges that are found again differ by rounding.
+        if *method != body.scene.solver.method {
+            body.problem.system().follow(&mut body.state, self.kinematics(&body.scene));
+        }
+        self.begin_steps(body);
+        (self.ledger, self.counts, self.report) = (*ledger, *counts, *report);
+    }
+
+    /// Forgets how the body came to where it is.
+    fn begin_steps(&mut self, body: &mut Body) {
+        let Body { problem, state, .. } = body;
         // What came before must not be seen in what comes.
         self.memory.corrector.forget();
         self.memory.residual = 0.0;
-        problem.system().follow(state, self.kinematics(scene));
         problem.set_time(state.time);
-        self.counts = Counts::default();
-        self.report = MotionReport::default();
         self.stopped = None;
         self.quiet_steps = 0;
         self.is_guarded = problem.hand().is_some();
         self.timings = Timings::default();
         self.last_step = Timings::default();
-        self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
-        self.find_critical_step(scene, problem);
     }
 
     /// Goes on after an edit; `before` is the scene that was. Position and velocity are kept.

@@ -457,7 +457,7 @@ impl Pane {
                 self.drawing = Drawing::new(system.mesh());
                 self.system = Some(system.clone());
             }
-            self.shape.update(simulation, &self.drawing, view, false);
+            self.shape.update(simulation, &self.drawing, view, None);
             self.range = Some(self.shape.range);
         }
         self.shape.color(visuals, view.field);

@@ -58,7 +58,7 @@ impl Thumbnail {
         let (drawing, view) = (Drawing::new(mesh), ViewOptions::default());
         let (mut rest, mut shape) = (Vec::new(), Shape::default());
         drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
-        shape.update(&simulation, &drawing, &view, false);
+        shape.update(&simulation, &drawing, &view, None);
         let moved = shape.points().to_vec();
         let Shape { values, range, .. } = shape;
         let Drawing { outline, triangles, .. } = drawing;

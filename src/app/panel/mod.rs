@@ -44,6 +44,8 @@ pub(super) struct PanelInput<'a> {
     /// Whether what is shown has come to its end.
     pub ended: bool,
     pub playback: &'a Playback,
+    /// The lowest natural frequency of a body in motion, Hz, once it is known.
+    pub frequency: Option<f64>,
     /// Iterations a displayed frame.
     pub iterations: u32,
     /// Time of the last iterations made for one displayed frame.

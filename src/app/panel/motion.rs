@@ -5,6 +5,7 @@ use egui::Ui;
 use super::{Action, PanelInput, PanelState, number_row, picker};
 use crate::app::field::{NumberField, SliderScale, show_message};
 use crate::app::language::{fill, joined, tr};
+use crate::app::pace::{fraction, speed_of_period};
 use crate::app::toolbar::option_button;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::{Scene, limits};
@@ -23,12 +24,19 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
     let settings = &input.scene.dynamics;
     ui.horizontal(|ui| {
         ui.label(tr("Speed"));
-        for (speed, word) in SPEEDS {
+        let mut button = |speed: f64, word: &str, tip: &str| {
             let chosen = (input.playback.pace.speed() - speed).abs() < 1e-9;
-            let tip = "Simulated seconds a second: 1 is real time, less is slow motion";
-            if ui.add(option_button(chosen, word)).on_hover_text(tr(tip)).clicked() {
+            if ui.add(option_button(chosen, word)).on_hover_text(tip).clicked() {
                 actions.push(Action::Speed(speed));
             }
+        };
+        for (speed, word) in SPEEDS {
+            button(speed, word, tr("Simulated seconds a second: 1 is real time, less is slow motion"));
+        }
+        if let Some((frequency, speed)) = input.frequency.and_then(|f| Some((f, speed_of_period(f)?))) {
+            let frequency = engineering(three_digits(frequency), "Hz");
+            let tip = fill!("One period a second: the lowest natural frequency is %{frequency}", frequency = frequency);
+            button(speed, &fraction(speed), &tip);
         }
     });
     ui.horizontal(|ui| {

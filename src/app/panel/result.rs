@@ -5,6 +5,7 @@ use egui::{Grid, RichText, Ui};
 use super::{PanelInput, supports};
 use crate::app::headline::{DRIFT_TIP, UNKNOWN, truth_words};
 use crate::app::language::{count, fill, joined, percent, sentence, tr, translated};
+use crate::app::pace::fraction;
 use crate::app::palette::Palette;
 use crate::app::verdict::{Errors, rho, stability};
 use crate::method::rho_words;
@@ -139,8 +140,8 @@ fn motion_rows(row: &mut Row<'_>, input: &PanelInput<'_>, motion: &Motion) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
     let pace = &input.playback.pace;
     let factor = match pace.factor() {
-        Some(factor) if pace.lags() => fill!("%{factor} of real time: too slow", factor = format!("{factor:.2}")),
-        Some(factor) => fill!("%{factor} of real time", factor = format!("{factor:.2}")),
+        Some(factor) if pace.lags() => fill!("%{factor} of real time: too slow", factor = fraction(factor)),
+        Some(factor) => fill!("%{factor} of real time", factor = fraction(factor)),
         None => UNKNOWN.to_owned(),
     };
     let tip = "Simulated seconds a second; a machine that cannot keep up slows the motion down";

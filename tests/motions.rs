@@ -1,0 +1,240 @@
+//! Motions in the window: their colours, their past and their speed.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod common;
+
+use common::scene;
+use egui::accesskit::Role;
+use egui::{Key, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use nalgebra::Vector2;
+use warpbeam::app::Lab;
+use warpbeam::scene::Source;
+use warpbeam::{IntegratorKind, Scene, Simulation, State};
+
+fn harness_of(name: &str, scene: Scene) -> Harness<'static, Lab> {
+    let simulation = Simulation::new(&scene).unwrap();
+    let lab = Lab::new(Source { name: name.into(), assignments: Vec::new() }, scene, simulation);
+    Harness::builder().with_size([1280.0, 800.0]).with_max_steps(4).with_step_dt(0.05).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            lab.ui(ui);
+        },
+        lab,
+    )
+}
+
+fn harness(id: &str) -> Harness<'static, Lab> {
+    harness_of(id, scene(id))
+}
+
+/// Where a material point of the body is in the window.
+fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
+    let mesh = lab.simulation().system().mesh();
+    let weights = mesh.weights(mesh.locate(at).unwrap()).unwrap();
+    let u = lab.simulation().displacement();
+    let place = weights.iter().map(|&(n, w)| (mesh.nodes()[n as usize] + u[n as usize]) * w).sum();
+    let [x, y] = lab.camera().to_view(place);
+    lab.view_rect().center() + vec2(x as f32, y as f32)
+}
+
+fn time(harness: &Harness<'_, Lab>) -> f64 {
+    harness.state().simulation().state().time()
+}
+
+fn key(harness: &mut Harness<'_, Lab>, key: Key) {
+    harness.key_press(key);
+    harness.step();
+    harness.step();
+}
+
+/// The place on the time line at a part of its length.
+fn on_line(harness: &Harness<'_, Lab>, part: f32) -> Pos2 {
+    // Beyond its ends it takes the pointer, too.
+    let line = harness.get_by_role_and_label(Role::Slider, "Time line").rect().shrink2(vec2(8.0, 0.0));
+    egui::pos2(egui::lerp(line.x_range(), part), line.center().y)
+}
+
+/// Presses on the time line at a part of its length.
+fn press_line(harness: &mut Harness<'_, Lab>, part: f32) {
+    let at = on_line(harness, part);
+    harness.hover_at(at);
+    harness.step();
+    harness.drag_at(at);
+    harness.step();
+    harness.step();
+}
+
+/// Frames of a motion, each with the state that it showed.
+fn states(harness: &mut Harness<'_, Lab>, frames: usize) -> Vec<State> {
+    let mut states = Vec::new();
+    for _ in 0..frames {
+        harness.step();
+        states.push(harness.state().simulation().state().clone());
+    }
+    states
+}
+
+/// After a hard pull the colours come back to what the motion shows: the range narrows smoothly, and not while it is
+/// paused.
+#[test]
+fn the_range_of_colours_relaxes_after_a_hard_pull() {
+    let mut harness = harness("jelly");
+    let width = |harness: &Harness<'_, Lab>| {
+        let [low, high] = harness.state().frame().range;
+        high - low
+    };
+    harness.run_steps(60);
+    let at_first = width(&harness);
+    let grip = on_body(harness.state(), Vector2::new(0.7, 0.2));
+    harness.drag_at(grip);
+    harness.step();
+    for part in [0.3, 0.6, 1.0] {
+        harness.hover_at(grip + vec2(150.0, -110.0) * part);
+        harness.run_steps(4);
+    }
+    let pulled = width(&harness);
+    assert!(pulled > 1.5 * at_first, "it was pulled hard: {pulled} of {at_first} Pa");
+    harness.drop_at(grip + vec2(150.0, -110.0));
+    harness.run_steps(10);
+    key(&mut harness, Key::Space);
+    let mut before = width(&harness);
+    harness.run_steps(100);
+    assert!((width(&harness) - before).abs() < 1e-12 * before, "it is paused");
+    key(&mut harness, Key::Space);
+    for frame in 0..300 {
+        harness.step();
+        let now = width(&harness);
+        assert!(now > 0.9 * before, "frame {frame}: the range jumps from {before} to {now} Pa");
+        before = now;
+    }
+    assert!(before < 0.7 * pulled && before < 1.3 * at_first, "{before} Pa of {pulled}; the motion shows {at_first}");
+}
+
+/// The time line goes back through what was shown, to the last bit, by dragging and by keys. Run goes on from there.
+#[test]
+fn the_last_seconds_can_be_shown_again() {
+    for (id, integrator) in [
+        ("jelly", IntegratorKind::TrBdf2),
+        ("swing", IntegratorKind::EnergyMomentum),
+        ("flick", IntegratorKind::ImplicitEuler),
+    ] {
+        let mut scene = scene(id);
+        scene.dynamics.integrator = integrator;
+        let mut harness = harness_of(id, scene.clone());
+        let shown = states(&mut harness, 60);
+        press_line(&mut harness, 0.4);
+        let there = harness.state().simulation().state().clone();
+        let end = shown.last().unwrap().time();
+        assert!((there.time() / end - 0.4).abs() < 0.05, "{id}: {} of {end} s", there.time());
+        assert!(shown.contains(&there), "{id}: another state than was shown at {} s", there.time());
+        harness.run_steps(5);
+        assert!(*harness.state().simulation().state() == there, "{id}: it is paused");
+        // Dragged on, and by keys.
+        harness.hover_at(on_line(&harness, 0.8));
+        harness.run_steps(2);
+        assert!(time(&harness) > there.time() && shown.contains(harness.state().simulation().state()));
+        harness.drop_at(on_line(&harness, 0.8));
+        harness.step();
+        let later = time(&harness);
+        key(&mut harness, Key::Comma);
+        assert!(time(&harness) < later && shown.contains(harness.state().simulation().state()), "{id}: back");
+        key(&mut harness, Key::Period);
+        assert_eq!(time(&harness), later, "{id}: on");
+        key(&mut harness, Key::Period);
+        assert!(time(&harness) > later && shown.contains(harness.state().simulation().state()), "{id}: on");
+        // The energies are those of then.
+        let ledger = *harness.state().simulation().motion().unwrap().ledger();
+        assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{id}: {ledger:?}");
+
+        let mut saved = Simulation::new(&scene).unwrap();
+        saved.restore(harness.state().simulation().state()).unwrap();
+        key(&mut harness, Key::Space);
+        harness.run_steps(10);
+        while saved.state().time() < time(&harness) - 1e-9 {
+            saved.step();
+        }
+        let (own, other) = (harness.state().simulation().state(), saved.state());
+        assert_eq!(own.time(), other.time());
+        assert!(
+            own.displacement() == other.displacement() && own.velocity() == other.velocity(),
+            "{id}: goes on otherwise"
+        );
+        let ledger = *harness.state().simulation().motion().unwrap().ledger();
+        assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{id}: {ledger:?}");
+        // What came after is gone: the line ends at the present.
+        key(&mut harness, Key::Space);
+        let present = time(&harness);
+        press_line(&mut harness, 1.0);
+        assert_eq!(time(&harness), present, "{id}: the line ends elsewhere");
+    }
+}
+
+/// At the last moment the key for the next one takes a time step; an edit and a reset forget what was.
+#[test]
+fn the_past_ends_at_the_present_and_begins_with_the_scene() {
+    let mut harness = harness("swing");
+    harness.run_steps(20);
+    key(&mut harness, Key::Space);
+    let paused = time(&harness);
+    key(&mut harness, Key::Period);
+    assert!((time(&harness) - paused - 1.0 / 60.0).abs() < 1e-9);
+    key(&mut harness, Key::Comma);
+    assert!((time(&harness) - paused).abs() < 1e-9);
+    let mut stiffer = harness.state().scene().clone();
+    stiffer.material.young *= 2.0;
+    harness.state_mut().set_scene(stiffer).unwrap();
+    harness.run_steps(2);
+    key(&mut harness, Key::Comma);
+    assert!((time(&harness) - paused).abs() < 1e-9, "what was before is another scene's");
+    key(&mut harness, Key::R);
+    assert!(harness.query_by_role_and_label(Role::Slider, "Time line").is_none());
+    key(&mut harness, Key::Comma);
+    assert_eq!(time(&harness), 0.0);
+}
+
+/// Other integrators go back along with the body, to the moment that is shown; one that was not there then begins where the
+/// body goes on.
+#[test]
+fn companions_go_back_along() {
+    let mut harness = harness("swing");
+    harness.state_mut().compare_with(IntegratorKind::ImplicitEuler);
+    harness.run_steps(20);
+    harness.state_mut().compare_with(IntegratorKind::EnergyMomentum);
+    harness.run_steps(20);
+    key(&mut harness, Key::E);
+    press_line(&mut harness, 0.25);
+    harness.drop_at(on_line(&harness, 0.25));
+    harness.run_steps(2);
+    key(&mut harness, Key::Space);
+    harness.run_steps(10);
+    assert!(harness.state().simulation().state().is_finite());
+    press_line(&mut harness, 0.0);
+    assert_eq!(time(&harness), 0.0);
+}
+
+/// A body that vibrates fast offers a period a second, and shows it: the pace is that.
+#[test]
+fn a_chime_is_slowed_to_a_period_a_second() {
+    let mut harness = harness("chime");
+    let mut frames = 0;
+    while harness.query_by_role_and_label(Role::Button, "1/40").is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        harness.step();
+        frames += 1;
+        assert!(frames < 2000, "no such speed is offered");
+    }
+    harness.get_by_role_and_label(Role::Button, "1/40").click();
+    harness.run_steps(3);
+    let before = time(&harness);
+    harness.run_steps(20);
+    // A machine that cannot keep up makes fewer steps.
+    let second = time(&harness) - before;
+    assert!((0.2..1.06).contains(&(second * 40.0)), "a second is {second} s");
+    assert!(harness.query_by_label_contains("× 1/4").is_some(), "the pace is said");
+    // What can be watched at 1/8 offers nothing slower.
+    let swing = harness_of("swing", scene("swing"));
+    let slowest = swing.query_all_by_role_and_label(Role::Button, "1/8").count();
+    assert_eq!((slowest, swing.query_all_by_label_contains("1/1").count()), (1, 0));
+}
