@@ -1,16 +1,16 @@
-//! Motions in the window: their colours, their past and their speed.
+//! Motions in the window: their colours, their past, their speed, and bodies that pass through themselves.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
 
-use common::scene;
+use common::{ids_of, scene};
 use egui::accesskit::Role;
 use egui::{Key, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
-use warpbeam::scene::Source;
+use warpbeam::scene::{Analysis, Source};
 use warpbeam::{IntegratorKind, Scene, Simulation, State};
 
 fn harness_of(name: &str, scene: Scene) -> Harness<'static, Lab> {
@@ -237,4 +237,40 @@ fn a_chime_is_slowed_to_a_period_a_second() {
     let swing = harness_of("swing", scene("swing"));
     let slowest = swing.query_all_by_role_and_label(Role::Button, "1/8").count();
     assert_eq!((slowest, swing.query_all_by_label_contains("1/1").count()), (1, 0));
+}
+
+const CROSSES: &str = "The body passes through itself: contact is not modelled";
+
+/// Steps until it is said that the body passes through itself, so many frames at most. Returns whether it is.
+fn is_said(harness: &mut Harness<'_, Lab>, frames: u32) -> bool {
+    (0..frames).any(|_| {
+        harness.step();
+        harness.query_by_label(CROSSES).is_some()
+    })
+}
+
+/// A clip that is pressed into its own base says so, once. No other built-in scene does so at rest or where it leads.
+#[test]
+fn a_body_that_passes_through_itself_says_so_once() {
+    let mut clip = harness("clip");
+    assert!(is_said(&mut clip, 200));
+    clip.run_steps(100);
+    assert!(clip.query_by_label(CROSSES).is_none(), "it goes away");
+    let mut scene = clip.state().scene().clone();
+    scene.set_force(0, [0.0, -2.2]).unwrap();
+    clip.state_mut().set_scene(scene).unwrap();
+    assert!(!is_said(&mut clip, 100), "it was said before");
+
+    let mut gentle = scene_of_clip();
+    gentle.set_force(0, [0.0, -1.0]).unwrap();
+    assert!(!is_said(&mut harness_of("clip", gentle), 100));
+    for id in common::scene_ids() {
+        let moves = ids_of(Analysis::Dynamic).contains(&id);
+        let said = is_said(&mut harness(id), if moves { 100 } else { 60 });
+        assert_eq!(said, id == "clip", "{id}");
+    }
+}
+
+fn scene_of_clip() -> Scene {
+    scene("clip")
 }

@@ -11,6 +11,7 @@ use super::action::{Action, Drawer, MOST_ITERATIONS, Toggle, ViewOptions};
 use super::arrow::{Forces, vector};
 use super::budget::{Budget, question};
 use super::compare::{Compare, CompareInput, MotionCompare, MotionInput, MotionPane, Pane, PaneSetting};
+use super::crossing::passes_through_itself;
 use super::document::Document;
 use super::drawing::Drawing;
 use super::edits::{Edits, Snapshot};
@@ -153,6 +154,8 @@ pub struct Lab {
     shows_converged: bool,
     /// Of a body in motion: all that it has swept, m.
     swept: Option<[Vector2<f64>; 2]>,
+    /// Checks of the outline for crossings.
+    crossing: Crossing,
     recorder: Option<Recorder>,
     gallery: Gallery,
     quality: Quality,
@@ -168,6 +171,14 @@ pub struct Lab {
     learn: Option<Box<Learn>>,
     /// The card that was shown last, from 0.
     card: usize,
+}
+
+/// Checks of the body's outline: whether a crossing was reported, when the last check was, s, and which shape it saw.
+#[derive(Debug, Default)]
+struct Crossing {
+    is_said: bool,
+    checked: f64,
+    stamp: u64,
 }
 
 /// Why a scene is not shown.
@@ -222,6 +233,7 @@ impl Lab {
             converged: None,
             shows_converged: false,
             swept: None,
+            crossing: Crossing::default(),
             recorder: None,
             gallery: Gallery::default(),
             quality: Quality::default(),
@@ -1158,8 +1170,33 @@ impl Lab {
                 self.show_work(ui, free, actions);
             }
         }
+        self.note_crossing(ui);
         self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
+    }
+
+    /// Says once per scene that the body passes through itself.
+    fn note_crossing(&mut self, ui: &Ui) {
+        /// Time between two checks of a body that moves, s.
+        const EVERY: f64 = 0.1;
+        let now = ui.input(|i| i.time);
+        let is_shown = self.view.bars && self.learn.is_none() && self.intro.is_none() && self.toast.is_none();
+        let is_due = !self.iterates() || now - self.crossing.checked >= EVERY;
+        let is_sound = match self.simulation.status() {
+            Status::Converged | Status::Accepted => true,
+            Status::Running | Status::Finished => self.moves(),
+            _ => false,
+        };
+        let is_another = self.crossing.stamp != self.shape.stamp();
+        if self.crossing.is_said || !(is_shown && is_due && is_sound && is_another) {
+            return;
+        }
+        (self.crossing.checked, self.crossing.stamp) = (now, self.shape.stamp());
+        let mesh = self.simulation.system().mesh();
+        if passes_through_itself(mesh, &self.drawing.boundary, &self.shape.nodes) {
+            self.crossing.is_said = true;
+            self.say(ui.ctx(), tr("The body passes through itself: contact is not modelled").to_owned());
+        }
     }
 
     /// How it stands, over the body; why; and what would help.
@@ -1782,6 +1819,7 @@ impl Lab {
         self.probe = None;
         self.view.why = false;
         self.view.fixed_range = None;
+        self.crossing = Crossing::default();
     }
 
     /// Saves the scene to a file; returns what there is to say of it, or why it failed.

@@ -14,6 +14,7 @@ mod budget;
 mod clicks;
 mod clipboard;
 mod compare;
+mod crossing;
 mod document;
 mod drawing;
 mod edits;

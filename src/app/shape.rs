@@ -173,6 +173,11 @@ impl Shape {
         &self.points
     }
 
+    /// Number of the last change of points and values.
+    pub(super) fn stamp(&self) -> u64 {
+        self.stamp
+    }
+
     /// Draws the points elsewhere, until the next [`Self::update`].
     pub(super) fn displace(&mut self, place: impl FnOnce(&mut [Vector2<f64>])) {
         place(&mut self.points);
