@@ -383,8 +383,7 @@ fn a_hard_pull_leaves_a_drift_that_says_something() {
     }
 }
 
-/// The drift of a motion that nothing is put into on its way is the share of its first energy; where nothing is put in at
-/// all it is zero.
+/// A free motion has lost that share of its first energy; a body at rest has lost nothing.
 #[test]
 fn the_drift_is_a_share_of_what_was_put_in() {
     let mut spin = scene("spin");

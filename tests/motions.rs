@@ -163,7 +163,7 @@ fn the_last_seconds_can_be_shown_again() {
         );
         let ledger = *harness.state().simulation().motion().unwrap().ledger();
         assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{id}: {ledger:?}");
-        // What came after is gone: the line ends at the present.
+        // The line ends at the present: later moments are gone.
         key(&mut harness, Key::Space);
         let present = time(&harness);
         press_line(&mut harness, 1.0);
@@ -233,7 +233,7 @@ fn a_chime_is_slowed_to_a_period_a_second() {
     let second = time(&harness) - before;
     assert!((0.2..1.06).contains(&(second * 40.0)), "a second is {second} s");
     assert!(harness.query_by_label_contains("× 1/4").is_some(), "the pace is said");
-    // What can be watched at 1/8 offers nothing slower.
+    // A slow body offers nothing slower than 1/8.
     let swing = harness_of("swing", scene("swing"));
     let slowest = swing.query_all_by_role_and_label(Role::Button, "1/8").count();
     assert_eq!((slowest, swing.query_all_by_label_contains("1/1").count()), (1, 0));

@@ -69,7 +69,7 @@ pub(super) fn show(
     let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
     let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
     let axis = playback.history.axis();
-    // Of the moment that is shown, where it is not the latest.
+    // The time of an earlier moment, while one is shown.
     let cursor = playback.shown_time();
     let name = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
     match chosen {
