@@ -182,13 +182,21 @@ pub(in crate::app) struct MotionCompare {
     eye: Option<Eye>,
     /// Box of everything that the bodies have swept, m.
     swept: Option<[Vector2<f64>; 2]>,
+    /// Simulated time of all steps, s.
+    played: f64,
     still: Playback,
 }
 
 impl Default for MotionCompare {
     fn default() -> Self {
-        let mut compare =
-            Self { panes: Vec::new(), pace: Pace::default(), eye: None, swept: None, still: Playback::default() };
+        let mut compare = Self {
+            panes: Vec::new(),
+            pace: Pace::default(),
+            eye: None,
+            swept: None,
+            played: 0.0,
+            still: Playback::default(),
+        };
         compare.set(&integrators());
         compare
     }
@@ -229,14 +237,16 @@ impl MotionCompare {
 
     /// One time step of everything.
     pub(in crate::app) fn step(&mut self) {
+        let time_step = |pane: &MotionPane| pane.scene.as_ref().map(|scene| scene.dynamics.time_step);
+        self.played += self.panes.iter().find_map(time_step).unwrap_or_default();
         self.panes.iter_mut().for_each(MotionPane::step);
     }
 
     /// Takes the scene on, and makes the time steps that are due at `now`, s. All panes are at the same time: what a slow one
     /// cannot keep up with slows all down.
     pub(in crate::app) fn advance(&mut self, scene: &Scene, now: f64, running: bool) {
-        let restarts = self.panes.iter_mut().map(|pane| pane.follow(scene)).fold(false, |any, one| any || one);
-        if restarts {
+        let others = self.panes.iter_mut().filter_map(|pane| pane.follow(scene).then_some(())).count();
+        if others > 0 {
             self.reset();
         }
         if !running || !self.moves() {
@@ -308,7 +318,7 @@ impl MotionCompare {
     pub(in crate::app) fn show(&mut self, ui: &mut Ui, input: &MotionInput<'_>, actions: &mut Vec<Action>) -> Wish {
         for pane in &mut self.panes {
             if let Some(simulation) = &pane.simulation {
-                pane.shape.update(simulation, &pane.drawing, input.view, true);
+                pane.shape.update(simulation, &pane.drawing, input.view, Some(self.played));
             }
             pane.shape.color(ui.visuals(), input.view.field);
         }
