@@ -377,14 +377,14 @@ fn every_pane_says_its_value_at_the_point_under_the_pointer() {
     assert!(painted(&harness, "von Mises (Cauchy): ").is_empty());
 }
 
-/// A motion is not compared, and that is said.
+/// A motion is compared in panes of its own; those of equilibria wait.
 #[test]
-fn motions_are_not_compared() {
+fn motions_have_panes_of_their_own() {
     let mut harness = harness_of("swing", scene("swing"));
     harness.step();
     harness.key_press(Key::K);
     harness.step();
     harness.step();
     assert!(harness.state().panes().iter().all(|pane| pane.place().is_none()));
-    assert!(harness.get_by_label("Compare").accesskit_node().is_disabled());
+    assert!(harness.state().motion_panes().iter().all(|pane| pane.place().is_some()));
 }

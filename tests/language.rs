@@ -109,6 +109,7 @@ const SAME: &[&str] = &[
     "int",
     "warpbeam",
     "faer",
+    "sym",
     // The names of the article and of the paper that it explains.
     "Warped",
     "Stiffness",

@@ -135,16 +135,4 @@ mod tests {
         assert!(passes_through_itself(mesh, &outline, &folded(0.3)));
         assert!(!passes_through_itself(mesh, &outline, &vec![Vector2::repeat(f64::NAN); mesh.nodes().len()]));
     }
-    /// The check of a large body takes a few milliseconds.
-    #[test]
-    fn the_check_of_a_large_body_is_quick() {
-        let scene = Scene::beam(20.0, 10.0).with_cells(200, 100).with_element(ElementKind::T3);
-        let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
-        let outline = Drawing::new(&mesh).boundary;
-        let start = std::time::Instant::now();
-        assert!(!passes_through_itself(&mesh, &outline, mesh.nodes()));
-        let time = start.elapsed();
-        println!("{} nodes, {} sides: {time:?}", mesh.nodes().len(), outline.len());
-        assert!(time.as_secs_f64() < 0.1, "{time:?}");
-    }
 }

@@ -292,7 +292,7 @@ impl MotionCompare {
             ),
         ];
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
-        Panel::top("motion presets").resizable(false).frame(frame).show(ui, |ui| {
+        Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let present: Vec<_> = self.panes.iter().map(|pane| pane.setting).collect();

@@ -22,7 +22,8 @@ pub(super) fn summary(input: &PanelInput<'_>) -> String {
 
 pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let settings = &input.scene.dynamics;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
         ui.label(tr("Speed"));
         let mut button = |speed: f64, word: &str, tip: &str| {
             let chosen = (input.playback.pace.speed() - speed).abs() < 1e-9;
