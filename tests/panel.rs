@@ -1034,3 +1034,19 @@ fn integrators_are_compared_in_panes() {
     let explored = harness.state().simulation().state().time();
     assert!((explored - before).abs() < 1e-12, "the body of Explore waits");
 }
+
+/// While the reference solution is being computed, the error says so, and how far it is.
+#[test]
+fn the_error_says_that_the_reference_is_being_computed() {
+    let mut harness = harness_of("cook");
+    let says = |harness: &Harness<'_, Lab>| harness.query_by_label_contains("computing the reference: ").is_some();
+    let mut frames = 0;
+    while !says(&harness) {
+        frames += 1;
+        assert!(frames < 400, "it is never said");
+        harness.step();
+    }
+    wait(&mut harness, "the reference solution", |lab| !lab.is_searching());
+    harness.run();
+    assert!(!says(&harness));
+}

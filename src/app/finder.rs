@@ -1,26 +1,66 @@
 //! What takes a while to find out of a scene, found beside the window.
 
+use std::ops::ControlFlow;
+
 use egui::Context;
 
 use super::job::{Heard, Job, LISTEN};
 use crate::scene::Scene;
 
+/// Is told the fraction that is done, and calls the search off.
+pub(super) type Watch<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+
+/// Search for something that a scene may or may not have.
+#[derive(Debug)]
+enum Search<T> {
+    Silent(fn(&Scene) -> Option<T>),
+    Watched(fn(&Scene, Watch<'_>) -> Option<T>),
+}
+
+impl<T> Clone for Search<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Search<T> {}
+
+impl<T> Search<T> {
+    fn run(self, scene: &Scene, watch: Watch<'_>) -> Option<T> {
+        match self {
+            Self::Silent(find) => find(scene),
+            Self::Watched(find) => find(scene, watch),
+        }
+    }
+}
+
 /// Something that a scene may or may not have.
 #[derive(Debug)]
 pub(super) struct Finder<T> {
-    find: fn(&Scene) -> Option<T>,
+    find: Search<T>,
+    /// Fraction of the present search that is done.
+    done: f64,
     /// Of the present scene: not known yet, or what was found.
     found: Option<Option<T>>,
     /// What was found of the scene before.
     before: Option<T>,
     /// What the thread will say, and whether it is of the present scene. One thread at a time: edits do not pile up.
-    running: Option<(Job<(), Option<T>>, bool)>,
+    running: Option<(Job<f64, Option<T>>, bool)>,
 }
 
 impl<T: Send + 'static> Finder<T> {
     /// Nothing known yet.
     pub(super) fn new(find: fn(&Scene) -> Option<T>) -> Self {
-        Self { find, found: None, before: None, running: None }
+        Self::of(Search::Silent(find))
+    }
+
+    /// Nothing known yet; the search says how far it is.
+    pub(super) fn watched(find: fn(&Scene, Watch<'_>) -> Option<T>) -> Self {
+        Self::of(Search::Watched(find))
+    }
+
+    fn of(find: Search<T>) -> Self {
+        Self { find, done: 0.0, found: None, before: None, running: None }
     }
 
     /// Forgets what belonged to another scene.
@@ -37,13 +77,16 @@ impl<T: Send + 'static> Finder<T> {
             return;
         }
         if let Some((job, current)) = &self.running {
-            let found = match job.hear() {
-                Heard::Nothing | Heard::News(()) => {
-                    ctx.request_repaint_after(LISTEN);
-                    return;
+            let found = loop {
+                match job.hear() {
+                    Heard::News(done) => self.done = done,
+                    Heard::Nothing => {
+                        ctx.request_repaint_after(LISTEN);
+                        return;
+                    }
+                    Heard::Done(found) => break found,
+                    Heard::Died => break None,
                 }
-                Heard::Done(found) => found,
-                Heard::Died => None,
             };
             if *current {
                 self.found = Some(found);
@@ -52,7 +95,8 @@ impl<T: Send + 'static> Finder<T> {
         }
         if self.found.is_none() {
             let (find, scene) = (self.find, scene.clone());
-            match Job::start("finder", move |_| find(&scene)) {
+            self.done = 0.0;
+            match Job::start("finder", move |line| find.run(&scene, &mut |done| line.say(done))) {
                 Ok(job) => self.running = Some((job, true)),
                 Err(_) => self.found = Some(None),
             }
@@ -60,15 +104,15 @@ impl<T: Send + 'static> Finder<T> {
         }
     }
 
-    /// `true` while it is being computed.
-    pub(super) fn is_running(&self) -> bool {
-        self.running.is_some()
+    /// Fraction that is done, while it is being computed.
+    pub(super) fn progress(&self) -> Option<f64> {
+        self.running.as_ref().map(|_| self.done)
     }
 
     /// Finds out, however long it takes.
     pub(super) fn settle(&mut self, scene: &Scene) {
         if self.found.is_none() {
-            self.found = Some((self.find)(scene));
+            self.found = Some(self.find.run(scene, &mut |_| ControlFlow::Continue(())));
             self.running = None;
         }
     }

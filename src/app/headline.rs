@@ -1,5 +1,6 @@
 //! The bar along the bottom: three numbers that say it all, the residual's way down, and the drawer with the plots.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use egui::{
@@ -33,7 +34,7 @@ struct Headline {
     name: &'static str,
     value: String,
     /// More about it, after the number.
-    word: &'static str,
+    word: Cow<'static, str>,
     tip: String,
     color: Color32,
     gauge: Gauge,
@@ -90,15 +91,17 @@ fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> Vec<H
     let truth = truth_words(input.truth);
     let level = |decades: f64| decades.floor().clamp(0.0, 4.0) as u32;
     let error = errors.own.map_or(0.0, |error| error.max(1e-9).log10() + 2.0);
-    let is_sought = errors.own.is_none() && input.seeks_reference;
+    let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let mut headlines = vec![
         Headline {
             name: "ERROR",
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
             word: match errors.source {
-                Some(source) => source.word(),
-                None if is_sought => "computing the reference",
-                None => "",
+                Some(source) => tr(source.word()).into(),
+                None => sought.map_or(Cow::default(), |done| {
+                    let percent = format!("{:.0}", 100.0 * done);
+                    fill!("computing the reference: %{percent} %", percent = percent).into()
+                }),
             },
             tip: fill!(
                 "Distance of the first probe from %{truth}, over its displacement; and where most of it comes from",
@@ -110,7 +113,7 @@ fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> Vec<H
         Headline {
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
-            word: "",
+            word: Cow::default(),
             tip: tr("Time of this solve, since the last change, without what is only looked at").to_owned(),
             color: palette.text,
             gauge: Gauge::Blocks(level((1e6 * seconds).max(1.0).log10())),
@@ -121,7 +124,7 @@ fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> Vec<H
         headlines.push(Headline {
             name: "ρ",
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
-            word: "",
+            word: Cow::default(),
             tip: tr(
                 "The factor by which each iteration of the warped method shrinks its error here; above 1 it grows, and \
                  the iteration walks away",
@@ -147,7 +150,7 @@ fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Hea
         Headline {
             name: "STEP",
             value: if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() },
-            word: "",
+            word: Cow::default(),
             tip: fill!("What a time step costs; it simulates %{step}", step = engineering(step, "s")),
             color: if cost > step { palette.error } else { palette.text },
             gauge: Gauge::Bar(0.5 * cost / step, 0.5),
@@ -155,7 +158,7 @@ fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Hea
         Headline {
             name: "PACE",
             value: pace.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {}", fraction(factor))),
-            word: if pace.lags() { "too slow" } else { "" },
+            word: if pace.lags() { tr("too slow").into() } else { Cow::default() },
             tip: tr("Simulated seconds a second; a machine that cannot keep up slows the motion down").to_owned(),
             color: if pace.lags() { palette.error } else { palette.text },
             gauge: Gauge::None,
@@ -163,7 +166,7 @@ fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Hea
         Headline {
             name: "DRIFT",
             value: percent(100.0 * drift),
-            word: "",
+            word: Cow::default(),
             tip: tr(DRIFT_TIP).to_owned(),
             color: if drift.abs() > 0.05 { palette.warning } else { palette.text },
             gauge: Gauge::None,
@@ -182,7 +185,7 @@ fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Res
     const BLOCK: egui::Vec2 = vec2(5.0, 13.0);
     const BAR: egui::Vec2 = vec2(56.0, 6.0);
     let Headline { name, value, word, tip, color, gauge } = headline;
-    let [name, word] = [name, word].map(tr);
+    let (name, word) = (tr(name), word.as_ref());
     let painter = ui.painter();
     let small = |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);
     let [title, after] = [name, word].map(small);

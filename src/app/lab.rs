@@ -18,7 +18,7 @@ use super::edits::{Edits, Snapshot};
 use super::errand::{Start as Beginning, note_residual, solve_linear};
 use super::eye::Eye;
 use super::file_dialog::{Answer, FileDialog, Purpose};
-use super::finder::Finder;
+use super::finder::{Finder, Watch};
 use super::gallery::Gallery;
 use super::handle::{Handle, Pull};
 use super::intro::Intro;
@@ -48,7 +48,7 @@ use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
 use crate::simulation::{Field, PointValues, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{Extent, LoadPath, MotionStudy, PathSummary, Reference, Study};
+use crate::study::{Effort, Extent, LoadPath, MotionStudy, PathSummary, Reference, Study};
 use crate::timings::Timings;
 use crate::words;
 
@@ -222,7 +222,7 @@ impl Lab {
             toast: None,
             drawing,
             shape: Shape::default(),
-            truth: Finder::new(|scene| Reference::of(scene).ok()),
+            truth: Finder::watched(find_reference),
             curve: Finder::new(Curve::of),
             jump: Finder::new(LoadPath::summary_of),
             budget: Budget::default(),
@@ -696,7 +696,7 @@ impl Lab {
             jump: self.jump.get(),
             equilibrium_rho: self.learn.as_ref().and_then(|learn| learn.rho()),
             quality: &self.quality,
-            seeks_reference: self.truth.is_running(),
+            reference_progress: self.truth.progress(),
             shows_converged: self.shows_converged,
             scene: &self.scene,
             original: &self.document.original,
@@ -2005,6 +2005,11 @@ fn positions(simulation: &Simulation) -> Vec<Vector2<f64>> {
 /// Whether both have the same mesh.
 fn has_mesh_of(scene: &Scene, other: &Scene) -> bool {
     scene.beam == other.beam && scene.mesh == other.mesh
+}
+
+/// The reference solution of a scene, where there is one.
+fn find_reference(scene: &Scene, watch: Watch<'_>) -> Option<Reference> {
+    Reference::find(scene, None, Effort::Bounded, &mut |progress| watch(progress.fraction)).ok()
 }
 
 /// The lowest natural frequency of a scene's body about rest, Hz.

@@ -60,8 +60,8 @@ pub(super) struct PanelInput<'a> {
     pub jump: Option<&'a PathSummary>,
     /// ρ of the warped iteration at the equilibrium, where it has been looked for, whatever the body's state.
     pub equilibrium_rho: Option<f64>,
-    /// `true` while the reference solution is being computed.
-    pub seeks_reference: bool,
+    /// Fraction of the reference solution's search that is done, while it is being computed.
+    pub reference_progress: Option<f64>,
     /// `true` where the last equilibrium is drawn instead of a state that diverges.
     pub shows_converged: bool,
     /// How far the result is to be trusted.
