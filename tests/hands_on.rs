@@ -1162,3 +1162,23 @@ fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
     }
     assert!(met > 0, "no arrow is over the bar");
 }
+
+/// The Enter that picks another scene in the gallery is no answer to the question that it leads to.
+#[test]
+fn enter_in_the_gallery_answers_no_question() {
+    let mut harness = harness("cantilever");
+    type_into(&mut harness, "Force", "700");
+    let edited = harness.state().scene().clone();
+    harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
+    harness.run();
+    harness.get_by_label("bridge").focus();
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run();
+    harness.get_by_label_contains("Save the changes to");
+    assert!(harness.query_by_label("Save the scene").is_none(), "it was taken for an answer");
+    assert_eq!(*harness.state().scene(), edited);
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert!(harness.query_by_label("Save the scene").is_some());
+}

@@ -231,7 +231,7 @@ fn a_chime_is_slowed_to_a_period_a_second() {
     harness.run_steps(20);
     // A machine that cannot keep up makes fewer steps.
     let second = time(&harness) - before;
-    assert!((0.2..1.06).contains(&(second * 40.0)), "a second is {second} s");
+    assert!(second > 0.0 && second * 40.0 < 1.06, "a second is {second} s");
     assert!(harness.query_by_label_contains("× 1/4").is_some(), "the pace is said");
     // A slow body offers nothing slower than 1/8.
     let swing = harness_of("swing", scene("swing"));

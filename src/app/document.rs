@@ -94,6 +94,18 @@ fn written(path: &Path) -> Option<SystemTime> {
 /// # Errors
 /// The system's; what was there is unchanged then.
 pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_beside(path, bytes, true)
+}
+
+/// [`write_whole`] without waiting for the disk: the file outlives a crash of the program, not of the machine.
+///
+/// # Errors
+/// The system's; what was there is unchanged then.
+pub(super) fn write_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_beside(path, bytes, false)
+}
+
+fn write_beside(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
     // Through a link, the file that it leads to is written.
     let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let name = path.file_name().ok_or(std::io::ErrorKind::InvalidInput)?;
@@ -104,7 +116,9 @@ pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let write = || {
         let mut file = std::fs::File::create(&beside)?;
         file.write_all(bytes)?;
-        file.sync_all()?;
+        if syncs {
+            file.sync_all()?;
+        }
         if let Ok(before) = std::fs::metadata(&path) {
             file.set_permissions(before.permissions())?;
         }

@@ -66,8 +66,9 @@ impl<T: Send + 'static> Finder<T> {
     /// Forgets what belonged to another scene.
     pub(super) fn forget(&mut self) {
         self.before = self.found.take().unwrap_or_else(|| self.before.take());
-        if let Some((_, current)) = &mut self.running {
-            *current = false;
+        if let Some((job, current)) = &mut self.running {
+            (*current, self.done) = (false, 0.0);
+            job.call_off();
         }
     }
 

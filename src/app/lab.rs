@@ -863,7 +863,10 @@ impl Lab {
     /// Looks for what is known of the scene and of its result, once the body is at rest: a dragged slider need not wait.
     fn find_out(&mut self, ctx: &egui::Context) {
         if self.moves() {
-            self.frequency.ask(&self.scene, ctx);
+            // A dragged slider does not wait for it.
+            if !ctx.input(|i| i.pointer.any_down()) {
+                self.frequency.ask(&self.scene, ctx);
+            }
             return;
         }
         if self.iterates() || self.is_working() {
@@ -1588,6 +1591,11 @@ impl Lab {
                     learn.line = line;
                 }
             }
+            Action::Forward if self.compares_motions() => {
+                self.running = false;
+                self.motions.step();
+            }
+            Action::Scrub(_) | Action::Back | Action::Mark if self.compares_motions() => {}
             Action::Scrub(_) | Action::Back | Action::Forward if !self.moves() || self.is_beside() => {}
             Action::Scrub(time) => {
                 self.running = false;

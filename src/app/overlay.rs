@@ -281,7 +281,8 @@ fn pull(
     boxed_text(painter, to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, visuals, palette.hand, 200.0);
 }
 
-/// Fixed edges: hatched where both directions are fixed, rollers where one is. Fixed nodes apart from them: a triangle.
+/// Fixed edges: hatched where both directions are fixed, rollers where one is. Fixed nodes apart from them: a triangle, on a
+/// line where one direction is fixed.
 fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     const HATCH: f32 = 7.0;
     const ROLLER: f32 = 3.5;
@@ -300,8 +301,8 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
         if !along.is_finite() || along == Vec2::ZERO {
             continue;
         }
+        side.nodes().iter().for_each(|&n| drawn[n as usize] = true);
         if both == [true, true] {
-            side.nodes().iter().for_each(|&n| drawn[n as usize] = true);
             painter.line_segment([p, q], Stroke::new(2.5, palette.support));
             let strokes = ((q - p).length() / HATCH).ceil().clamp(1.0, 500.0);
             for i in 0..strokes as u32 {
@@ -316,10 +317,19 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
         }
     }
     for (n, drawn) in (0..).zip(drawn) {
-        if pattern.fixed(n) == [true, true] && !drawn {
-            let p = projection.point(positions[n as usize]);
-            let foot = [p, p + vec2(-7.0, 11.0), p + vec2(7.0, 11.0)];
-            painter.add(egui::Shape::convex_polygon(foot.to_vec(), palette.support.gamma_multiply(0.6), stroke));
+        let fixed = pattern.fixed(n);
+        if drawn || fixed == [false, false] {
+            continue;
+        }
+        // A roller stands on the line that it moves along.
+        let away = if fixed == [true, false] { vec2(-1.0, 0.0) } else { vec2(0.0, 1.0) };
+        let (p, across) = (projection.point(positions[n as usize]), 7.0 * away.rot90());
+        let foot = p + 11.0 * away;
+        let triangle = vec![p, foot - across, foot + across];
+        painter.add(egui::Shape::convex_polygon(triangle, palette.support.gamma_multiply(0.6), stroke));
+        if fixed != [true, true] {
+            let line = foot + 4.0 * away;
+            painter.line_segment([line - 1.3 * across, line + 1.3 * across], stroke);
         }
     }
 }

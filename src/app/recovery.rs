@@ -11,13 +11,15 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::document::{Document, write_whole};
+use super::document::{Document, write_without_sync};
 use crate::scene::{Scene, SceneError, Source};
 
 /// Number of windows that may be open or have crashed.
 const PLACES: usize = 100;
 /// Shortest time between two writes.
 const PAUSE: Duration = Duration::from_secs(1);
+/// Time after a failure before another attempt.
+const AFTER_FAILURE: Duration = Duration::from_secs(30);
 
 /// An edited scene, and the scene as it was opened or saved last.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +64,7 @@ fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
         original: document.original.to_toml().map_err(io::Error::other)?,
         scene: scene.to_toml().map_err(io::Error::other)?,
     };
-    write_whole(file, toml::to_string(&copy).map_err(io::Error::other)?.as_bytes())
+    write_without_sync(file, toml::to_string(&copy).map_err(io::Error::other)?.as_bytes())
 }
 
 impl Unsaved {
@@ -87,6 +89,8 @@ pub struct Recovery {
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,
     left: Option<Place>,
+    /// `true` once the copy of the crashed window is not needed any more.
+    forgets_left: bool,
 }
 
 /// A numbered file, locked as long as this lives.
@@ -121,7 +125,7 @@ impl Recovery {
             let Some(place) = Place::lock(folder, number)? else { continue };
             if !place.file.exists() {
                 let (left, edits) = left.unzip();
-                return Ok((Self { place, written: None, last: None, left }, edits));
+                return Ok((Self { place, written: None, last: None, left, forgets_left: false }, edits));
             }
             if left.is_none() {
                 match Unsaved::read(&place.file) {
@@ -140,29 +144,39 @@ impl Recovery {
     /// # Errors
     /// The system's.
     pub(super) fn keep(&mut self, edits: Option<(&Document, &Scene)>) -> io::Result<Option<Instant>> {
-        if self.written.as_ref().map(|written| (&written.document, &written.scene)) == edits {
-            return Ok(None);
+        if self.written.as_ref().map(|written| (&written.document, &written.scene)) != edits {
+            let due = self.last.map(|last| last + PAUSE).filter(|due| *due > Instant::now());
+            if due.is_some() && edits.is_some() {
+                return Ok(due);
+            }
+            // A failure is not repeated at once.
+            self.last = Some(Instant::now() + AFTER_FAILURE);
+            match edits {
+                Some((document, scene)) => write(document, scene, &self.place.file)?,
+                None => remove(&self.place.file)?,
+            }
+            self.last = Some(Instant::now());
+            self.written = edits.map(|(document, scene)| Unsaved { document: document.clone(), scene: scene.clone() });
         }
-        let due = self.last.map(|last| last + PAUSE).filter(|due| *due > Instant::now());
-        if due.is_some() && edits.is_some() {
-            return Ok(due);
+        if self.forgets_left
+            && let Some(place) = self.left.take()
+        {
+            remove(&place.file)?;
         }
-        self.last = Some(Instant::now());
-        match edits {
-            Some((document, scene)) => write(document, scene, &self.place.file)?,
-            None => std::fs::remove_file(&self.place.file)?,
-        }
-        self.written = edits.map(|(document, scene)| Unsaved { document: document.clone(), scene: scene.clone() });
         Ok(None)
     }
 
-    /// Removes the copy that a crashed window has left.
+    /// Lets the next [`Self::keep`] remove the copy that a crashed window has left, once this window's own edits are written.
     pub fn forget_left(&mut self) {
-        if let Some(place) = self.left.take()
-            && let Err(error) = std::fs::remove_file(&place.file)
-        {
-            log::warn!("{}: {error}", place.file.display());
-        }
+        self.forgets_left = true;
+    }
+}
+
+/// Removes a file, if it is still there.
+fn remove(file: &Path) -> io::Result<()> {
+    match std::fs::remove_file(file) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
     }
 }
 
@@ -202,6 +216,8 @@ mod tests {
         let (_, left) = Recovery::open(&folder).unwrap();
         assert_eq!(left, None, "another window offers it");
         next.forget_left();
+        next.keep(edits("article", -3.0).parts()).unwrap();
+        next.keep(None).unwrap();
         drop(next);
         let (_, left) = Recovery::open(&folder).unwrap();
         assert_eq!(left, None);

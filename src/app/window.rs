@@ -360,8 +360,7 @@ impl App {
         match recovery.keep(self.lab.unsaved()) {
             Ok(due) => due.map_or(Duration::MAX, |due| due.saturating_duration_since(Instant::now())),
             Err(error) => {
-                log::warn!("no copy of unsaved changes is kept: {error}");
-                self.recovery = None;
+                log::warn!("no copy of unsaved changes was kept: {error}");
                 Duration::MAX
             }
         }

@@ -81,6 +81,8 @@ pub struct MotionPane {
     seconds: Option<f64>,
     drawing: Drawing,
     shape: Shape,
+    /// Range of its own colours; all panes are drawn in one that has room for each.
+    range: [f64; 2],
     place: Option<Rect>,
     pointer: Pointer,
 }
@@ -95,6 +97,7 @@ impl MotionPane {
             seconds: None,
             drawing: Drawing::default(),
             shape: Shape::default(),
+            range: [0.0; 2],
             place: None,
             pointer: Pointer::default(),
         }
@@ -124,7 +127,8 @@ impl MotionPane {
         if self.scene.as_ref() == Some(&wanted) {
             return false;
         }
-        let goes_on = self.scene.as_ref().is_some_and(|before| {
+        let before = self.scene.as_ref().filter(|_| self.simulation.is_some());
+        let goes_on = before.is_some_and(|before| {
             (&before.beam, &before.mesh, &before.dynamics) == (&wanted.beam, &wanted.mesh, &wanted.dynamics)
         });
         let made = match self.simulation.take().filter(|_| goes_on) {
@@ -140,6 +144,11 @@ impl MotionPane {
         }
         self.scene = Some(wanted);
         !goes_on
+    }
+
+    /// `true` if it has a motion that has not become unstable.
+    fn is_sound(&self) -> bool {
+        self.simulation.as_ref().is_some_and(|simulation| !matches!(simulation.status(), Status::Stopped(_)))
     }
 
     fn moves(&self) -> bool {
@@ -182,7 +191,7 @@ pub(in crate::app) struct MotionCompare {
     eye: Option<Eye>,
     /// Box of everything that the bodies have swept, m.
     swept: Option<[Vector2<f64>; 2]>,
-    /// Simulated time of all steps, s.
+    /// Time of play, s: longer than simulated time in slow motion.
     played: f64,
     still: Playback,
 }
@@ -238,7 +247,7 @@ impl MotionCompare {
     /// One time step of everything.
     pub(in crate::app) fn step(&mut self) {
         let time_step = |pane: &MotionPane| pane.scene.as_ref().map(|scene| scene.dynamics.time_step);
-        self.played += self.panes.iter().find_map(time_step).unwrap_or_default();
+        self.played += self.panes.iter().find_map(time_step).unwrap_or_default() / self.pace.speed();
         self.panes.iter_mut().for_each(MotionPane::step);
     }
 
@@ -318,11 +327,13 @@ impl MotionCompare {
     pub(in crate::app) fn show(&mut self, ui: &mut Ui, input: &MotionInput<'_>, actions: &mut Vec<Action>) -> Wish {
         for pane in &mut self.panes {
             if let Some(simulation) = &pane.simulation {
+                pane.shape.range = pane.range;
                 pane.shape.update(simulation, &pane.drawing, input.view, Some(self.played));
+                pane.range = pane.shape.range;
             }
             pane.shape.color(ui.visuals(), input.view.field);
         }
-        let ranges = self.panes.iter().map(|pane| pane.shape.range);
+        let ranges = self.panes.iter().filter(|pane| pane.is_sound()).map(|pane| pane.range);
         let range = ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default();
         let shared = input.view.fixed_range.unwrap_or(range);
         self.panes.iter_mut().for_each(|pane| pane.shape.range = shared);
@@ -372,9 +383,7 @@ impl MotionCompare {
         let Some(size) = sizes.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])]) else { return };
         let Some(first) = self.panes.iter().find_map(MotionPane::simulation) else { return };
         let (low, high) = first.system().mesh().bounds();
-        let sound = self.panes.iter().filter(|pane| {
-            pane.simulation().is_some_and(|simulation| !matches!(simulation.status(), Status::Stopped(_)))
-        });
+        let sound = self.panes.iter().filter(|pane| pane.is_sound());
         let grow = |[low, high]: [Vector2<f64>; 2], p: &Vector2<f64>| [low.inf(p), high.sup(p)];
         let swept = sound.flat_map(|pane| pane.shape.points()).fold(self.swept.unwrap_or([low, high]), grow);
         self.swept = Some(swept);
@@ -410,7 +419,7 @@ impl MotionCompare {
             let mut setting = pane.setting;
             let close = self.panes.len() > *PANES.start() && input.view.bars;
             let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
-            let widths = [0.42, 0.2, 0.28].map(|share| (share * room).clamp(30.0, 150.0));
+            let widths = [0.4, 0.18, 0.26].map(|share| (share * room).clamp(30.0, 150.0));
             let panels = (input.scene.dynamics.integrator.id(), "the panel's");
             let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));
             pick(ui, &palette, (&name, "integrator"), widths[0], (&mut setting.integrator, panels), entries);

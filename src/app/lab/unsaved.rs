@@ -1,7 +1,7 @@
 //! Edits that no file has: the question that is asked before they are lost, and the offer of those that a crashed window
 //! has left.
 
-use egui::{Align2, Context, Id, Key, Modal, RichText};
+use egui::{Align2, Context, Event, Id, Key, Modal, RichText};
 
 use super::{Lab, Request};
 use crate::app::document::Document;
@@ -69,6 +69,8 @@ impl Lab {
         if let Some(focused) = ctx.memory(egui::Memory::focused) {
             ctx.memory_mut(|memory| memory.surrender_focus(focused));
         }
+        // The key that has led here is no answer.
+        ctx.input_mut(|i| i.events.retain(|event| !pressed(event, Key::Enter) && !pressed(event, Key::D)));
         self.question = Question::Asked(departure);
         ctx.request_repaint();
     }
@@ -108,8 +110,8 @@ impl Lab {
             });
         });
         ctx.input(|i| {
-            save |= i.key_pressed(Key::Enter);
-            discard |= i.key_pressed(Key::D);
+            save |= i.events.iter().any(|event| pressed(event, Key::Enter));
+            discard |= i.events.iter().any(|event| pressed(event, Key::D));
         });
         if cancel || modal.should_close() {
             self.question = Question::None;
@@ -132,6 +134,7 @@ impl Lab {
         );
         let below_the_toolbar = toolbar::height(ctx.content_rect().width()) + 8.0;
         let area = egui::Area::new(Id::unique("unsaved changes"))
+            .default_width(ctx.content_rect().width() - 24.0)
             .anchor(Align2::CENTER_TOP, egui::vec2(0.0, below_the_toolbar));
         let (mut restore, mut discard) = (false, false);
         area.show(ctx, |ui| {
@@ -146,15 +149,21 @@ impl Lab {
         if !(restore || discard) {
             return;
         }
-        let left = self.left.take();
-        requests.push(Request::ForgetCopy);
-        if let Some(Unsaved { document, scene }) = left.filter(|_| restore) {
+        let Some(Unsaved { document, scene }) = self.left.clone() else { return };
+        if restore {
             let before = self.snapshot();
-            match self.adopt(document, scene) {
-                Ok(()) => self.remember(before, None),
-                Err(error) => self.say(ctx, translated(&error.to_string())),
+            if let Err(error) = self.adopt(document, scene) {
+                return self.say(ctx, translated(&error.to_string()));
             }
+            self.remember(before, None);
         }
+        self.left = None;
+        requests.push(Request::ForgetCopy);
         ctx.request_repaint();
     }
+}
+
+/// `true` if an event is the first press of a key.
+fn pressed(event: &Event, wanted: Key) -> bool {
+    matches!(event, Event::Key { key, pressed: true, repeat: false, .. } if *key == wanted)
 }

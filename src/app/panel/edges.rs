@@ -102,33 +102,32 @@ fn row(
     view: &mut ViewOptions,
     more: impl FnOnce(&mut Ui),
 ) -> Option<Change> {
-    const WIDTH: f32 = 128.0;
     let mut change = None;
     ui.horizontal(|ui| {
         let name = ui.label(tr(label));
-        let picker = ComboBox::from_id_salt((label, id)).selected_text(words(scene, present)).width(WIDTH).truncate();
-        let combo = picker.show_ui(ui, |ui| {
-            for (_, place) in places {
-                let entry = ui.selectable_label(*present == place, words(scene, &place));
-                if let (true, Place::Edge(name)) = (entry.hovered() || entry.has_focus(), &place) {
-                    view.edge = Some(name.clone());
-                }
-                if entry.clicked() && *present != place {
-                    change = Some(Change::Move(place));
-                }
-            }
-        });
-        let button =
-            combo.response.labelled_by(name.id).on_hover_text(tr("Edge or point it is at; the list has others"));
-        if let (true, Place::Edge(name), None) = (button.hovered(), present, &view.edge) {
-            view.edge = Some(name.clone());
-        }
-        more(ui);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let response = ui.add(Button::new("×").frame(false).min_size(vec2(20.0, 20.0))).on_hover_text(remove);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, remove));
             if response.clicked() {
                 change = Some(Change::Remove);
+            }
+            more(ui);
+            let picker = ComboBox::from_id_salt((label, id)).selected_text(words(scene, present));
+            let combo = picker.width(ui.available_width()).truncate().show_ui(ui, |ui| {
+                for (_, place) in places {
+                    let entry = ui.selectable_label(*present == place, words(scene, &place));
+                    if let (true, Place::Edge(name)) = (entry.hovered() || entry.has_focus(), &place) {
+                        view.edge = Some(name.clone());
+                    }
+                    if entry.clicked() && *present != place {
+                        change = Some(Change::Move(place));
+                    }
+                }
+            });
+            let tip = tr("Edge or point it is at; the list has others");
+            let button = combo.response.labelled_by(name.id).on_hover_text(tip);
+            if let (true, Place::Edge(name), None) = (button.hovered(), present, &view.edge) {
+                view.edge = Some(name.clone());
             }
         });
     });
@@ -165,7 +164,10 @@ pub(super) fn show(
         let Some(change) = change else { continue };
         let mut scene = Box::new(scene.clone());
         match (change, &mut scene.loads[i]) {
-            (Change::Remove, _) => _ = scene.loads.remove(i),
+            (Change::Remove, _) => {
+                scene.loads.remove(i);
+                state.forget_force(i);
+            }
             (Change::Move(to), Load::Force { place, .. }) => *place = to,
             (Change::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
             _ => {}
@@ -178,7 +180,8 @@ pub(super) fn show(
         let remove = fill!("Remove support %{n}", n = i + 1);
         let change = row(ui, ("Held at", i, &remove), (scene, &support.place), places, view, |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            for (axis, word) in [(Axis::X, "x"), (Axis::Y, "y")] {
+            // From the right.
+            for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
                 let is_fixed = fix.contains(&axis);
                 let tip = fill!("It holds the body along %{axis}: a clamp holds both ways, a roller one", axis = word);
                 let button = option_button(is_fixed, word).min_size(vec2(22.0, 0.0));
@@ -200,7 +203,7 @@ pub(super) fn show(
             _ if fix.is_empty() => _ = scene.supports.remove(i),
             (Some(Change::Remove), _) => _ = scene.supports.remove(i),
             (Some(Change::Move(to)), support) => support.place = to,
-            (None, support) => *support = Support::new(support.place.clone(), &fix),
+            (None, support) => *support = refixed(support, &fix),
         }
         edited = Some(scene);
     }
@@ -214,6 +217,17 @@ pub(super) fn show(
     });
     actions.extend(edited.map(|scene| Action::Edit("Loads and supports", scene)));
     show_message(ui, &state.messages, "Loads and supports");
+}
+
+/// The support with other directions held; it moves as before where it still can.
+fn refixed(before: &Support, fix: &[Axis]) -> Support {
+    let mut support = Support::new(before.place.clone(), fix);
+    for (i, axis) in [Axis::X, Axis::Y].into_iter().enumerate() {
+        if fix.contains(&axis) {
+            support.displacement[i] = before.displacement[i];
+        }
+    }
+    support
 }
 
 /// Buttons that add something: the name of each, its tooltip, and the scene with it.

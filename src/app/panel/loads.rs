@@ -179,6 +179,7 @@ fn choose(ui: &mut Ui, scene: &Scene, state: &mut PanelState) {
         ComboBox::from_id_salt("chosen force")
             .selected_text(text)
             .width(ui.available_width())
+            .truncate()
             .show_ui(ui, |ui| {
                 for (i, place, _) in forces(scene) {
                     if ui.selectable_label(i == present, name(i, place)).clicked() {

@@ -94,6 +94,12 @@ impl PanelState {
         self.force = Some(load);
     }
 
+    /// Follows the removal of a load: the sliders go on to set the same force, if it is still there.
+    fn forget_force(&mut self, load: usize) {
+        self.force =
+            self.force.filter(|force| *force != load).map(|force| if force > load { force - 1 } else { force });
+    }
+
     /// Direction of a force of zero, degrees.
     pub(super) fn force_direction(&self) -> f64 {
         self.force_direction.unwrap_or(DOWN)
