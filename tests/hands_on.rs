@@ -182,6 +182,16 @@ fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     harness.drop_at(to + vec2(0.0, 200.0));
     harness.run();
     assert!(harness.query_all_by_label_contains("Shown is the last equilibrium").next().is_some());
+    // The state that is not shown has no error.
+    let mut frames = 0;
+    while harness.state().is_searching() {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        harness.step();
+        frames += 1;
+        assert!(frames < 6000, "the reference is never known");
+    }
+    harness.run();
+    harness.get_by_label("ERROR \u{2013}");
     harness.get_by_label("Use newton").click();
     harness.run();
     assert_eq!(*harness.state().simulation().status(), Status::Converged);

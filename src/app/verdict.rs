@@ -45,7 +45,8 @@ pub(super) fn errors(input: &PanelInput<'_>) -> Errors {
         let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
         Some((truth.error_percent(&probe)?, probe.u))
     };
-    let own = percent_of(simulation);
+    // A state that is not drawn has no error to show.
+    let own = percent_of(simulation).filter(|_| !input.shows_converged);
     let source = own.filter(|(error, _)| words::percent(*error) != words::percent(0.0)).map(|(_, u)| {
         if !simulation.status().is_success() {
             return ErrorSource::Iteration;
