@@ -1044,7 +1044,7 @@ fn the_scene_is_copied_as_a_rust_program() {
     assert!(harness.query_by_role_and_label(Role::Button, "Copy as Rust").is_some());
 }
 
-/// What the card of a point says, by the name of the row.
+/// Values on the card of a point, by the name of the row.
 fn card(harness: &Harness<'_, Lab>) -> std::collections::BTreeMap<String, String> {
     let nodes = harness.get_all_by_role(Role::Label).map(|node| node.accesskit_node());
     let texts: Vec<String> = nodes.filter_map(|node| node.value().or_else(|| node.label())).collect();

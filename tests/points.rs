@@ -114,7 +114,7 @@ fn check_consistency(point: &PointState, material: &Material, about: &str) {
         let r = point.rotation.matrix();
         r * biot * point.stretch * r.transpose() / (f.determinant() * (1.0 + zz))
     };
-    // What is turned inside out has none.
+    // A point that is turned inside out has no stress.
     let Some(own) = point.cauchy.map(|stress| stress.plane) else {
         return assert!(point.stretch.determinant() <= 0.0 || 1.0 + zz <= 0.0, "{about}: no stress");
     };

@@ -11,28 +11,7 @@ use crate::scene::Scene;
 pub(super) type Watch<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
 /// Search for something that a scene may or may not have.
-#[derive(Debug)]
-enum Search<T> {
-    Silent(fn(&Scene) -> Option<T>),
-    Watched(fn(&Scene, Watch<'_>) -> Option<T>),
-}
-
-impl<T> Clone for Search<T> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<T> Copy for Search<T> {}
-
-impl<T> Search<T> {
-    fn run(self, scene: &Scene, watch: Watch<'_>) -> Option<T> {
-        match self {
-            Self::Silent(find) => find(scene),
-            Self::Watched(find) => find(scene, watch),
-        }
-    }
-}
+pub(super) type Search<T> = fn(&Scene, Watch<'_>) -> Option<T>;
 
 /// Something that a scene may or may not have.
 #[derive(Debug)]
@@ -50,16 +29,7 @@ pub(super) struct Finder<T> {
 
 impl<T: Send + 'static> Finder<T> {
     /// Nothing known yet.
-    pub(super) fn new(find: fn(&Scene) -> Option<T>) -> Self {
-        Self::of(Search::Silent(find))
-    }
-
-    /// Nothing known yet; the search says how far it is.
-    pub(super) fn watched(find: fn(&Scene, Watch<'_>) -> Option<T>) -> Self {
-        Self::of(Search::Watched(find))
-    }
-
-    fn of(find: Search<T>) -> Self {
+    pub(super) fn new(find: Search<T>) -> Self {
         Self { find, done: 0.0, found: None, before: None, running: None }
     }
 
@@ -80,7 +50,7 @@ impl<T: Send + 'static> Finder<T> {
         if let Some((job, current)) = &self.running {
             let found = loop {
                 match job.hear() {
-                    Heard::News(done) => self.done = done,
+                    Heard::News(done) => self.done = if *current { done } else { 0.0 },
                     Heard::Nothing => {
                         ctx.request_repaint_after(LISTEN);
                         return;
@@ -97,7 +67,7 @@ impl<T: Send + 'static> Finder<T> {
         if self.found.is_none() {
             let (find, scene) = (self.find, scene.clone());
             self.done = 0.0;
-            match Job::start("finder", move |line| find.run(&scene, &mut |done| line.say(done))) {
+            match Job::start("finder", move |line| find(&scene, &mut |done| line.say(done))) {
                 Ok(job) => self.running = Some((job, true)),
                 Err(_) => self.found = Some(None),
             }
@@ -113,7 +83,7 @@ impl<T: Send + 'static> Finder<T> {
     /// Finds out, however long it takes.
     pub(super) fn settle(&mut self, scene: &Scene) {
         if self.found.is_none() {
-            self.found = Some(self.find.run(scene, &mut |_| ControlFlow::Continue(())));
+            self.found = Some((self.find)(scene, &mut |_| ControlFlow::Continue(())));
             self.running = None;
         }
     }
@@ -141,7 +111,7 @@ mod tests {
     #[test]
     fn what_was_found_before_stays_until_the_next_is_known() {
         let scene = Scene::beam(2.0, 1.0);
-        let mut finder = Finder::new(|scene: &Scene| scene.beam.as_ref().map(|beam| beam.length));
+        let mut finder = Finder::new(|scene: &Scene, _| scene.beam.as_ref().map(|beam| beam.length));
         finder.settle(&scene);
         assert_eq!((finder.get(), finder.latest()), (Some(&2.0), Some(&2.0)));
         finder.forget();

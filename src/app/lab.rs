@@ -10,7 +10,7 @@ use super::ThemeChoice;
 use super::action::{Action, Drawer, MOST_ITERATIONS, Toggle, ViewOptions};
 use super::arrow::{Forces, vector};
 use super::budget::{Budget, question};
-use super::compare::{Compare, CompareInput, MotionCompare, MotionInput, MotionPane, Pane, PaneSetting};
+use super::compare::{Compare, CompareInput, MotionCompare, MotionPane, Pane, PaneInput, PaneSetting};
 use super::crossing::passes_through_itself;
 use super::document::Document;
 use super::drawing::Drawing;
@@ -222,13 +222,13 @@ impl Lab {
             toast: None,
             drawing,
             shape: Shape::default(),
-            truth: Finder::watched(find_reference),
-            curve: Finder::new(Curve::of),
-            jump: Finder::new(LoadPath::summary_of),
+            truth: Finder::new(find_reference),
+            curve: Finder::new(|scene, _| Curve::of(scene)),
+            jump: Finder::new(|scene, _| LoadPath::summary_of(scene)),
             budget: Budget::default(),
             compare: Compare::default(),
             motions: MotionCompare::default(),
-            frequency: Finder::new(natural_frequency),
+            frequency: Finder::new(|scene, _| natural_frequency(scene)),
             playback: Playback::default(),
             converged: None,
             shows_converged: false,
@@ -920,7 +920,7 @@ impl Lab {
         self.view_rect = rect;
         let wish = if self.moves() {
             let (motions, input) = self.compared_motions();
-            motions.show(ui, &input, actions)
+            motions.show(ui, &input)
         } else {
             // The truth does not depend on how the lab's own setting gets on.
             if !self.compare.is_iterating() {
@@ -936,32 +936,34 @@ impl Lab {
         self.paint_toast(ui, &painter, rect);
     }
 
-    /// The comparison, and what it is of.
+    /// The comparison, and its input.
     fn compared(&mut self) -> (&mut Compare, CompareInput<'_>) {
-        let Self { compare, scene, simulation, truth, view, budget, .. } = self;
+        let Self { compare, scene, simulation, truth, view, budget, panel, document, .. } = self;
         let input = CompareInput {
-            scene,
+            common: PaneInput {
+                scene,
+                view,
+                direction: panel.force_direction(),
+                opening: OpeningLoads::of(&document.original),
+                eases: self.eases,
+            },
             shown: simulation.scene(),
             system: simulation.system(),
             truth: truth.get(),
-            view,
             running: self.running,
-            direction: self.panel.force_direction(),
-            opening: OpeningLoads::of(&self.document.original),
-            eases: self.eases,
             chosen: budget.chosen(),
         };
         (compare, input)
     }
 
     /// The comparison of motions, and its input.
-    fn compared_motions(&mut self) -> (&mut MotionCompare, MotionInput<'_>) {
-        let Self { motions, scene, view, .. } = self;
-        let input = MotionInput {
+    fn compared_motions(&mut self) -> (&mut MotionCompare, PaneInput<'_>) {
+        let Self { motions, scene, view, panel, document, .. } = self;
+        let input = PaneInput {
             scene,
             view,
-            direction: self.panel.force_direction(),
-            opening: OpeningLoads::of(&self.document.original),
+            direction: panel.force_direction(),
+            opening: OpeningLoads::of(&document.original),
             eases: self.eases,
         };
         (motions, input)
@@ -1563,7 +1565,7 @@ impl Lab {
                     self.call_off();
                 }
             }
-            Action::Step if self.compares_motions() => {
+            Action::Step | Action::Forward if self.compares_motions() => {
                 self.running = false;
                 self.motions.step();
             }
@@ -1590,10 +1592,6 @@ impl Lab {
                 if let (Some(learn), Some(line)) = (&mut self.learn, line) {
                     learn.line = line;
                 }
-            }
-            Action::Forward if self.compares_motions() => {
-                self.running = false;
-                self.motions.step();
             }
             Action::Scrub(_) | Action::Back | Action::Mark if self.compares_motions() => {}
             Action::Scrub(_) | Action::Back | Action::Forward if !self.moves() || self.is_beside() => {}
@@ -1819,7 +1817,7 @@ impl Lab {
         self.playback = Playback::default();
         self.panel.clear();
         self.budget = Budget::default();
-        self.curve = Finder::new(Curve::of);
+        self.curve = Finder::new(|scene, _| Curve::of(scene));
         self.compare = Compare::default();
         self.motions = MotionCompare::default();
         self.iterations = 1;
@@ -1905,22 +1903,15 @@ impl Lab {
         if !self.is_outdated {
             return;
         }
-        let below_the_toolbar = toolbar::height(ctx.content_rect().width()) + 8.0;
-        let area = egui::Area::new(egui::Id::unique("outdated"))
-            .anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, below_the_toolbar));
-        area.show(ctx, |ui| {
-            egui::Frame::popup(ui.style()).show(ui, |ui| {
-                ui.horizontal(|ui| {
-                    ui.label(fill!("%{file} has changed on disk.", file = self.document.source.name.display()));
-                    if ui.button(tr("Reload")).clicked() {
-                        actions.push(Action::Reload);
-                    }
-                    if ui.button(tr("Keep this one")).clicked() {
-                        self.document.ignore_change();
-                        self.is_outdated = false;
-                    }
-                });
-            });
+        banner(ctx, "outdated", |ui| {
+            ui.label(fill!("%{file} has changed on disk.", file = self.document.source.name.display()));
+            if ui.button(tr("Reload")).clicked() {
+                actions.push(Action::Reload);
+            }
+            if ui.button(tr("Keep this one")).clicked() {
+                self.document.ignore_change();
+                self.is_outdated = false;
+            }
         });
     }
 
@@ -2026,6 +2017,15 @@ fn natural_frequency(scene: &Scene) -> Option<f64> {
     let problem = simulation.problem();
     let mass = Mass::new(problem.system(), scene.material.area_density());
     Some(lowest_frequency(problem, &mass)? / std::f64::consts::TAU)
+}
+
+/// Shows a message with its answers in a row under the toolbar.
+fn banner(ctx: &egui::Context, id: &str, contents: impl FnOnce(&mut Ui)) {
+    let width = ctx.content_rect().width();
+    let area = egui::Area::new(egui::Id::unique(id))
+        .default_width(width - 24.0)
+        .anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, toolbar::height(width) + 8.0));
+    area.show(ctx, |ui| egui::Frame::popup(ui.style()).show(ui, |ui| ui.horizontal_wrapped(contents)));
 }
 
 /// Where plots are, under the body.

@@ -3,14 +3,12 @@
 use egui::Color32;
 
 use super::language::{count, fill, joined, percent, tr, translated};
+use super::pace::FRAMES;
 use super::palette::Palette;
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
 use crate::study::plot::drawn_error;
 use crate::study::{Demand, Measurement, MotionStudy, Study};
-
-/// Displayed frames a second.
-const FRAMES: f64 = 60.0;
 
 /// A study.
 #[derive(Clone, Debug)]

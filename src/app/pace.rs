@@ -1,6 +1,13 @@
 //! Keeps the time of a motion in step with the clock on the wall: steps are due as time goes by, whatever the frame rate.
 
+use std::time::{Duration, Instant};
+
 use crate::words::two_digits;
+
+/// Displayed frames a second, for which costs of motions are told.
+pub(super) const FRAMES: f64 = 60.0;
+/// Share of a frame that steps may take: the rest is for drawing.
+const WORK: Duration = Duration::from_millis(24);
 
 /// Least speed, simulated seconds per second.
 const SLOWEST: f64 = 1e-6;
@@ -40,6 +47,23 @@ pub(super) struct Pace {
     factor: Option<f64>,
 }
 
+/// Steps of a frame: those that are due, as far as there is time for them, and one at least.
+#[derive(Debug)]
+pub(super) struct Steps {
+    due: u32,
+    made: u32,
+    begun: Instant,
+}
+
+impl Steps {
+    /// Returns `true` if another step is to be made, and counts it.
+    pub(super) fn next(&mut self) -> bool {
+        let goes_on = self.made < self.due && (self.made == 0 || self.begun.elapsed() < WORK);
+        self.made += u32::from(goes_on);
+        goes_on
+    }
+}
+
 impl Default for Pace {
     fn default() -> Self {
         Self { speed: 1.0, last: None, owed: 0.0, counted: (0.0, 0.0), factor: None }
@@ -76,7 +100,7 @@ impl Pace {
     }
 
     /// The frame at `now`, s, begins: whole steps of this length, s, that are due.
-    pub(super) fn begin(&mut self, now: f64, step: f64) -> u32 {
+    fn begin(&mut self, now: f64, step: f64) -> u32 {
         let Some(last) = self.last.replace(now) else {
             self.counted = (now, 0.0);
             // The first frame shows that it runs.
@@ -87,9 +111,19 @@ impl Pace {
         (self.owed / step + 1e-6) as u32
     }
 
+    /// The frame at `now`, s, begins: steps of this length, s.
+    pub(super) fn begin_steps(&mut self, now: f64, step: f64) -> Steps {
+        Steps { due: self.begin(now, step), made: 0, begun: Instant::now() }
+    }
+
+    /// The steps of the frame, of this length, s, have been made.
+    pub(super) fn end_steps(&mut self, steps: &Steps, step: f64) {
+        self.end(steps.due, steps.made, step);
+    }
+
     /// So many steps were made of those that were due. What is missing is forgotten: a machine that cannot keep up slows
     /// the motion down.
-    pub(super) fn end(&mut self, due: u32, made: u32, step: f64) {
+    fn end(&mut self, due: u32, made: u32, step: f64) {
         self.owed = if made < due { 0.0 } else { (self.owed - f64::from(made) * step).max(0.0) };
         let now = self.last.unwrap_or_default();
         self.counted.1 += f64::from(made) * step;

@@ -1,7 +1,5 @@
 //! A motion in the window: its pace, its past, the place to go back to, and the same motion under other integrators.
 
-use std::time::{Duration, Instant};
-
 use nalgebra::Vector2;
 
 use super::history::History;
@@ -16,9 +14,6 @@ use crate::state::State;
 const MOST_BYTES: usize = 64 << 20;
 /// Least time of play between two moments that are kept, s: a frame at 60 a second, less rounding.
 const BETWEEN_MOMENTS: f64 = 1.0 / 61.0;
-
-/// Of a frame so much may go into steps: the rest is for drawing.
-const WORK: Duration = Duration::from_millis(24);
 
 /// The same motion under another integrator, to be compared.
 #[derive(Debug)]
@@ -56,17 +51,14 @@ impl Playback {
     /// Makes the time steps that are due at `now`, s.
     pub(super) fn advance(&mut self, now: f64, simulation: &mut Simulation) {
         let step = simulation.scene().dynamics.time_step;
-        let due = self.pace.begin(now, step);
-        let begun = Instant::now();
-        let mut made = 0;
-        while made < due && (made == 0 || begun.elapsed() < WORK) {
+        let mut steps = self.pace.begin_steps(now, step);
+        while steps.next() {
             self.make_step(simulation);
-            made += 1;
             if simulation.is_at_rest() && !self.companions_move() {
                 break;
             }
         }
-        self.pace.end(due, made, step);
+        self.pace.end_steps(&steps, step);
         if self.played - self.kept >= BETWEEN_MOMENTS {
             self.keep_moment(simulation);
         }

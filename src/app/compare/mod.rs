@@ -3,13 +3,12 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui::emath::GuiRounding;
 use egui::{
-    Align, Align2, Color32, ComboBox, Context, FontId, Layout, Panel, Rect, RichText, Role, Sense, Ui, UiBuilder,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, ComboBox, Context, FontId, Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2,
 };
 use nalgebra::Vector2;
 
+use self::grid::{Grid, PaneBody, Preset, grow};
 use self::pane::{Doing, Equations, Turn};
 use self::setting::PANES;
 use self::trace::Trace;
@@ -19,41 +18,33 @@ use super::headline::{semibold, truth_words};
 use super::job::LISTEN;
 use super::language::{count, fill, percent, sentence, tr, translated};
 use super::legend::Mark;
-use super::load_scale::OpeningLoads;
-use super::overlay::{self, Overlay, Projection};
+use super::overlay::{self, Projection};
 use super::palette::{BODY, HEADLINE, Palette, SMALL};
 use super::playback::Playback;
-use super::pointer::{Body, Look, Reach, Wish};
-use super::stage::viewport;
-use super::toolbar::{Icon, choice, icon_button, option_button};
-use super::verdict::{Errors, error_color};
+use super::pointer::{Reach, Wish};
+use super::toolbar::{Icon, choice, icon_button};
+use super::verdict::error_color;
 use crate::assembly::System;
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::{Reference, Setting};
-use crate::words::{engineering, prefix, three_digits, two_digits};
+use crate::words::{engineering, two_digits};
 
+mod grid;
 mod motion;
 mod pane;
 mod setting;
 mod trace;
 
-pub(super) use motion::{MotionCompare, MotionInput};
+pub(super) use grid::PaneInput;
+pub(super) use motion::MotionCompare;
 pub use motion::{MotionPane, MotionPaneSetting};
 pub use pane::{Pane, PaneEnd};
 pub use setting::{PaneSetting, PaneSettingError, parse_panes};
 
 /// Time for the iterations of all panes between two frames.
 const WORK: Duration = Duration::from_millis(12);
-/// Points between panes.
-const GAP: f32 = 6.0;
-/// Height of what a pane says over its body, points.
-const HEADER: f32 = 60.0;
-/// Height of the key under the panes, points.
-const KEY: f32 = 26.0;
-/// A pane is no narrower than this, points, where there is another row for it.
-const NARROWEST: f32 = 290.0;
 /// Height of the load curve, points; at most a part of the window's.
 const TRACE_HEIGHT: f32 = 190.0;
 const TRACE_SHARE: f32 = 0.28;
@@ -62,22 +53,15 @@ const LOW: f32 = 560.0;
 /// In one lower than this, too, where the panes have two rows.
 const LOW_FOR_TWO_ROWS: f32 = 680.0;
 
-/// What the comparison is of, and how it is looked at.
+/// Input of the comparison of equilibria from the lab.
 pub(super) struct CompareInput<'a> {
-    pub scene: &'a Scene,
+    pub common: PaneInput<'a>,
     /// The scene that these equations are of.
     pub shown: &'a Scene,
     pub system: &'a Arc<System>,
     pub truth: Option<&'a Reference>,
-    pub view: &'a ViewOptions,
     pub running: bool,
-    /// Direction of a force's arrow without force, degrees.
-    pub direction: f64,
-    /// Loads that the scene opens with.
-    pub opening: OpeningLoads,
-    /// Whether the view takes its time on the way to where it looks.
-    pub eases: bool,
-    /// What the budget has chosen.
+    /// Setting that Budget has chosen.
     pub chosen: Option<Setting>,
 }
 
@@ -182,27 +166,26 @@ impl Compare {
     pub(super) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
         let camera = self.camera();
         let seen = self.panes.iter().filter_map(|pane| {
-            let viewport = viewport(pane.place?, pixels_per_point);
-            Some(View { viewport, frame: pane.shape.frame(&pane.drawing, wireframe), camera })
+            grid::view(pane.place, (&pane.shape, &pane.drawing), camera, wireframe, pixels_per_point)
         });
         seen.collect()
     }
 
     fn advance(&mut self, ctx: &Context, input: &CompareInput<'_>) {
         let (moves, holds) = ctx.input(|i| (i.pointer.delta() != egui::Vec2::ZERO, i.pointer.any_down()));
-        self.trace.follow(input.scene);
+        self.trace.follow(input.common.scene);
         let equations =
-            if self.is_changed(input.scene) { self.equations(input.shown, input.system) } else { Vec::new() };
+            if self.is_changed(input.common.scene) { self.equations(input.shown, input.system) } else { Vec::new() };
         let mut is_new = false;
         let share = WORK / u32::try_from(self.panes.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes {
             let until = Instant::now() + share;
-            pane.advance(input.scene, &equations, Turn { moves, holds, runs: input.running, until });
-            is_new |= self.trace.record(input.scene, pane);
+            pane.advance(input.common.scene, &equations, Turn { moves, holds, runs: input.running, until });
+            is_new |= self.trace.record(input.common.scene, pane);
             pane.judge(input.truth);
         }
         if !holds || !moves {
-            self.trace.ask(input.scene, ctx);
+            self.trace.ask(input.common.scene, ctx);
         }
         self.trace.record_truth(input.truth);
         let busy = |pane: &Pane| !pane.is_settled() && !pane.is_away() && !pane.waits();
@@ -221,65 +204,67 @@ impl Compare {
     /// The presets over the panes, and the load curve under them.
     pub(super) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>, actions: &mut Vec<Action>) {
         let height = ui.ctx().content_rect().height();
-        let panel = if input.view.bars && input.view.panel && !input.view.narrow { super::PANEL_WIDTH } else { 0.0 };
-        let one_row = first_row(self.panes.len(), ui.ctx().content_rect().width() - panel) == self.panes.len();
+        let panel = if input.common.view.bars && input.common.view.panel && !input.common.view.narrow {
+            super::PANEL_WIDTH
+        } else {
+            0.0
+        };
+        let one_row = grid::first_row(self.panes.len(), ui.ctx().content_rect().width() - panel) == self.panes.len();
         let low = if one_row { LOW } else { LOW_FOR_TWO_ROWS };
         let shows_trace = self.shows_trace.unwrap_or(height >= low);
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
-        if input.view.bars {
+        if input.common.view.bars {
             Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| self.presets(ui, input, shows_trace));
         }
         if shows_trace {
             let height = TRACE_HEIGHT.min(TRACE_SHARE * height);
             let panel = Panel::bottom("trace").exact_size(height).resizable(false).frame(frame);
             panel.show(ui, |ui| {
-                self.trace.show(ui, input.scene, &self.panes, input.view.curve_plot, actions);
+                self.trace.show(ui, input.common.scene, &self.panes, input.common.view.curve_plot, actions);
             });
         }
     }
 
     fn presets(&mut self, ui: &mut Ui, input: &CompareInput<'_>, shows_trace: bool) {
-        let elements: Vec<ElementKind> = input.scene.elements().collect();
+        let elements: Vec<ElementKind> = input.common.scene.elements().collect();
         let join = |words: Vec<&str>| words.join(" | ");
         let methods = join(METHODS_PRESET.iter().map(|method| tr(method.id())).collect());
         let meshed = join(elements.iter().map(|element| element.id()).collect());
-        let method = (input.scene.solver.method == MethodKind::Warped).then_some(MethodKind::Newton);
+        let method = (input.common.scene.solver.method == MethodKind::Warped).then_some(MethodKind::Newton);
         let chosen = [PaneSetting::default(), input.chosen.map(PaneSetting::from).unwrap_or_default()];
         let presets = [
-            (
-                methods,
-                METHODS_PRESET.map(PaneSetting::of_method).to_vec(),
-                true,
-                "Three methods on the panel's mesh",
-                "",
-            ),
-            (
-                meshed,
-                elements.iter().map(|&element| PaneSetting { method, ..PaneSetting::of_element(element) }).collect(),
-                elements.len() > 1,
-                "The elements that the mesh can have, by the panel's method; by newton in the place of warped, which cannot \
-                 follow all of them",
-                "The mesh of this file can have one element only",
-            ),
-            (
-                tr("present | budget").to_owned(),
-                chosen.to_vec(),
-                input.chosen.is_some(),
-                "The present setting beside the fastest that meets the limits of Budget",
-                "Measure in Budget first: what it marks is compared with the present setting",
-            ),
+            Preset {
+                name: methods,
+                settings: METHODS_PRESET.map(PaneSetting::of_method).to_vec(),
+                enabled: true,
+                tip: "Three methods on the panel's mesh",
+                unless: "",
+            },
+            Preset {
+                name: meshed,
+                settings: elements
+                    .iter()
+                    .map(|&element| PaneSetting { method, ..PaneSetting::of_element(element) })
+                    .collect(),
+                enabled: elements.len() > 1,
+                tip: "The elements that the mesh can have, by the panel's method; by newton in the place of warped, which cannot \
+                      follow all of them",
+                unless: "The mesh of this file can have one element only",
+            },
+            Preset {
+                name: tr("present | budget").to_owned(),
+                settings: chosen.to_vec(),
+                enabled: input.chosen.is_some(),
+                tip: "The present setting beside the fastest that meets the limits of Budget",
+                unless: "Measure in Budget first: what it marks is compared with the present setting",
+            },
         ];
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            for (name, settings, enabled, tip, unless) in presets {
-                let is_chosen = enabled && self.settings() == settings;
-                let button = ui.add_enabled(enabled, option_button(is_chosen, name));
-                if button.on_hover_text(tr(tip)).on_disabled_hover_text(tr(unless)).clicked() {
-                    self.set(&settings);
-                }
+            if let Some(settings) = grid::preset_buttons(ui, &self.settings(), presets) {
+                self.set(&settings);
             }
-            let more = ui.add_enabled(self.panes.len() < *PANES.end(), egui::Button::new(tr("+ Pane")));
-            if more.on_hover_text(tr("Another pane")).on_disabled_hover_text(tr("Four are the most")).clicked() {
+            if grid::add_button(ui, self.panes.len()) {
                 let used = |method: MethodKind| self.panes.iter().any(|pane| pane.setting.method == Some(method));
                 let unused = METHODS.iter().map(|entry| entry.kind).find(|&method| !used(method));
                 self.panes.push(Pane::new(unused.map(PaneSetting::of_method).unwrap_or_default()));
@@ -297,34 +282,26 @@ impl Compare {
     pub(super) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) -> Wish {
         self.advance(ui.ctx(), input);
         for pane in &mut self.panes {
-            pane.update_shape(input.view, ui.visuals());
+            pane.update_shape(input.common.view, ui.visuals());
         }
-        self.share_colors(input.view);
+        self.share_colors(input.common.view);
         let whole = ui.available_rect_before_wrap();
-        let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
-        let cells = cells(Rect::from_min_max(whole.min, key.right_top()), self.panes.len());
+        let Grid { cells, key } = Grid::new(whole, self.panes.len());
         for (pane, cell) in self.panes.iter_mut().zip(&cells) {
-            let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + HEADER).min(cell.bottom())), cell.max);
-            // As pixels are cut: what is drawn and what is painted over it have the same middle.
-            pane.place = Some(place.round_ui());
+            pane.place = Some(grid::body_place(*cell));
         }
         self.look(ui, input);
         let (mut change, mut wish) = (None, Wish::default());
-        for (number, cell) in cells.iter().enumerate() {
+        for (number, cell) in cells.into_iter().enumerate() {
             let Some(place) = self.panes.get(number).and_then(Pane::place) else { continue };
-            let header = Rect::from_min_max(cell.min, place.right_top());
-            let inner = header.shrink2(vec2(8.0, 3.0));
-            ui.scope_builder(UiBuilder::new().max_rect(inner).id_salt(("pane", number)), |ui| {
-                ui.set_clip_rect(header.intersect(ui.clip_rect()));
-                self.header(ui, number, input, &mut change);
-            });
+            grid::header(ui, number, [cell, place], |ui| self.header(ui, number, input, &mut change));
             let own = self.body(ui, number, place, input);
             if own.load.is_some() || own.restore.is_some() {
                 wish = own;
             }
         }
-        self.show_values(ui, input.view);
-        self.key(ui, key, input.view);
+        self.show_values(ui, input.common.view);
+        self.key(ui, key, input.common.view);
         match change {
             Some((number, Some(setting))) => {
                 if let Some(pane) = self.panes.get_mut(number) {
@@ -356,24 +333,20 @@ impl Compare {
     fn share_colors(&mut self, view: &ViewOptions) {
         let any = self.panes.iter().any(|pane| pane.range.is_some() && !pane.has_failed());
         let counted = self.panes.iter().filter(|pane| !any || !pane.has_failed()).filter_map(|pane| pane.range);
-        let range = counted.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default();
-        let range = view.fixed_range.unwrap_or(range);
+        let range = view.fixed_range.unwrap_or(grid::common_range(counted));
         self.panes.iter_mut().for_each(|pane| pane.shape.range = range);
     }
 
     /// Looks at all bodies and the exact one, while nobody has moved the view; never after what has not converged.
     fn look(&mut self, ui: &Ui, input: &CompareInput<'_>) {
-        let sizes =
-            self.panes.iter().filter_map(Pane::place).map(|place| [place.width(), place.height()].map(f64::from));
-        let Some(size) = sizes.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])]) else { return };
+        let Some(size) = grid::common_size(self.panes.iter().filter_map(Pane::place)) else { return };
         let (low, high) = input.system.mesh().bounds();
         let rest = [low, high];
         let iterates = self.is_iterating();
         let margins = self.margins(input, size);
         let eye = self.eye.get_or_insert_with(|| Eye::new(rest));
         if !self.panes.iter().any(|pane| pane.pointer.holds()) {
-            let grow = |[low, high]: [Vector2<f64>; 2], p: &Vector2<f64>| [low.inf(p), high.sup(p)];
-            let truth = input.truth.filter(|_| input.view.exact);
+            let truth = input.truth.filter(|_| input.common.view.exact);
             let mut bounds = truth.into_iter().flat_map(|truth| &truth.outline).flatten().fold(rest, grow);
             let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
             let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
@@ -392,17 +365,13 @@ impl Compare {
                 eye.follow(bounds);
             }
         }
-        let [low, high] = eye.whole();
-        let dt = f64::from(ui.input(|i| i.stable_dt));
-        if eye.aim(Camera::fit(low, high, size, margins), input.eases.then_some(dt)) {
-            ui.ctx().request_repaint();
-        }
+        grid::aim(ui, eye, |[low, high]| Camera::fit(low, high, size, margins), input.common.eases);
     }
 
     /// Points kept free around the bodies when the view is fitted: room for supports, the loads' arrows and their words.
     fn margins(&self, input: &CompareInput<'_>, [width, height]: [f64; 2]) -> Margins {
         let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
-        let forces = self.panes.first().and_then(|pane| pane.forces(input.direction, input.opening));
+        let forces = self.panes.first().and_then(|pane| pane.forces(input.common.direction, input.common.opening));
         let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
         let longest = |along: fn(egui::Vec2) -> f32| {
             arrows.iter().flatten().map(|arrow| f64::from(along(arrow.way))).fold(0.0, f64::max)
@@ -421,7 +390,7 @@ impl Compare {
     ) {
         let Some(pane) = self.panes.get(number) else { return };
         let palette = Palette::new(ui.visuals());
-        let shown = pane.setting.of(input.scene);
+        let shown = pane.setting.of(input.common.scene);
         let name = fill!("Pane %{n}", n = number + 1);
         ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
         ui.horizontal(|ui| {
@@ -429,29 +398,21 @@ impl Compare {
             let (bar, _) = ui.allocate_exact_size(vec2(10.0, 18.0), Sense::hover());
             ui.painter().rect_filled(bar, 3.0, color);
             let mut setting = pane.setting;
-            let close = self.panes.len() > *PANES.start() && input.view.bars;
+            let close = self.panes.len() > *PANES.start() && input.common.view.bars;
             let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
             let widths = [0.38, 0.25, 0.37].map(|share| (share * room).clamp(30.0, 120.0));
             let method = METHODS.iter().map(|entry| (entry.kind, entry.id, entry.about));
-            let panels = (input.scene.solver.method.id(), "the panel's");
+            let panels = (input.common.scene.solver.method.id(), "the panel's");
             pick(ui, &palette, (&name, "method"), widths[0], (&mut setting.method, panels), method);
-            let elements = input.scene.elements().map(|e| (e, e.id(), e.entry().about));
-            let panels = (input.scene.element().id(), "the panel's");
+            let elements = input.common.scene.elements().map(|e| (e, e.id(), e.entry().about));
+            let panels = (input.common.scene.element().id(), "the panel's");
             pick(ui, &palette, (&name, "element"), widths[1], (&mut setting.element, panels), elements);
-            mesh_picker(ui, &palette, &name, widths[2], &mut setting.cells, input.scene);
+            mesh_picker(ui, &palette, &name, widths[2], &mut setting.cells, input.common.scene);
             if setting != pane.setting {
                 *change = Some((number, Some(setting)));
             }
-            if close {
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let button = ui
-                        .add(egui::Button::new(RichText::new("×").size(18.0)).frame(false).min_size(vec2(24.0, 24.0)));
-                    let words = fill!("Close pane %{n}", n = number + 1);
-                    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));
-                    if button.on_hover_text(words).clicked() {
-                        *change = Some((number, None));
-                    }
-                });
+            if close && grid::close_button(ui, number) {
+                *change = Some((number, None));
             }
         });
         self.result(ui, &name, pane, input);
@@ -460,7 +421,7 @@ impl Compare {
     /// Error, time and iterations; or why there are none.
     fn result(&self, ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         let palette = Palette::new(ui.visuals());
-        let setting = pane.setting.of(input.scene);
+        let setting = pane.setting.of(input.common.scene);
         let (bad, words) = match pane.doing() {
             Doing::Refused(reason) => (true, sentence(&translated(reason))),
             Doing::Rests(end) => match end.status.failure() {
@@ -469,7 +430,7 @@ impl Compare {
                     let stopped = if end.status.is_success() { "" } else { tr(", stopped") };
                     let time = engineering(two_digits(end.seconds), "s");
                     // Pictures without bars have nothing that differs from run to run.
-                    let time = if input.view.bars { format!("{time} · ") } else { String::new() };
+                    let time = if input.common.view.bars { format!("{time} · ") } else { String::new() };
                     (false, format!("{time}{}{stopped}", count(end.iterations, "iteration")))
                 }
             },
@@ -513,12 +474,11 @@ impl Compare {
 
     /// The body of a pane, over what its pass has drawn.
     fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) -> Wish {
-        let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
         let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Wish::default() };
         let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
         // What is no answer has no values.
         let system = pane.system().filter(|_| pane.is_sound() && !pane.is_outdated()).cloned();
-        let forces = pane.forces(input.direction, input.opening);
+        let forces = pane.forces(input.common.direction, input.common.opening);
         let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&Projection { camera, rect: place }));
         let reach = Reach {
             mesh: system.as_ref().map(|system| system.mesh()),
@@ -528,41 +488,15 @@ impl Compare {
             handles: &handles,
             scales: eye.scales([place.width(), place.height()].map(f64::from)),
         };
-        let wish = pane.pointer.follow(ui, &response, &reach, Body::None);
-        match wish.look {
-            Look::Same => {}
-            Look::At(camera) => {
-                eye.look(camera);
-                ui.ctx().request_repaint();
-            }
-            Look::Fit => eye.fit(),
-        }
+        let wish = grid::follow(ui, (number, place), &mut pane.pointer, &reach, eye);
         let Some(pane) = self.panes.get(number) else { return wish };
         let palette = Palette::new(ui.visuals());
         let painter = ui.painter_at(place);
         if let (Some(system), Some(scene)) = (pane.system(), pane.scene()) {
-            let overlay = Overlay {
-                apart: false,
-                scene,
-                system,
-                drawing: &pane.drawing,
-                options: input.view,
-                camera,
-                positions: &pane.shape.nodes,
-                ghost: None,
-                exact: input.truth.filter(|_| input.view.exact).map_or(&[], |truth| &truth.outline),
-                errors: Errors::default(),
-                time: 0.0,
-                direction: input.direction,
-                opening: input.opening,
-                hot: pane.pointer.hot_handle(),
-                hand: None,
-                reactions: &[],
-                playback: &self.still,
-                color_range: pane.shape.range,
-                warning: None,
-            };
-            overlay::body(&painter, place, &overlay, ui.visuals());
+            let exact: &[_] = input.truth.filter(|_| input.common.view.exact).map_or(&[], |truth| &truth.outline);
+            let (drawing, shape, hot) = (&pane.drawing, &pane.shape, pane.pointer.hot_handle());
+            let body = PaneBody { scene, system, drawing, shape, exact, time: 0.0, hot };
+            body.paint(ui, place, camera, &input.common, &self.still);
         }
         if number == 0 {
             overlay::scale_bar(&painter, place, &camera, &palette);
@@ -603,46 +537,8 @@ impl Compare {
             entry("rest", Mark::Outline, palette.rest);
         }
         let Some(range) = self.panes.first().map(|pane| pane.shape.range) else { return };
-        let bar = if rect.width() < 560.0 { 70.0 } else { 130.0 };
-        let unit = view.field.unit();
-        let (power, symbol) = prefix(&range, unit);
-        let [low, high] = range.map(|v| engineering(three_digits(v / 10f64.powi(power)), ""));
-        let put = |right: f32, words: String| {
-            painter.text(pos2(right, middle), Align2::RIGHT_CENTER, words, font.clone(), palette.text).left() - 8.0
-        };
-        let right = put(rect.right() - 12.0, format!("{high} {symbol}{unit}"));
-        let bar = Rect::from_center_size(pos2(right - 0.5 * bar, middle), vec2(bar, 10.0));
-        overlay::color_bar(&painter, bar, palette.map(view.field));
-        let left = put(bar.left() - 8.0, low);
-        if left - x > 140.0 {
-            painter.text(pos2(left, middle), Align2::RIGHT_CENTER, tr(view.field.name()), font, palette.secondary);
-        }
+        grid::color_key(ui, rect, x, view, range);
     }
-}
-
-/// How many of so many panes are beside each other in the first row.
-fn first_row(panes: usize, width: f32) -> usize {
-    let one_row = panes <= 2 || panes == 3 && (width - 2.0 * GAP) / 3.0 >= NARROWEST;
-    if one_row { panes } else { panes.div_ceil(2) }
-}
-
-/// The places of so many panes: beside each other, or in two rows.
-fn cells(rect: Rect, panes: usize) -> Vec<Rect> {
-    let first = first_row(panes, rect.width());
-    let rows = [first, panes - first];
-    let count = if rows[1] > 0 { 2.0 } else { 1.0 };
-    let height = ((rect.height() - GAP * (count - 1.0)) / count).floor();
-    let mut cells = Vec::with_capacity(panes);
-    let mut top = rect.top();
-    for row in rows {
-        let width = ((rect.width() - GAP * (row.max(1) - 1) as f32) / row.max(1) as f32).floor();
-        for column in 0..row {
-            let corner = pos2(rect.left() + (width + GAP) * column as f32, top);
-            cells.push(Rect::from_min_size(corner, vec2(width, height.max(0.0))));
-        }
-        top += height + GAP;
-    }
-    cells
 }
 
 /// A picker of a pane: an own value, or that of the panel.

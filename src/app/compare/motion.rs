@@ -1,39 +1,29 @@
 //! Two to four integrators, elements or meshes beside each other in motion: one load, one clock, one camera, one range of
 //! colours.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use egui::emath::GuiRounding;
-use egui::{Align, Align2, FontId, Layout, Panel, Rect, RichText, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use egui::{Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 use nalgebra::Vector2;
 
+use super::grid::{self, Grid, PaneBody, PaneInput, Preset, grow};
 use super::setting::PANES;
-use super::{GAP, HEADER, KEY, cells, mesh_picker, pick};
-use crate::app::action::{Action, ViewOptions};
+use super::{mesh_picker, pick};
 use crate::app::arrow::Forces;
 use crate::app::drawing::Drawing;
 use crate::app::eye::Eye;
 use crate::app::language::{fill, joined, percent, sentence, tr, translated};
-use crate::app::load_scale::OpeningLoads;
-use crate::app::overlay::{self, Overlay, Projection};
-use crate::app::pace::Pace;
-use crate::app::palette::{BODY, Palette};
+use crate::app::overlay::{self, Projection};
+use crate::app::pace::{FRAMES, Pace};
+use crate::app::palette::Palette;
 use crate::app::playback::Playback;
-use crate::app::pointer::{Body, Look, Pointer, Reach, Wish};
+use crate::app::pointer::{Pointer, Reach, Wish};
 use crate::app::shape::Shape;
-use crate::app::stage::viewport;
-use crate::app::toolbar::option_button;
-use crate::app::verdict::Errors;
 use crate::dynamics::INTEGRATORS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, IntegratorKind, Scene};
 use crate::simulation::{Motion, Simulation, Status, probe_results};
-use crate::words::{engineering, prefix, three_digits, two_digits};
-
-/// Time for the steps of all panes between two frames.
-const WORK: Duration = Duration::from_millis(24);
-/// Displayed frames a second.
-const FRAMES: f64 = 60.0;
+use crate::words::{engineering, three_digits, two_digits};
 
 /// Choices of a pane in the place of those of its scene; `None`: as the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -172,17 +162,6 @@ impl MotionPane {
     }
 }
 
-/// Input of the comparison from the lab.
-pub(in crate::app) struct MotionInput<'a> {
-    pub scene: &'a Scene,
-    pub view: &'a ViewOptions,
-    /// Direction of a force's arrow without force, degrees.
-    pub direction: f64,
-    pub opening: OpeningLoads,
-    /// `true` if the view takes its time on the way to where it looks.
-    pub eases: bool,
-}
-
 /// The panes, their clock and their camera.
 #[derive(Debug)]
 pub(in crate::app) struct MotionCompare {
@@ -254,22 +233,22 @@ impl MotionCompare {
     /// Takes the scene on, and makes the time steps that are due at `now`, s. All panes are at the same time: what a slow one
     /// cannot keep up with slows all down.
     pub(in crate::app) fn advance(&mut self, scene: &Scene, now: f64, running: bool) {
-        let others = self.panes.iter_mut().filter_map(|pane| pane.follow(scene).then_some(())).count();
-        if others > 0 {
+        let mut starts_over = false;
+        for pane in &mut self.panes {
+            starts_over |= pane.follow(scene);
+        }
+        if starts_over {
             self.reset();
         }
         if !running || !self.moves() {
             return self.pace.rest();
         }
         let step = scene.dynamics.time_step;
-        let due = self.pace.begin(now, step);
-        let begun = Instant::now();
-        let mut made = 0;
-        while made < due && (made == 0 || begun.elapsed() < WORK) && self.moves() {
+        let mut steps = self.pace.begin_steps(now, step);
+        while self.moves() && steps.next() {
             self.step();
-            made += 1;
         }
-        self.pace.end(due, made, step);
+        self.pace.end_steps(&steps, step);
     }
 
     pub(in crate::app) fn camera(&self) -> Camera {
@@ -280,39 +259,42 @@ impl MotionCompare {
     pub(in crate::app) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
         let camera = self.camera();
         let seen = self.panes.iter().filter_map(|pane| {
-            let viewport = viewport(pane.place?, pixels_per_point);
-            Some(View { viewport, frame: pane.shape.frame(&pane.drawing, wireframe), camera })
+            grid::view(pane.place, (&pane.shape, &pane.drawing), camera, wireframe, pixels_per_point)
         });
         seen.collect()
     }
 
     /// The presets over the panes.
-    pub(in crate::app) fn bars(&mut self, ui: &mut Ui, input: &MotionInput<'_>) {
+    pub(in crate::app) fn bars(&mut self, ui: &mut Ui, input: &PaneInput<'_>) {
         if !input.view.bars {
             return;
         }
         let elements: Vec<ElementKind> = input.scene.elements().collect();
         let presets = [
-            (tr("integrators").to_owned(), integrators(), "Three integrators on the panel's mesh"),
-            (
-                elements.iter().map(|element| element.id()).collect::<Vec<_>>().join(" | "),
-                elements.iter().map(|&element| MotionPaneSetting::of_element(element)).collect(),
-                "The elements that the mesh can have, by the panel's integrator",
-            ),
+            Preset {
+                name: tr("integrators").to_owned(),
+                settings: integrators(),
+                enabled: true,
+                tip: "Three integrators on the panel's mesh",
+                unless: "",
+            },
+            Preset {
+                name: elements.iter().map(|element| element.id()).collect::<Vec<_>>().join(" | "),
+                settings: elements.iter().map(|&element| MotionPaneSetting::of_element(element)).collect(),
+                enabled: elements.len() > 1,
+                tip: "The elements that the mesh can have, by the panel's integrator",
+                unless: "The mesh of this file can have one element only",
+            },
         ];
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
         Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let present: Vec<_> = self.panes.iter().map(|pane| pane.setting).collect();
-                for (name, settings, tip) in presets {
-                    let button = ui.add_enabled(settings.len() > 1, option_button(present == settings, name));
-                    if button.on_hover_text(tr(tip)).clicked() {
-                        self.set(&settings);
-                    }
+                if let Some(settings) = grid::preset_buttons(ui, &present, presets) {
+                    self.set(&settings);
                 }
-                let more = ui.add_enabled(self.panes.len() < *PANES.end(), egui::Button::new(tr("+ Pane")));
-                if more.on_hover_text(tr("Another pane")).on_disabled_hover_text(tr("Four are the most")).clicked() {
+                if grid::add_button(ui, self.panes.len()) {
                     let used = |kind| present.iter().any(|setting| setting.integrator == Some(kind));
                     let unused = INTEGRATORS.iter().map(|entry| entry.kind).find(|&kind| !used(kind));
                     self.panes.push(MotionPane::new(unused.map(MotionPaneSetting::of_integrator).unwrap_or_default()));
@@ -324,7 +306,7 @@ impl MotionCompare {
     }
 
     /// The panes; returns the wish for their load.
-    pub(in crate::app) fn show(&mut self, ui: &mut Ui, input: &MotionInput<'_>, actions: &mut Vec<Action>) -> Wish {
+    pub(in crate::app) fn show(&mut self, ui: &mut Ui, input: &PaneInput<'_>) -> Wish {
         for pane in &mut self.panes {
             if let Some(simulation) = &pane.simulation {
                 pane.shape.range = pane.range;
@@ -334,39 +316,29 @@ impl MotionCompare {
             pane.shape.color(ui.visuals(), input.view.field);
         }
         let ranges = self.panes.iter().filter(|pane| pane.is_sound()).map(|pane| pane.range);
-        let range = ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default();
-        let shared = input.view.fixed_range.unwrap_or(range);
+        let shared = input.view.fixed_range.unwrap_or(grid::common_range(ranges));
         self.panes.iter_mut().for_each(|pane| pane.shape.range = shared);
         let whole = ui.available_rect_before_wrap();
-        let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
-        let cells = cells(Rect::from_min_max(whole.min, key.right_top() - vec2(0.0, GAP)), self.panes.len());
+        let Grid { cells, key } = Grid::new(whole, self.panes.len());
         for (pane, cell) in self.panes.iter_mut().zip(&cells) {
-            let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + HEADER).min(cell.bottom())), cell.max);
-            pane.place = Some(place.round_ui());
+            pane.place = Some(grid::body_place(*cell));
         }
         self.look(ui, input);
         let (mut change, mut wish) = (None, Wish::default());
-        for (number, cell) in cells.iter().enumerate() {
+        for (number, cell) in cells.into_iter().enumerate() {
             let Some(place) = self.panes.get(number).and_then(MotionPane::place) else { continue };
-            let header = Rect::from_min_max(cell.min, place.right_top());
-            ui.scope_builder(
-                UiBuilder::new().max_rect(header.shrink2(vec2(8.0, 3.0))).id_salt(("pane", number)),
-                |ui| {
-                    ui.set_clip_rect(header.intersect(ui.clip_rect()));
-                    self.header(ui, number, input, &mut change);
-                },
-            );
+            grid::header(ui, number, [cell, place], |ui| self.header(ui, number, input, &mut change));
             let own = self.body(ui, number, place, input);
             if own.load.is_some() || own.restore.is_some() {
                 wish = own;
             }
         }
-        self.key(ui, key, input.view);
+        grid::color_key(ui, key, key.left(), input.view, shared);
         match change {
             Some((number, Some(setting))) => {
                 if let Some(pane) = self.panes.get_mut(number) {
                     *pane = MotionPane::new(setting);
-                    actions.push(Action::Reset);
+                    ui.ctx().request_repaint();
                 }
             }
             Some((number, None)) if self.panes.len() > *PANES.start() => _ = self.panes.remove(number),
@@ -376,28 +348,20 @@ impl MotionCompare {
         wish
     }
 
-    /// Looks at everything that the bodies have swept, while nobody has moved the view.
-    fn look(&mut self, ui: &Ui, input: &MotionInput<'_>) {
-        let sizes = self.panes.iter().filter_map(MotionPane::place);
-        let sizes = sizes.map(|place| [place.width(), place.height()].map(f64::from));
-        let Some(size) = sizes.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])]) else { return };
+    /// Turns the camera to everything that the bodies have swept, while nobody has moved the view.
+    fn look(&mut self, ui: &Ui, input: &PaneInput<'_>) {
+        let Some(size) = grid::common_size(self.panes.iter().filter_map(MotionPane::place)) else { return };
         let Some(first) = self.panes.iter().find_map(MotionPane::simulation) else { return };
-        let (low, high) = first.system().mesh().bounds();
+        let rest = first.system().mesh().bounds().into();
         let sound = self.panes.iter().filter(|pane| pane.is_sound());
-        let grow = |[low, high]: [Vector2<f64>; 2], p: &Vector2<f64>| [low.inf(p), high.sup(p)];
-        let swept = sound.flat_map(|pane| pane.shape.points()).fold(self.swept.unwrap_or([low, high]), grow);
+        let swept = sound.flat_map(|pane| pane.shape.points()).fold(self.swept.unwrap_or(rest), grow);
         self.swept = Some(swept);
-        let holds = self.panes.iter().any(|pane| pane.pointer.holds());
-        let eye = self.eye.get_or_insert_with(|| Eye::new([low, high]));
-        if !holds {
+        let eye = self.eye.get_or_insert_with(|| Eye::new(rest));
+        if !self.panes.iter().any(|pane| pane.pointer.holds()) {
             eye.follow(swept);
         }
-        let [low, high] = eye.whole();
         let margins = Margins { sides: 40.0, top: 40.0, bottom: 44.0 };
-        let dt = f64::from(ui.input(|i| i.stable_dt));
-        if eye.aim(Camera::fit(low, high, size, margins), input.eases.then_some(dt)) {
-            ui.ctx().request_repaint();
-        }
+        grid::aim(ui, eye, |[low, high]| Camera::fit(low, high, size, margins), input.eases);
     }
 
     /// The pickers of a pane, and its numbers.
@@ -405,7 +369,7 @@ impl MotionCompare {
         &self,
         ui: &mut Ui,
         number: usize,
-        input: &MotionInput<'_>,
+        input: &PaneInput<'_>,
         change: &mut Option<(usize, Option<MotionPaneSetting>)>,
     ) {
         let Some(pane) = self.panes.get(number) else { return };
@@ -430,16 +394,8 @@ impl MotionCompare {
             if setting != pane.setting {
                 *change = Some((number, Some(setting)));
             }
-            if close {
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let button = egui::Button::new(RichText::new("×").size(18.0)).frame(false);
-                    let button = ui.add(button.min_size(vec2(24.0, 24.0)));
-                    let words = fill!("Close pane %{n}", n = number + 1);
-                    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));
-                    if button.on_hover_text(words).clicked() {
-                        *change = Some((number, None));
-                    }
-                });
+            if close && grid::close_button(ui, number) {
+                *change = Some((number, None));
             }
         });
         self.result(ui, &name, number, pane);
@@ -482,8 +438,7 @@ impl MotionCompare {
     }
 
     /// The body of a pane, over what its pass has drawn.
-    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &MotionInput<'_>) -> Wish {
-        let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
+    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &PaneInput<'_>) -> Wish {
         let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Wish::default() };
         let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
         let Some(simulation) = pane.simulation.as_deref() else { return Wish::default() };
@@ -504,68 +459,21 @@ impl MotionCompare {
             handles: &handles,
             scales: eye.scales([place.width(), place.height()].map(f64::from)),
         };
-        let wish = pane.pointer.follow(ui, &response, &reach, Body::None);
-        match wish.look {
-            Look::Same => {}
-            Look::At(camera) => {
-                eye.look(camera);
-                ui.ctx().request_repaint();
-            }
-            Look::Fit => eye.fit(),
-        }
+        let wish = grid::follow(ui, (number, place), &mut pane.pointer, &reach, eye);
         let Some(pane) = self.panes.get(number) else { return wish };
         let Some(simulation) = pane.simulation() else { return wish };
         let palette = Palette::new(ui.visuals());
         let painter = ui.painter_at(place);
-        let overlay = Overlay {
-            apart: false,
-            scene: simulation.scene(),
-            system: simulation.system(),
-            drawing: &pane.drawing,
-            options: input.view,
-            camera: self.camera(),
-            positions: &pane.shape.nodes,
-            ghost: None,
-            exact: &[],
-            errors: Errors::default(),
-            time: simulation.state().time(),
-            direction: input.direction,
-            opening: input.opening,
-            hot: pane.pointer.hot_handle(),
-            hand: None,
-            reactions: &[],
-            playback: &self.still,
-            color_range: pane.shape.range,
-            warning: None,
-        };
-        overlay::body(&painter, place, &overlay, ui.visuals());
+        let (drawing, shape, hot) = (&pane.drawing, &pane.shape, pane.pointer.hot_handle());
+        let (scene, system, time) = (simulation.scene(), simulation.system(), simulation.state().time());
+        let camera = self.camera();
+        PaneBody { scene, system, drawing, shape, exact: &[], time, hot }.paint(ui, place, camera, input, &self.still);
         if number == 0 {
-            overlay::scale_bar(&painter, place, &self.camera(), &palette);
+            overlay::scale_bar(&painter, place, &camera, &palette);
         }
-        if matches!(simulation.status(), Status::Stopped(_)) {
+        if !pane.is_sound() {
             painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.55));
         }
         wish
-    }
-
-    /// Colours of all panes.
-    fn key(&self, ui: &Ui, rect: Rect, view: &ViewOptions) {
-        let palette = Palette::new(ui.visuals());
-        let painter = ui.painter_at(rect);
-        let font = FontId::proportional(BODY);
-        let middle = rect.center().y;
-        let Some(range) = self.panes.first().map(|pane| pane.shape.range) else { return };
-        let unit = view.field.unit();
-        let (power, symbol) = prefix(&range, unit);
-        let [low, high] = range.map(|v| engineering(three_digits(v / 10f64.powi(power)), ""));
-        let put = |right: f32, words: String, color| {
-            let place = painter.text(pos2(right, middle), Align2::RIGHT_CENTER, words, font.clone(), color);
-            place.left() - 8.0
-        };
-        let right = put(rect.right() - 12.0, format!("{high} {symbol}{unit}"), palette.text);
-        let bar = Rect::from_center_size(pos2(right - 65.0, middle), vec2(130.0, 10.0));
-        overlay::color_bar(&painter, bar, palette.map(view.field));
-        let left = put(bar.left() - 8.0, low, palette.text);
-        put(left, tr(view.field.name()).to_owned(), palette.secondary);
     }
 }

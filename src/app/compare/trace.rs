@@ -116,7 +116,7 @@ impl Default for Trace {
             family: None,
             direction: None,
             series: Vec::new(),
-            exact: Finder::new(exact_line),
+            exact: Finder::new(|scene, _| exact_line(scene)),
             line: Vec::new(),
             truths: Vec::new(),
             reach: 0.0,

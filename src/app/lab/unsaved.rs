@@ -1,15 +1,14 @@
 //! Edits that no file has: the question that is asked before they are lost, and the offer of those that a crashed window
 //! has left.
 
-use egui::{Align2, Context, Event, Id, Key, Modal, RichText};
+use egui::{Context, Event, Id, Key, Modal, RichText};
 
-use super::{Lab, Request};
+use super::{Lab, Request, banner};
 use crate::app::document::Document;
 use crate::app::file_dialog::{FileDialog, Purpose};
 use crate::app::language::{fill, tr, translated};
 use crate::app::mode::Mode;
 use crate::app::recovery::Unsaved;
-use crate::app::toolbar;
 use crate::scene::{Scene, Source};
 
 /// Request that would lose the edits.
@@ -132,19 +131,11 @@ impl Lab {
             "Unsaved changes to “%{scene}” were found: warpbeam ended unexpectedly.",
             scene = tr(&left.scene.name)
         );
-        let below_the_toolbar = toolbar::height(ctx.content_rect().width()) + 8.0;
-        let area = egui::Area::new(Id::unique("unsaved changes"))
-            .default_width(ctx.content_rect().width() - 24.0)
-            .anchor(Align2::CENTER_TOP, egui::vec2(0.0, below_the_toolbar));
         let (mut restore, mut discard) = (false, false);
-        area.show(ctx, |ui| {
-            egui::Frame::popup(ui.style()).show(ui, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    ui.label(words);
-                    restore = ui.button(tr("Restore")).clicked();
-                    discard = ui.button(tr("Discard")).clicked();
-                });
-            });
+        banner(ctx, "unsaved-changes", |ui| {
+            ui.label(words);
+            restore = ui.button(tr("Restore")).clicked();
+            discard = ui.button(tr("Discard")).clicked();
         });
         if !(restore || discard) {
             return;

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::action::{Action, Toggle, ViewOptions};
 use super::drawing::Drawing;
 use super::field::Messages;
-use super::finder::Finder;
+use super::finder::{Finder, Search};
 use super::lab::Lab;
 use super::language::{fill, spaced, tr};
 use super::mode::Mode;
@@ -72,7 +72,7 @@ struct Known<T> {
 }
 
 impl<T: Send + 'static> Known<T> {
-    fn new(find: fn(&Scene) -> Option<T>, key: fn(&Scene) -> Scene) -> Self {
+    fn new(find: Search<T>, key: fn(&Scene) -> Scene) -> Self {
         Self { finder: Finder::new(find), key, of: None }
     }
 
@@ -171,13 +171,19 @@ impl Learn {
             picked: 6,
             turned: 1.0,
             asked: 1.0,
-            rho: Known::new(fixed_point_rho, |scene| Scene { solver: SolverSettings::default(), ..scene.clone() }),
-            errors: Known::new(locking::errors, |scene| {
-                let mut scene = Scene { solver: SolverSettings::default(), ..scene.clone() };
-                let first = scene.elements().next().unwrap_or_default();
-                scene.set_element(first);
-                scene
-            }),
+            rho: Known::new(
+                |scene, _| fixed_point_rho(scene),
+                |scene| Scene { solver: SolverSettings::default(), ..scene.clone() },
+            ),
+            errors: Known::new(
+                |scene, _| locking::errors(scene),
+                |scene| {
+                    let mut scene = Scene { solver: SolverSettings::default(), ..scene.clone() };
+                    let first = scene.elements().next().unwrap_or_default();
+                    scene.set_element(first);
+                    scene
+                },
+            ),
             messages: Messages::new(),
             line: 0,
             shown_line: 0,

@@ -48,8 +48,8 @@ pub(super) struct CellsThatFollow {
 }
 
 impl CellsThatFollow {
-    /// Number of cells of a side that is now of size `new`, m, and was of size `old` with `cells`. Small steps add up: all
-    /// are counted from the same reference until somebody sets the cells.
+    /// Number of cells of a side that is now of size `new`, m, and was of size `old` with `cells`. Every
+    /// call counts from the same reference, so that small steps add up, until somebody sets the cells.
     fn count(&mut self, axis: usize, [old, new]: [f64; 2], cells: u32) -> u32 {
         let Some(reference) = self.references.get_mut(axis) else { return cells };
         let at = |(size, cells): (f64, u32), now: f64| {

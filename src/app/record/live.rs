@@ -45,7 +45,7 @@ pub(in crate::app) struct LiveRecording {
     last: Option<u64>,
 }
 
-/// A picture on its way from the graphics device.
+/// A picture that the graphics device is still copying to memory.
 struct Reading {
     number: u64,
     buffer: wgpu::Buffer,
@@ -187,7 +187,7 @@ impl LiveRecording {
         if !self.is_running() {
             return;
         }
-        // What is drawn already takes a moment to come.
+        // Waits for the pictures that the device is still copying.
         let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
         self.hand_on(gpu);
         self.end.store((self.seconds(now) * f64::from(RATE)).max(0.0) as u64, Ordering::Relaxed);
@@ -391,7 +391,7 @@ mod tests {
         assert!(words.starts_with("Saved"), "{words}");
         let movie = decode(&path);
         assert!(movie.len() >= 3, "{}", movie.len());
-        // As long as it took, in steps of 0.04 s.
+        // The film is as long as the recording took, in steps of 0.04 s.
         let length: u16 = movie.iter().map(|(_, delay)| delay).sum();
         assert!(length.abs_diff(180) <= 8 && movie.iter().all(|(_, delay)| delay.is_multiple_of(4)), "{length}");
         let (shown, _) = movie.last().unwrap();
