@@ -862,7 +862,7 @@ fn unsaved_edits_are_asked_about() {
     let mut harness = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(2000).build_ui_state(
         move |ui, lab: &mut Lab| {
             lab.advance(ui.input(|i| i.time));
-            asked.set(asked.get() || lab.ui(ui).contains(&warpbeam::app::lab::Request::Close));
+            asked.set(asked.get() || lab.ui(ui).contains(&warpbeam::app::Request::Close));
         },
         lab,
     );

@@ -4,20 +4,20 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::figure::{CurvePlot, FigureFile};
-use super::measured::Choice;
-use super::mode::Mode;
-use super::motion_plot::MotionPlot;
+use crate::app::mode::Mode;
+use crate::app::modes::budget::measured::Choice;
+use crate::app::modes::explore::figure::{CurvePlot, FigureFile};
+use crate::app::modes::explore::motion_plot::MotionPlot;
 use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::figure::Figure;
 
 /// Most iterations that a displayed frame may be asked for.
-pub(super) const MOST_ITERATIONS: u32 = 100;
+pub(crate) const MOST_ITERATIONS: u32 = 100;
 
 /// What a click, a drag or a key asks for.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Action {
+pub(crate) enum Action {
     /// Open a built-in scene.
     Open(&'static str),
     /// Ask for a scene file and open it.
@@ -94,7 +94,7 @@ pub(super) enum Action {
 
 /// What can be shown or hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Toggle {
+pub(crate) enum Toggle {
     Wireframe,
     RestOutline,
     Ghost,
@@ -112,7 +112,7 @@ pub(super) enum Toggle {
 /// What is shown under the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Drawer {
+pub(crate) enum Drawer {
     /// Load against deflection.
     Curve,
     /// Energy, tip, phase and spectrum of a motion.
@@ -121,7 +121,7 @@ pub(super) enum Drawer {
 
 impl Drawer {
     /// That of a scene.
-    pub(super) fn of(scene: &Scene) -> Self {
+    pub(crate) fn of(scene: &Scene) -> Self {
         match scene.analysis {
             Analysis::Static => Self::Curve,
             Analysis::Dynamic => Self::Motion,
@@ -129,7 +129,7 @@ impl Drawer {
     }
 
     /// Its name and what is in it.
-    pub(super) fn words(self) -> (&'static str, &'static str) {
+    pub(crate) fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Curve => ("Load curve", "Load against deflection (L)"),
             Self::Motion => ("Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),
@@ -139,7 +139,7 @@ impl Drawer {
 
 /// How to look at the body.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct ViewOptions {
+pub(crate) struct ViewOptions {
     pub field: Field,
     /// Fixed ends of the colour map, or `None` for those of the current values.
     pub fixed_range: Option<[f64; 2]>,
@@ -198,12 +198,12 @@ impl Default for ViewOptions {
 
 impl ViewOptions {
     /// Whether the field is drawn from what has been recovered at the nodes.
-    pub(super) fn is_smooth(&self) -> bool {
+    pub(crate) fn is_smooth(&self) -> bool {
         !self.raw && !self.field.is_of_elements()
     }
 
     /// Shows what was hidden and hides what was shown; a drawer opens in the place of another.
-    pub(super) fn toggle(&mut self, what: Toggle) {
+    pub(crate) fn toggle(&mut self, what: Toggle) {
         match what {
             Toggle::Wireframe => self.wireframe ^= true,
             Toggle::RestOutline => self.rest_outline ^= true,
@@ -227,17 +227,17 @@ impl ViewOptions {
     }
 
     /// The plots that are seen.
-    pub(super) fn plots(&self) -> Option<Drawer> {
+    pub(crate) fn plots(&self) -> Option<Drawer> {
         self.drawer.filter(|_| self.mode == Mode::Explore)
     }
 
     /// Whether the panel is seen.
-    pub(super) fn shows_panel(&self) -> bool {
+    pub(crate) fn shows_panel(&self) -> bool {
         if self.narrow { self.sheet } else { self.panel }
     }
 
     /// Colours with another field; a fixed range was for the one before.
-    pub(super) fn color_with(&mut self, field: Field) {
+    pub(crate) fn color_with(&mut self, field: Field) {
         if self.field != field {
             self.field = field;
             self.fixed_range = None;

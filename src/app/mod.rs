@@ -1,5 +1,5 @@
-//! The window and its pictures. [`lab::Lab`] is what is shown: a scene, its simulation and how to look at it. The
-//! window, the offscreen shot and the tests of the panel all show the same lab through [`lab::Lab::ui`].
+//! The window and its pictures. [`Lab`] is what is shown: a scene, its simulation and how to look at it. The
+//! window, the offscreen shot and the tests of the panel all show the same lab through [`Lab::ui`].
 
 use std::path::PathBuf;
 
@@ -8,70 +8,28 @@ use thiserror::Error;
 use crate::render::RenderError;
 
 mod action;
-mod arrow;
-mod background;
-mod budget;
-mod clicks;
-mod clipboard;
-mod compare;
-mod crossing;
-mod document;
-mod drawing;
-mod edits;
-mod errand;
-mod eye;
-mod field;
-mod figure;
-mod file_dialog;
-mod finder;
-mod gallery;
-mod handle;
-mod headline;
-mod help;
-mod history;
-mod intro;
-mod job;
-mod keys;
-pub mod lab;
+mod diagnosis;
 mod language;
-mod learn;
-mod legend;
-mod load_scale;
-mod measured;
 mod mode;
-mod motion_plot;
-mod overlay;
-mod pace;
-mod palette;
+mod modes;
+mod offscreen;
 mod panel;
-mod past;
-mod playback;
-mod plot;
-mod pointer;
-mod probe;
-mod quality;
-mod record;
-mod recorder;
-mod recovery;
-mod settings;
-mod shape;
-mod shot;
+mod session;
+mod shell;
 mod size;
-mod stage;
-mod time_line;
-mod toolbar;
-mod turn;
-mod verdict;
+mod task;
+mod viewport;
+mod widgets;
 mod window;
 
-pub use compare::{MotionPane, MotionPaneSetting, Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
-pub use lab::{Lab, PANEL_WIDTH};
 pub use language::Language;
-pub use record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
+pub use modes::compare::{MotionPane, MotionPaneSetting, Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
+pub use offscreen::record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
+pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
 #[doc(hidden)]
-pub use recovery::{Recovery, Unsaved};
-pub use settings::Settings;
-pub use shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
+pub use session::recovery::{Recovery, Unsaved};
+pub use shell::lab::{Lab, PANEL_WIDTH, Request};
+pub use shell::settings::Settings;
 pub use window::{Display, NoDisplay, opens_beside, run};
 
 /// No number is free for a file's name.

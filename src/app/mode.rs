@@ -2,13 +2,13 @@
 
 use egui::Ui;
 
-use super::action::Action;
-use super::lab::{Lab, Request};
+use crate::app::action::Action;
+use crate::app::shell::lab::{Lab, Request};
 use crate::scene::Scene;
 
 /// What the window is used for at present.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Mode {
+pub(crate) enum Mode {
     /// The body, its load and its numbers.
     #[default]
     Explore,
@@ -21,7 +21,7 @@ pub(super) enum Mode {
 }
 
 /// A mode in the toolbar.
-pub(super) struct ModeEntry {
+pub(crate) struct ModeEntry {
     pub mode: Mode,
     pub name: &'static str,
     pub about: &'static str,
@@ -35,7 +35,7 @@ pub(super) struct ModeEntry {
 }
 
 /// Every mode there is.
-pub(super) const MODES: &[ModeEntry] = &[
+pub(crate) const MODES: &[ModeEntry] = &[
     ModeEntry {
         mode: Mode::Explore,
         name: "Explore",
@@ -76,7 +76,7 @@ pub(super) const MODES: &[ModeEntry] = &[
 
 impl Mode {
     /// Its entry in the list.
-    pub(super) fn entry(self) -> &'static ModeEntry {
+    pub(crate) fn entry(self) -> &'static ModeEntry {
         MODES.iter().find(|entry| entry.mode == self).unwrap_or(&MODES[0])
     }
 }

@@ -3,12 +3,12 @@
 use crate::scene::{ElementKind, Scene};
 
 /// More unknowns than this are not solved between two frames in a pane, which is one of several.
-pub(super) const MOST_UNKNOWNS: f64 = 4000.0;
+pub(crate) const MOST_UNKNOWNS: f64 = 4000.0;
 /// More are not meshed and solved between two frames where one body is all there is.
-pub(super) const MOST_ALONE: f64 = 16_000.0;
+pub(crate) const MOST_ALONE: f64 = 16_000.0;
 
 /// About so many unknowns.
-pub(super) fn unknowns(scene: &Scene) -> f64 {
+pub(crate) fn unknowns(scene: &Scene) -> f64 {
     // Nodes a side of a cell.
     let along = if scene.element() == ElementKind::T6 { 2.0 } else { 1.0 };
     match (&scene.beam, &scene.mesh) {

@@ -10,6 +10,7 @@ use crate::picture::PictureError;
 mod body;
 mod camera;
 pub mod colormap;
+pub(crate) mod display_geometry;
 mod offscreen;
 
 pub use body::{BodyRenderer, Frame, View, Viewport};

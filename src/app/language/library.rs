@@ -1,6 +1,6 @@
 //! The library makes its sentences in English. Here they are taken apart again, for the catalogue.
 
-use super::{filled, tr};
+use crate::app::language::{filled, tr};
 
 /// Its sentences. A place takes what stands there, as little as can be, and that is translated in its turn; the places `n`
 /// and `key` take no space. The first one that fits is it: the special before the general.
@@ -73,7 +73,7 @@ const SENTENCES: &[&str] = &[
 ];
 
 /// What is shown for a text of the library, of any kind.
-pub(in crate::app) fn translated(english: &str) -> String {
+pub(crate) fn translated(english: &str) -> String {
     let known = tr(english);
     if known != english {
         return known.to_owned();
@@ -116,8 +116,8 @@ fn places<'a>(sentence: &'static str, text: &'a str) -> Option<Vec<(&'static str
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CHINESE, Language, speak};
     use super::*;
+    use crate::app::language::{CHINESE, Language, speak};
     use crate::dynamics::{StepError, StopReason};
     use crate::method::{Decision, IterationError, Reason, floor_words, rho_words};
     use crate::scene::limits::{CELLS, FORCE};

@@ -2,11 +2,11 @@
 
 use egui::Ui;
 
-use super::{Action, PanelInput, PanelState, number_row};
 use crate::app::action::MOST_ITERATIONS;
-use crate::app::field::{NumberField, SliderScale, show_message};
 use crate::app::language::{count, fill, joined, tr};
-use crate::app::toolbar::option_button;
+use crate::app::panel::{Action, PanelInput, PanelState, number_row};
+use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
 use crate::scene::{Analysis, Beam, Material, Plane, Scene, limits};
 use crate::words::{engineering, number, three_digits};
 

@@ -2,13 +2,13 @@
 
 use egui::{Align, Button, ComboBox, Layout, Role, Ui, WidgetInfo, vec2};
 
-use super::{Action, PanelInput, PanelState, ViewOptions};
-use crate::app::arrow::force_range;
-use crate::app::field::show_message;
 use crate::app::language::{count, fill, joined, tr};
-use crate::app::load_scale::OpeningLoads;
-use crate::app::toolbar::option_button;
-use crate::app::turn::moment_range;
+use crate::app::panel::{Action, PanelInput, PanelState, ViewOptions};
+use crate::app::shell::toolbar::option_button;
+use crate::app::viewport::arrow::force_range;
+use crate::app::viewport::moment_arrow::moment_range;
+use crate::app::widgets::load_scale::OpeningLoads;
+use crate::app::widgets::number_field::show_message;
 use crate::assembly::{Edge, System};
 use crate::scene::{Axis, Load, Place, Scene, Support};
 use crate::words::number;

@@ -2,12 +2,12 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{Action, PanelInput, PanelState, edges};
-use crate::app::arrow::{DOWN, force_range, polar_form, vector};
-use crate::app::field::{NumberField, SliderScale};
 use crate::app::language::{fill, joined, tr};
-use crate::app::load_scale::OpeningLoads;
-use crate::app::turn::moment_range;
+use crate::app::panel::{Action, PanelInput, PanelState, edges};
+use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
+use crate::app::viewport::moment_arrow::moment_range;
+use crate::app::widgets::load_scale::OpeningLoads;
+use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::scene::{Load, Place, Scene, limits};
 use crate::words::engineering;
 

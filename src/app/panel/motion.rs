@@ -2,11 +2,11 @@
 
 use egui::Ui;
 
-use super::{Action, PanelInput, PanelState, number_row, picker};
-use crate::app::field::{NumberField, SliderScale, show_message};
 use crate::app::language::{fill, joined, tr};
-use crate::app::pace::{fraction, speed_of_period};
-use crate::app::toolbar::option_button;
+use crate::app::panel::{Action, PanelInput, PanelState, number_row, picker};
+use crate::app::session::clock::{fraction, speed_of_period};
+use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
 use crate::dynamics::INTEGRATORS;
 use crate::scene::{Scene, limits};
 use crate::words::{engineering, three_digits};

@@ -2,12 +2,12 @@
 
 use egui::{Grid, RichText, Ui};
 
-use super::{PanelInput, supports};
-use crate::app::headline::{DRIFT_TIP, UNKNOWN, truth_words};
+use crate::app::diagnosis::{Errors, rho, stability};
 use crate::app::language::{count, fill, joined, percent, sentence, tr, translated};
-use crate::app::pace::fraction;
-use crate::app::palette::Palette;
-use crate::app::verdict::{Errors, rho, stability};
+use crate::app::panel::{PanelInput, supports};
+use crate::app::session::clock::fraction;
+use crate::app::shell::status_bar::{DRIFT_TIP, UNKNOWN, truth_words};
+use crate::app::widgets::palette::Palette;
 use crate::method::rho_words;
 use crate::simulation::{Motion, Simulation, Status, energy};
 use crate::study::Reference;

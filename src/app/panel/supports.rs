@@ -2,9 +2,9 @@
 
 use egui::{ComboBox, Id, Ui};
 
-use super::{Action, PanelInput, PanelState};
-use crate::app::field::{NumberField, SliderScale};
 use crate::app::language::{fill, joined, tr};
+use crate::app::panel::{Action, PanelInput, PanelState};
+use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
 use crate::simulation::Simulation;

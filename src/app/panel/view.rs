@@ -2,9 +2,9 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{Action, PanelInput, PanelState, ViewOptions};
-use crate::app::field::{NumberField, SliderScale};
 use crate::app::language::{joined, tr};
+use crate::app::panel::{Action, PanelInput, PanelState, ViewOptions};
+use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::scene::{Analysis, Scene, limits};
 use crate::simulation::{Field, Simulation};
 use crate::stress::RecoveryScratch;
@@ -136,7 +136,7 @@ fn value_range(simulation: &Simulation, field: Field, raw: bool) -> [f64; 2] {
 
 /// The smallest and the largest of some values; never empty. Values that differ by rounding only are given a range in
 /// which they look the same.
-pub(in crate::app) fn range_of(values: &[Option<f64>]) -> [f64; 2] {
+pub(crate) fn range_of(values: &[Option<f64>]) -> [f64; 2] {
     const SAME: f64 = 1e-6;
     const WIDENED: f64 = 1e-2;
     let [low, high] =

@@ -1,0 +1,279 @@
+//! What the lab makes of a result: its error and where that comes from, its status in words, and what would mend it.
+
+use crate::app::language::{count, fill, percent, sentence, tr, translated};
+use crate::app::panel::PanelInput;
+use crate::app::widgets::palette::Palette;
+use crate::method::{floor_words, rho_words};
+use crate::scene::{ElementKind, MethodKind, Scene, limits};
+use crate::simulation::{Simulation, Status, probe_results};
+use crate::words::{self, engineering, number, two_digits};
+
+/// Where most of an error comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ErrorSource {
+    Mesh,
+    Iteration,
+    Theory,
+}
+
+impl ErrorSource {
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Mesh => "mesh",
+            Self::Iteration => "iteration",
+            Self::Theory => "theory",
+        }
+    }
+}
+
+/// The errors at the first probe, percent of the true displacement, where they are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Errors {
+    pub own: Option<f64>,
+    pub linear: Option<f64>,
+    pub source: Option<ErrorSource>,
+}
+
+/// Compares the state, and linear theory's, with the truth; nothing while something moves: a picture of one instant has no
+/// error of another.
+pub(crate) fn errors(input: &PanelInput<'_>) -> Errors {
+    let simulation = input.simulation;
+    let at_rest = simulation.is_at_rest() && simulation.hand().is_none();
+    let Some(reference) = input.truth.filter(|_| at_rest) else { return Errors::default() };
+    let Some(truth) = reference.first() else { return Errors::default() };
+    let percent_of = |simulation: &Simulation| {
+        let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
+        Some((truth.error_percent(&probe)?, probe.u))
+    };
+    // A state that is not drawn has no error to show.
+    let own = percent_of(simulation).filter(|_| !input.shows_converged);
+    let source = own.filter(|(error, _)| words::percent(*error) != words::percent(0.0)).map(|(_, u)| {
+        if !simulation.status().is_success() {
+            return ErrorSource::Iteration;
+        }
+        let theory = reference.linear.filter(|_| simulation.is_linear());
+        let [of_theory, of_mesh] =
+            theory.map_or([0.0, 1.0], |fine| [(fine - truth.displacement).norm(), (u - fine).norm()]);
+        if of_theory > of_mesh { ErrorSource::Theory } else { ErrorSource::Mesh }
+    });
+    let linear = input.linear.and_then(percent_of).map(|(error, _)| error);
+    Errors { own: own.map(|(error, _)| error), linear, source }
+}
+
+/// The colour of an error, percent.
+pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color32 {
+    match error {
+        Some(error) if error > 5.0 => palette.error,
+        Some(error) if error > 1.0 => palette.warning,
+        Some(_) => palette.good,
+        None => palette.secondary,
+    }
+}
+
+/// Whether the picture is of another load than the one that is set: an edit while paused.
+pub(crate) fn is_stale(input: &PanelInput<'_>) -> bool {
+    let simulation = input.simulation;
+    !input.running
+        && simulation.motion().is_none()
+        && *simulation.status() == Status::Running
+        && simulation.iterations() == 0
+        && simulation.displacement().iter().any(|u| u.norm() > 0.0)
+}
+
+/// The status as a sentence, and whether it is a bad one. The last equilibrium is drawn where it `shows_converged`.
+pub(crate) fn status_words(simulation: &Simulation, running: bool, shows_converged: bool) -> (String, bool) {
+    let moves = simulation.motion().is_some();
+    let said = |reason: &dyn std::fmt::Display| translated(&reason.to_string());
+    match simulation.status() {
+        Status::Running | Status::Finished if !running => (tr("Paused").to_owned(), false),
+        // The duration is for runs without a window: here a motion goes on.
+        Status::Running | Status::Finished if moves && simulation.is_at_rest() => (tr("At rest").to_owned(), false),
+        Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
+        Status::Running | Status::Finished => (tr("Iterating").to_owned(), false),
+        Status::Converged => (tr("Converged").to_owned(), false),
+        Status::Accepted => (tr("Accepted").to_owned(), false),
+        Status::NotConverged(reason) if shows_converged => {
+            (fill!("Not converged: %{reason}. Shown is the last equilibrium.", reason = said(reason)), true)
+        }
+        Status::NotConverged(reason) => (fill!("Not converged: %{reason}.", reason = said(reason)), true),
+        Status::Diverged(reason) if shows_converged => {
+            (fill!("Diverged: %{reason}. Shown is the last equilibrium.", reason = said(reason)), true)
+        }
+        Status::Diverged(reason) => {
+            (fill!("Diverged: %{reason}. Shown is the last finite state.", reason = said(reason)), true)
+        }
+        Status::Stopped(reason) => {
+            (fill!("Stopped: %{reason}. Shown is the last finite state.", reason = said(reason)), true)
+        }
+    }
+}
+
+/// The status in a line: `Converged · stable · 21 iterations`; and whether it is a bad one.
+pub(crate) fn summary(input: &PanelInput<'_>) -> (String, bool) {
+    let simulation = input.simulation;
+    let (mut words, bad) = status_words(simulation, input.running, input.shows_converged);
+    if bad {
+        return (words, true);
+    }
+    if is_stale(input) {
+        return (tr("Paused: the picture is older than the load").to_owned(), false);
+    }
+    let mut add = |part: String| {
+        words.push_str(" · ");
+        words.push_str(&part);
+    };
+    let inside_out = input.quality.is_inside_out(simulation);
+    if inside_out {
+        add(tr("turned inside out").to_owned());
+    }
+    if simulation.motion().is_some() {
+        add(format!("{:.2} s", simulation.state().time()));
+        return (words, inside_out);
+    }
+    if let Some(stable) = stability(simulation) {
+        add(tr(if stable { "stable" } else { "unstable" }).to_owned());
+    }
+    add(count(simulation.iterations(), "iteration"));
+    if let Some(path) = input.jump.filter(|_| simulation.status().is_success()) {
+        path.sentences().for_each(|sentence| add(translated(&sentence)));
+    }
+    (words, inside_out || stability(simulation) == Some(false))
+}
+
+/// Whether a converged equilibrium is stable, where that is certified.
+pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
+    let certificate = simulation.certificate()?;
+    certificate.stable.filter(|_| *simulation.status() == Status::Converged)
+}
+
+/// ρ of the warped iteration: at the equilibrium where that is known, else where the body is.
+pub(crate) fn rho(input: &PanelInput<'_>) -> Option<f64> {
+    input.equilibrium_rho.or_else(|| input.simulation.certificate()?.fixed_point_rho)
+}
+
+/// Why the status is what it is, sentence by sentence.
+pub(crate) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
+    let simulation = input.simulation;
+    let mut lines = Vec::new();
+    if input.quality.is_inside_out(simulation) {
+        let words = "Turned inside out: the area of an element is negative. The equations are solved, but no body can do \
+                     that: pull less, or make the cells smaller.";
+        lines.push(tr(words).to_owned());
+    }
+    if let Some(motion) = simulation.motion() {
+        let counts = motion.counts();
+        let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "solve"));
+        lines.push(fill!("%{steps} so far, with %{solves}.", steps = steps, solves = solves));
+        let halved = "A step that does not converge is halved; what its integrator adds to the energy is the drift.";
+        lines.push(tr(halved).into());
+        return lines;
+    }
+    let residual = number(two_digits(simulation.residual()));
+    let asked = number(input.scene.solver.tolerance);
+    lines.push(match simulation.status() {
+        Status::Converged if simulation.residual_floor().is_some() => {
+            fill!("The forces balance to working precision: what is left is %{residual} of them.", residual = residual)
+        }
+        Status::Converged => {
+            fill!(
+                "The forces balance: what is left is %{residual} of them, and %{asked} is asked for.",
+                residual = residual,
+                asked = asked
+            )
+        }
+        _ => fill!(
+            "The forces are out of balance by %{residual} of them; %{asked} is asked for.",
+            residual = residual,
+            asked = asked
+        ),
+    });
+    if let Some(floor) = simulation.residual_floor() {
+        lines.push(sentence(&translated(&floor_words(floor, input.scene.solver.tolerance))));
+    }
+    let stable = stability(simulation).map(|stable| match stable {
+        true => "Stable: pushed a little, the body comes back (the exact tangent is positive definite).",
+        false => "Unstable: pushed a little, the body leaves (the exact tangent is not positive definite).",
+    });
+    lines.extend(stable.map(|words| tr(words).to_owned()));
+    if let Some(rho) = rho(input) {
+        lines.push(sentence(&translated(&rho_words(rho))));
+        let converged = *simulation.status() == Status::Converged;
+        if rho > 1.0 && converged {
+            lines.push(match input.scene.solver.method {
+                MethodKind::Warped => tr(
+                    "It did converge, because this load never pushes the body in the direction that would grow: a bar \
+                     pulled along its axis stays straight. A small push aside would not be undone by the iteration.",
+                )
+                .to_owned(),
+                other => {
+                    fill!("That does not touch this result: it comes from %{method}.", method = tr(other.id()))
+                }
+            });
+        }
+    }
+    lines
+}
+
+/// Something that would make a result better, in words, and the scene that has it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Remedy {
+    /// What is wrong.
+    pub words: String,
+    /// What the button says.
+    pub offer: String,
+    /// What it edits: the label of a control.
+    pub edits: &'static str,
+    pub scene: Box<Scene>,
+}
+
+/// What would help most, if something is wrong that an edit can mend.
+pub(crate) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> {
+    /// Errors above this, percent, ask for a remedy.
+    const LARGE: f64 = 5.0;
+    let (simulation, scene) = (input.simulation, input.scene);
+    if simulation.motion().is_some() || !simulation.is_at_rest() {
+        return None;
+    }
+    let with_newton = |words: String| {
+        let mut scene = Box::new(scene.clone());
+        scene.solver.method = MethodKind::Newton;
+        Remedy { words, offer: tr("Use newton").to_owned(), edits: "Method", scene }
+    };
+    if !simulation.status().is_success() {
+        let words = rho(input).filter(|&rho| rho > 1.0).map_or_else(
+            || fill!("The %{method} iteration does not get there.", method = tr(scene.solver.method.id())),
+            |rho| fill!("Cannot converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
+        );
+        return (scene.solver.method != MethodKind::Newton).then(|| with_newton(words));
+    }
+    let off = errors.own.filter(|&error| error > LARGE)?;
+    let off = percent(off);
+    if errors.source == Some(ErrorSource::Theory) {
+        return Some(with_newton(fill!("%{error} off: linear theory does not turn with the body.", error = off)));
+    }
+    if scene.element() == ElementKind::T3 {
+        let better = [ElementKind::T6, ElementKind::Q4].into_iter().find(|e| scene.elements().any(|own| own == *e))?;
+        let mut scene = Box::new(scene.clone());
+        scene.set_element(better);
+        let words = fill!("%{error} off: three-node triangles lock in bending.", error = off);
+        // What bends turns further, and the article's iteration may not follow it there.
+        let offer = if scene.solver.method == MethodKind::Warped {
+            scene.solver.method = MethodKind::Newton;
+            fill!("Try %{element} with newton", element = better.id())
+        } else {
+            fill!("Try %{element}", element = better.id())
+        };
+        return Some(Remedy { words, offer, edits: "Element", scene });
+    }
+    let mut scene = Box::new(scene.clone());
+    let beam = scene.beam.as_mut()?;
+    beam.cells = beam.cells.map(|n| n.saturating_mul(2));
+    let fits = f64::from(beam.cells[0]) * f64::from(beam.cells[1]) <= limits::TOTAL_CELLS.max;
+    let words = fill!("%{error} off: the mesh is coarse.", error = off);
+    fits.then_some(Remedy { words, offer: tr("Halve its cells").to_owned(), edits: "Cells along", scene })
+}
+
+/// ρ as it is shown: two digits, three above one tenth.
+pub(crate) fn rho_number(rho: f64) -> String {
+    engineering(two_digits(rho), "")
+}

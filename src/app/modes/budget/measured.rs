@@ -1,0 +1,205 @@
+//! Measurements of a study, of a body at rest or in motion, as Budget shows them.
+
+use egui::Color32;
+
+use crate::app::language::{count, fill, joined, percent, tr, translated};
+use crate::app::session::clock::FRAMES;
+use crate::app::widgets::palette::Palette;
+use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
+use crate::study::plot::drawn_error;
+use crate::study::{Demand, Measurement, MotionStudy, Study};
+
+/// A study.
+#[derive(Clone, Debug)]
+pub(crate) enum Measured {
+    Rest(Study),
+    Motion(MotionStudy),
+}
+
+/// A measured setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Choice {
+    Rest(Measurement),
+    Motion(MotionMeasurement),
+}
+
+/// Group of settings that is drawn in one colour and shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Group {
+    Method(MethodKind, ElementKind),
+    Integrator(IntegratorKind, ElementKind),
+}
+
+impl Measured {
+    /// Every setting that has an error.
+    pub(crate) fn choices(&self) -> Vec<Choice> {
+        match self {
+            Self::Rest(study) => study.measurements.iter().copied().map(Choice::Rest).collect(),
+            Self::Motion(study) => {
+                let ended = study.measurements.iter().filter(|m| m.error.is_some());
+                ended.copied().map(Choice::Motion).collect()
+            }
+        }
+    }
+
+    /// Settings that no other beats, fastest first.
+    pub(crate) fn front(&self) -> Vec<Choice> {
+        match self {
+            Self::Rest(study) => study.front().into_iter().copied().map(Choice::Rest).collect(),
+            Self::Motion(study) => study.front().into_iter().copied().map(Choice::Motion).collect(),
+        }
+    }
+
+    /// Settings that meet a demand, fastest first. The time of a motion is that of a frame.
+    pub(crate) fn meeting(&self, demand: Demand) -> Vec<Choice> {
+        match self {
+            Self::Rest(study) => study.meeting(demand).into_iter().copied().map(Choice::Rest).collect(),
+            Self::Motion(study) => {
+                let is_close = |m: &&MotionMeasurement| demand.max_error_percent.is_none_or(|p| study.is_within(m, p));
+                let all = study.measurements.iter().filter(is_close).copied().map(Choice::Motion);
+                let is_fast = |choice: &Choice| demand.max_time_ms.is_none_or(|most| choice.milliseconds() <= most);
+                let mut meeting: Vec<_> = all.filter(is_fast).collect();
+                meeting.sort_by(|a, b| a.milliseconds().total_cmp(&b.milliseconds()));
+                meeting
+            }
+        }
+    }
+
+    /// Bound of the reference's own error, percent, if it is too large to judge whether a demand is met.
+    pub(crate) fn too_coarse_for(&self, demand: Demand) -> Option<f64> {
+        match self {
+            Self::Rest(study) => (!study.can_judge(demand)).then_some(study.against.own_error_percent),
+            Self::Motion(study) => {
+                let own = study.reference.error_percent;
+                demand.max_error_percent.filter(|most| own >= *most).map(|_| own)
+            }
+        }
+    }
+
+    /// Name of the reference solution.
+    pub(crate) fn reference_words(&self) -> String {
+        match self {
+            Self::Rest(study) => translated(&study.reference.to_string()),
+            Self::Motion(study) => {
+                fill!(
+                    "the same motion on a finer mesh (its own error about %{own})",
+                    own = percent(study.reference.error_percent)
+                )
+            }
+        }
+    }
+
+    /// Error of a setting as it is drawn, percent: a motion's not below the reference's own.
+    pub(crate) fn drawn_error(&self, choice: &Choice) -> f64 {
+        match (self, choice) {
+            (_, Choice::Rest(m)) => drawn_error(m),
+            (Self::Motion(study), choice) => study.resolved(choice.error_percent()).min(1e3),
+            (Self::Rest(_), choice) => choice.error_percent(),
+        }
+    }
+}
+
+impl Choice {
+    /// Time of a solve, or of a frame at 60 Hz of a motion, ms.
+    pub(crate) fn milliseconds(&self) -> f64 {
+        match self {
+            Self::Rest(m) => m.milliseconds(),
+            Self::Motion(m) => m.milliseconds / FRAMES,
+        }
+    }
+
+    /// Bound of the error, percent.
+    pub(crate) fn error_percent(&self) -> f64 {
+        match self {
+            Self::Rest(m) => m.error.bound(),
+            Self::Motion(m) => m.error.map_or(f64::INFINITY, |e| e.bound()),
+        }
+    }
+
+    /// The setting in words.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Self::Rest(m) => translated(&m.setting.to_string()),
+            Self::Motion(m) => joined(m.setting.to_string().split(", ").map(translated)),
+        }
+    }
+
+    /// Unknowns and parts of the error, in words.
+    pub(crate) fn parts(&self) -> String {
+        match self {
+            Self::Rest(m) => fill!(
+                "Click to apply. %{unknowns}. Error: mesh %{mesh}, stopped early %{iteration}, linear theory %{theory}.",
+                unknowns = count(m.dofs as u64, "unknown"),
+                mesh = percent(m.error.discretization),
+                iteration = percent(m.error.iteration),
+                theory = percent(m.error.model)
+            ),
+            Self::Motion(m) => {
+                let part = |of: fn(&PathError) -> f64| percent(m.error.as_ref().map_or(0.0, of));
+                fill!(
+                    "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift %{drift}.",
+                    unknowns = count(m.dofs as u64, "unknown"),
+                    mesh = part(|e| e.discretization),
+                    steps = part(|e| e.integration),
+                    theory = part(|e| e.model),
+                    drift = percent(m.drift_percent)
+                )
+            }
+        }
+    }
+
+    /// The scene with this setting.
+    pub(crate) fn apply(&self, scene: &Scene) -> Scene {
+        match self {
+            Self::Rest(m) => m.apply(scene),
+            Self::Motion(m) => m.setting.apply(scene),
+        }
+    }
+
+    /// `true` if a scene has this setting.
+    pub(crate) fn is_applied_to(&self, scene: &Scene) -> bool {
+        match self {
+            Self::Rest(m) => m.is_applied_to(scene),
+            Self::Motion(m) => m.setting == MotionSetting::of(scene),
+        }
+    }
+
+    /// Iterations a displayed frame; `None` for a motion, which steps by the clock.
+    pub(crate) fn iterations(&self) -> Option<u32> {
+        match self {
+            Self::Rest(m) => Some(m.setting.iterations),
+            Self::Motion(_) => None,
+        }
+    }
+
+    pub(crate) fn group(&self) -> Group {
+        match self {
+            Self::Rest(m) => Group::Method(m.setting.method, m.setting.element),
+            Self::Motion(m) => Group::Integrator(m.setting.integrator, m.setting.element),
+        }
+    }
+}
+
+impl Group {
+    pub(crate) fn element(self) -> ElementKind {
+        match self {
+            Self::Method(_, element) | Self::Integrator(_, element) => element,
+        }
+    }
+
+    pub(crate) fn color(self, palette: &Palette) -> Color32 {
+        match self {
+            Self::Method(method, _) => palette.method(method),
+            Self::Integrator(integrator, _) => palette.integrator(integrator),
+        }
+    }
+
+    pub(crate) fn name(self) -> String {
+        let id = match self {
+            Self::Method(method, _) => method.id(),
+            Self::Integrator(integrator, _) => integrator.id(),
+        };
+        format!("{} {}", self.element().id(), tr(id))
+    }
+}

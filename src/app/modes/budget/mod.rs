@@ -1,0 +1,426 @@
+//! The budget: error against time of everything measured on this machine, and what of it is within limits.
+
+pub(crate) mod measured;
+mod study_task;
+
+use egui::{Button, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
+use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
+
+use crate::app::action::Action;
+use crate::app::language::{fill, joined, percent, tr, translated};
+use crate::app::modes::budget::measured::{Choice, Group, Measured};
+use crate::app::modes::budget::study_task::{Background, BackgroundError, News};
+use crate::app::modes::explore::load_curve::{X_AXIS, segments};
+use crate::app::task::thread::LISTEN;
+use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
+use crate::app::widgets::palette::Palette;
+use crate::dynamics::INTEGRATORS;
+use crate::element::ELEMENTS;
+use crate::method::METHODS;
+use crate::scene::{Analysis, DynamicsSettings, ElementKind, Scene, SolverSettings, limits};
+use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
+use crate::words::{engineering, number, three_digits};
+
+/// The study of the lab's scene, and the limits within which its settings are looked for.
+#[derive(Debug, Default)]
+pub(crate) struct Budget {
+    background: Option<Background>,
+    /// Whether the last study was cancelled.
+    is_partial: bool,
+    study: Option<Measured>,
+    /// What was measured, but for what is varied.
+    of: Option<Scene>,
+    error: Option<BackgroundError>,
+    limits: Limits,
+    messages: Messages,
+}
+
+/// What is asked of a solve.
+#[derive(Clone, Copy, Debug)]
+struct Limits {
+    error_percent: f64,
+    time_ms: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        // A frame at 60 Hz, roughly.
+        Self { error_percent: 1.0, time_ms: 16.0 }
+    }
+}
+
+impl From<Limits> for Demand {
+    fn from(limits: Limits) -> Self {
+        Self { max_error_percent: Some(limits.error_percent), max_time_ms: Some(limits.time_ms) }
+    }
+}
+
+/// A scene without what a study varies: what its truth depends on.
+pub(crate) fn question(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    // The first that the mesh can be.
+    let first = scene.elements().next().unwrap_or_default();
+    scene.set_element(first);
+    if let Some(beam) = &mut scene.beam {
+        beam.cells = [1, 1];
+    }
+    scene.solver = SolverSettings { tolerance: scene.solver.tolerance, ..SolverSettings::default() };
+    let any = DynamicsSettings::default();
+    let dynamics = &mut scene.dynamics;
+    (dynamics.integrator, dynamics.time_step, dynamics.iterations) = (any.integrator, any.time_step, any.iterations);
+    scene
+}
+
+impl Budget {
+    /// Starts to measure a scene; what was measured before goes.
+    pub(crate) fn measure(&mut self, scene: &Scene, extent: Extent) {
+        *self = Self { of: Some(question(scene)), limits: self.limits, ..Self::default() };
+        match Background::start(scene.clone(), extent) {
+            Ok(background) => self.background = Some(background),
+            Err(error) => self.error = Some(error),
+        }
+    }
+
+    /// Calls the study off; what has been measured stays.
+    pub(crate) fn cancel(&mut self) {
+        let Some(background) = self.background.take() else { return };
+        self.is_partial = true;
+        // A motion's measurements come at its end.
+        if self.of.as_ref().is_some_and(|scene| scene.analysis == Analysis::Dynamic) {
+            background.call_off();
+            self.background = Some(background);
+        }
+    }
+
+    /// Fraction that is done and what is measured now, while a study runs.
+    pub(crate) fn progress(&self) -> Option<(f32, &str)> {
+        self.background.as_ref().map(Background::progress)
+    }
+
+    /// Whether a study runs.
+    pub(crate) fn runs(&self) -> bool {
+        self.background.is_some()
+    }
+
+    /// The study of a body at rest.
+    pub(crate) fn study(&self) -> Option<&Study> {
+        match &self.study {
+            Some(Measured::Rest(study)) => Some(study),
+            _ => None,
+        }
+    }
+
+    /// The study of a motion.
+    pub(crate) fn motion_study(&self) -> Option<&MotionStudy> {
+        match &self.study {
+            Some(Measured::Motion(study)) => Some(study),
+            _ => None,
+        }
+    }
+
+    /// The fastest setting of a body at rest that meets the limits, where one has been measured.
+    pub(crate) fn chosen(&self) -> Option<Setting> {
+        self.study()?.meeting(self.limits.into()).first().map(|m| m.setting)
+    }
+
+    /// Takes a study made elsewhere.
+    pub(crate) fn set(&mut self, scene: &Scene, study: Study) {
+        *self = Self {
+            of: Some(question(scene)),
+            study: Some(Measured::Rest(study)),
+            limits: self.limits,
+            ..Self::default()
+        };
+    }
+
+    /// Hears how far the study is.
+    pub(crate) fn listen(&mut self, ctx: &Context) {
+        let Some(background) = &mut self.background else { return };
+        match background.listen(&mut self.study) {
+            News::Running => ctx.request_repaint_after(LISTEN),
+            News::Ended(result) => {
+                self.error = result.err();
+                self.background = None;
+            }
+        }
+    }
+
+    /// Shows limits and plot for the lab's scene.
+    pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
+        let demand = Demand::from(self.limits);
+        let moves = scene.analysis == Analysis::Dynamic;
+        let budget = BudgetView {
+            scene,
+            study: self.study.as_ref(),
+            choices: self.study.as_ref().map(Measured::choices).unwrap_or_default(),
+            demand,
+            meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
+            current: self.of.as_ref() == Some(&question(scene)),
+            is_partial: self.is_partial,
+            progress: self.background.as_ref().map(Background::progress),
+            error: self.error.as_ref().map(ToString::to_string),
+        };
+        let (limits, messages) = (&mut self.limits, &mut self.messages);
+        ui.add_space(4.0);
+        let width = ui.available_width();
+        ui.horizontal_top(|ui| {
+            ui.vertical(|ui| {
+                ui.set_width(LIST_WIDTH.min(LIST_SHARE * width));
+                settings(ui, &budget, limits, messages, actions);
+            });
+            ui.vertical(|ui| {
+                legend(ui, moves);
+                plot(ui, &budget);
+            });
+        });
+    }
+}
+
+/// What is shown of the budget.
+struct BudgetView<'a> {
+    scene: &'a Scene,
+    study: Option<&'a Measured>,
+    /// Every setting that was measured.
+    choices: Vec<Choice>,
+    demand: Demand,
+    /// Settings that meet the demand, fastest first.
+    meeting: Vec<Choice>,
+    /// Whether the study is of the body and loads that the lab shows.
+    current: bool,
+    /// Whether the study was cancelled.
+    is_partial: bool,
+    /// Fraction that is done and what is measured now, while a study runs.
+    progress: Option<(f32, &'a str)>,
+    /// Why there is no study.
+    error: Option<String>,
+}
+
+/// Width of the list, points, and the largest part of the width that it takes from the plot.
+const LIST_WIDTH: f32 = 384.0;
+const LIST_SHARE: f32 = 0.5;
+
+fn settings(
+    ui: &mut Ui,
+    budget: &BudgetView<'_>,
+    limits: &mut Limits,
+    messages: &mut Messages,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        if let Some((fraction, now)) = budget.progress {
+            if ui.button(tr("Cancel")).on_hover_text(tr("Stop measuring; what has been measured stays")).clicked() {
+                actions.push(Action::Measure(false));
+            }
+            ui.add(ProgressBar::new(fraction).desired_width(120.0).show_percentage());
+            ui.add(egui::Label::new(RichText::new(translated(now)).small()).truncate());
+        } else {
+            let tip = "Measure error and time of every element, mesh, method and number of iterations, on this machine";
+            if ui.button(tr("Measure")).on_hover_text(tr(tip)).clicked() {
+                actions.push(Action::Measure(true));
+            }
+            let words = match (&budget.error, budget.study) {
+                (Some(error), _) => RichText::new(translated(error)).small().color(ui.visuals().error_fg_color),
+                (None, None) => RichText::new(tr("Nothing measured yet: it takes about a minute.")).small(),
+                (None, Some(_)) if !budget.current => {
+                    let color = ui.visuals().warn_fg_color;
+                    RichText::new(tr("The body or its load has changed since.")).small().color(color)
+                }
+                (None, Some(_)) if budget.is_partial => {
+                    let color = ui.visuals().warn_fg_color;
+                    RichText::new(tr("Cancelled: not everything has been measured.")).small().color(color)
+                }
+                (None, Some(study)) => {
+                    RichText::new(fill!("Error against %{truth}.", truth = study.reference_words())).small()
+                }
+            };
+            ui.add(egui::Label::new(words).truncate());
+        }
+    });
+    let time = NumberField {
+        label: "Time ≤",
+        tooltip: "At most so many milliseconds a solve from rest, or a frame of a motion at 60 Hz, which has 16.",
+        limit: limits::BUDGET_MS,
+        slider: 1e-3..=1e3,
+        scale: SliderScale::Logarithmic(1e-3),
+        whole: false,
+    };
+    let error = NumberField {
+        label: "Error ≤",
+        tooltip: "At most so many percent of the true displacement.",
+        limit: limits::MAX_ERROR_PERCENT,
+        slider: 1e-3..=100.0,
+        scale: SliderScale::Logarithmic(1e-3),
+        whole: false,
+    };
+    ui.columns_const(|[left, right]| {
+        if let Some(time_ms) = time.show(left, messages, limits.time_ms) {
+            limits.time_ms = time_ms;
+        }
+        if let Some(error_percent) = error.show(right, messages, limits.error_percent) {
+            limits.error_percent = error_percent;
+        }
+    });
+    let meeting = &budget.meeting;
+    ui.horizontal(|ui| {
+        let best = meeting.first().copied();
+        let apply = ui.add_enabled(best.is_some(), Button::new(tr("Apply the fastest")));
+        let apply = apply
+            .on_hover_text(tr("Use the fastest setting that meets both"))
+            .on_disabled_hover_text(tr("No setting that has been measured meets both limits"));
+        if let (true, Some(best)) = (apply.clicked(), best) {
+            actions.push(Action::Apply(best));
+        }
+        let measured = budget.choices.len();
+        ui.label(match budget.study.and_then(|study| study.too_coarse_for(budget.demand)) {
+            Some(own) => fill!("Not known: the reference's own error may be %{own}", own = percent(own)),
+            None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured),
+        });
+    });
+    list(ui, budget, actions);
+}
+
+/// The settings that meet the demand, fastest first; a click applies one.
+fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
+    let meeting = &budget.meeting;
+    let row_height = ui.spacing().interact_size.y;
+    ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
+        for m in meeting.get(rows).unwrap_or_default() {
+            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error_percent()), m.words());
+            let label = ui.add(
+                Button::selectable(m.is_applied_to(budget.scene), RichText::new(words).font(FontId::monospace(12.0)))
+                    .truncate(),
+            );
+            if label.on_hover_text(m.parts()).clicked() {
+                actions.push(Action::Apply(*m));
+            }
+        }
+    });
+}
+
+/// A measured setting in words.
+pub(crate) fn setting_words(setting: &Setting) -> String {
+    translated(&setting.to_string())
+}
+
+/// Time of a solve or of a frame, three digits.
+fn milliseconds(m: &Choice) -> String {
+    engineering(three_digits(1e-3 * m.milliseconds()), "s")
+}
+
+/// A mark at every decade.
+fn decades(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    (low.ceil() as i64..=high.floor() as i64).map(|e| GridMark { value: e as f64, step_size: 1.0 }).collect()
+}
+
+fn decade_words(mark: GridMark) -> String {
+    number(10f64.powf(mark.value.round()))
+}
+
+/// Place of a setting in the plot: both logarithms.
+fn place(study: &Measured, m: &Choice) -> [f64; 2] {
+    [m.milliseconds().max(f64::MIN_POSITIVE).log10(), study.drawn_error(m).max(f64::MIN_POSITIVE).log10()]
+}
+
+/// What colours and shapes mean, in one line: the plot has no room for a list.
+fn legend(ui: &mut Ui, moves: bool) {
+    let palette = Palette::new(ui.visuals());
+    ui.horizontal(|ui| {
+        ui.add_space(56.0);
+        ui.spacing_mut().item_spacing.x = 10.0;
+        let methods = METHODS.iter().map(|m| (m.id, palette.method(m.kind)));
+        let integrators = INTEGRATORS.iter().map(|i| (i.id, palette.integrator(i.kind)));
+        let names: Vec<_> = if moves { integrators.collect() } else { methods.collect() };
+        for (id, color) in names {
+            ui.label(RichText::new(tr(id)).small().strong().color(color));
+        }
+        let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
+        let words = RichText::new(fill!("%{shapes}; nothing beats the line", shapes = shapes)).small();
+        ui.add(egui::Label::new(words).truncate());
+    });
+}
+
+/// The mark of an element and its name: the first for the first of the registry.
+pub(crate) fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
+    const SHAPES: [(MarkerShape, &str); 4] = [
+        (MarkerShape::Up, "triangles"),
+        (MarkerShape::Circle, "circles"),
+        (MarkerShape::Square, "squares"),
+        (MarkerShape::Diamond, "diamonds"),
+    ];
+    let number = ELEMENTS.iter().position(|e| e.kind == element).unwrap_or_default();
+    SHAPES[number % SHAPES.len()]
+}
+
+fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
+    /// Room for the numbers and the title of the axis, points.
+    const BUDGET_Y_AXIS: f32 = 62.0;
+    let palette = Palette::new(ui.visuals());
+    let text = palette.text;
+    let place = |choice: &Choice| budget.study.map_or([0.0; 2], |study| place(study, choice));
+    let nearest = |x: f64, y: f64| {
+        let distance = |m: &Choice| (place(m)[0] - x).hypot(place(m)[1] - y);
+        budget.choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    let time = match budget.scene.analysis {
+        Analysis::Static => "time of a solve, ms",
+        Analysis::Dynamic => "time of a frame at 60 Hz, ms",
+    };
+    Plot::new("budget")
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label(tr(time))
+                .min_thickness(X_AXIS)
+                .formatter(|mark, _| decade_words(mark))
+                // Powers of ten are short: a narrow plot has room for them.
+                .label_spacing(egui::Rangef::new(36.0, 60.0)),
+        ])
+        .y_axis_label(tr("error, %"))
+        .y_axis_min_width(BUDGET_Y_AXIS)
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
+        .y_axis_formatter(|mark, _| decade_words(mark))
+        .label_formatter(|at| match at {
+            egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
+                .map(|m| format!("{}\n{}, {}", m.words(), milliseconds(m), percent(m.error_percent()))),
+            egui_plot::HoverPosition::Elsewhere { .. } => None,
+        })
+        .grid_color(palette.line)
+        .include_x(-2.5)
+        .include_x(2.5)
+        .include_y(-3.0)
+        .include_y(2.0)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .show(ui, |plot| {
+            let mut groups: Vec<Group> = Vec::new();
+            for group in budget.choices.iter().map(Choice::group) {
+                if !groups.contains(&group) {
+                    groups.push(group);
+                }
+            }
+            for group in groups {
+                let points: Vec<[f64; 2]> = budget.choices.iter().filter(|m| m.group() == group).map(place).collect();
+                let (shape, _) = marker(group.element());
+                plot.points(Points::new(group.name(), points).color(group.color(&palette)).shape(shape).radius(3.5));
+            }
+            let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(|m| place(&m)).collect();
+            for piece in segments(&front) {
+                plot.line(Line::new(tr("Pareto front"), PlotPoints::from(piece)).color(text).width(1.5));
+            }
+            let limit = palette.secondary;
+            let style = LineStyle::dashed_dense();
+            if let Some(time) = budget.demand.max_time_ms {
+                plot.vline(VLine::new(tr("at most"), time.log10()).color(limit).style(style));
+            }
+            if let Some(error) = budget.demand.max_error_percent {
+                plot.hline(HLine::new(tr("at most"), error.log10()).color(limit).style(style));
+            }
+            if let Some(best) = budget.meeting.first() {
+                let ring = Points::new(tr("fastest"), vec![place(best)]).color(text).filled(false).radius(8.0);
+                plot.points(ring);
+            }
+        });
+}

@@ -1,0 +1,614 @@
+//! Two to four settings beside each other: one load, one camera, one range of colours, and the load curve under them.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::{
+    Align2, Color32, ComboBox, Context, FontId, Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2,
+};
+use nalgebra::Vector2;
+
+use self::grid::{Grid, PaneBody, Preset, grow};
+use self::pane::{Doing, Equations, Turn};
+use self::setting::PANES;
+use self::trace::Trace;
+use crate::app::action::{Action, ViewOptions};
+use crate::app::diagnosis::error_color;
+use crate::app::language::{count, fill, percent, sentence, tr, translated};
+use crate::app::session::playback::Playback;
+use crate::app::shell::status_bar::{semibold, truth_words};
+use crate::app::shell::toolbar::{Icon, choice, icon_button};
+use crate::app::task::thread::LISTEN;
+use crate::app::viewport::camera_controller::Eye;
+use crate::app::viewport::overlay::{self, Projection};
+use crate::app::viewport::pointer::{Reach, Wish};
+use crate::app::widgets::legend::Mark;
+use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
+use crate::assembly::System;
+use crate::method::METHODS;
+use crate::render::{Camera, Margins, View};
+use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::study::{Reference, Setting};
+use crate::words::{engineering, two_digits};
+
+mod grid;
+mod motion;
+mod pane;
+mod setting;
+mod trace;
+
+pub(crate) use grid::PaneInput;
+pub(crate) use motion::MotionCompare;
+pub use motion::{MotionPane, MotionPaneSetting};
+pub use pane::{Pane, PaneEnd};
+pub use setting::{PaneSetting, PaneSettingError, parse_panes};
+
+/// Time for the iterations of all panes between two frames.
+const WORK: Duration = Duration::from_millis(12);
+/// Height of the load curve, points; at most a part of the window's.
+const TRACE_HEIGHT: f32 = 190.0;
+const TRACE_SHARE: f32 = 0.28;
+/// In a window lower than this, points, the load curve is only shown where it is asked for.
+const LOW: f32 = 560.0;
+/// In one lower than this, too, where the panes have two rows.
+const LOW_FOR_TWO_ROWS: f32 = 680.0;
+
+/// Input of the comparison of equilibria from the lab.
+pub(crate) struct CompareInput<'a> {
+    pub common: PaneInput<'a>,
+    /// The scene that these equations are of.
+    pub shown: &'a Scene,
+    pub system: &'a Arc<System>,
+    pub truth: Option<&'a Reference>,
+    pub running: bool,
+    /// Setting that Budget has chosen.
+    pub chosen: Option<Setting>,
+}
+
+/// The panes, and what they have in common.
+#[derive(Debug)]
+pub(crate) struct Compare {
+    panes: Vec<Pane>,
+    trace: Trace,
+    /// Whether the load curve is shown; `None`: where there is room.
+    shows_trace: Option<bool>,
+    /// Where all panes look; `None` before the first look.
+    eye: Option<Eye>,
+    /// Nothing has moved: bodies at rest have no past.
+    still: Playback,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        let mut compare = Self {
+            panes: Vec::new(),
+            trace: Trace::default(),
+            shows_trace: None,
+            eye: None,
+            still: Playback::default(),
+        };
+        compare.set(&METHODS_PRESET.map(PaneSetting::of_method));
+        compare
+    }
+}
+
+const METHODS_PRESET: [MethodKind; 3] = [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton];
+
+impl Compare {
+    pub(crate) fn panes(&self) -> &[Pane] {
+        &self.panes
+    }
+
+    pub(crate) fn traced(&self) -> Vec<(PaneSetting, [f64; 3])> {
+        self.trace.dots()
+    }
+
+    /// Compares these: at most four.
+    pub(crate) fn set(&mut self, settings: &[PaneSetting]) {
+        self.panes = settings.iter().take(*PANES.end()).map(|&setting| Pane::new(setting)).collect();
+        self.fit();
+    }
+
+    fn settings(&self) -> Vec<PaneSetting> {
+        self.panes.iter().map(|pane| pane.setting).collect()
+    }
+
+    /// The camera of all panes.
+    pub(crate) fn camera(&self) -> Camera {
+        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, Eye::camera)
+    }
+
+    /// Shows all bodies again.
+    pub(crate) fn fit(&mut self) {
+        self.eye.iter_mut().for_each(Eye::fit);
+    }
+
+    /// All start over at rest.
+    pub(crate) fn reset(&mut self) {
+        self.panes.iter_mut().for_each(Pane::reset);
+    }
+
+    /// One iteration of those that have not ended; from rest where all have.
+    pub(crate) fn step(&mut self) {
+        if !self.is_iterating() {
+            self.reset();
+        }
+        self.panes.iter_mut().for_each(Pane::step);
+    }
+
+    /// Whether a pane has not come to its end.
+    pub(crate) fn is_iterating(&self) -> bool {
+        self.panes.iter().any(|pane| !pane.is_settled())
+    }
+
+    /// What others may use of the equations there are.
+    fn equations(&self, scene: &Scene, system: &Arc<System>) -> Vec<Equations> {
+        let own = std::iter::once(Equations::new(scene, system));
+        let panes = self.panes.iter().filter_map(|pane| {
+            let simulation = pane.simulation()?;
+            Some(Equations::new(simulation.scene(), simulation.system()))
+        });
+        own.chain(panes).collect()
+    }
+
+    /// Solves everything, however long it takes.
+    pub(crate) fn settle(&mut self, scene: &Scene, system: &Arc<System>) {
+        self.trace.follow(scene);
+        for i in 0..self.panes.len() {
+            let equations = self.equations(scene, system);
+            self.panes[i].settle(scene, &equations);
+            self.trace.record(scene, &self.panes[i]);
+        }
+        self.trace.settle(scene);
+    }
+
+    /// The bodies, with so many pixels a point.
+    pub(crate) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
+        let camera = self.camera();
+        let seen = self.panes.iter().filter_map(|pane| {
+            grid::view(pane.place, (&pane.shape, &pane.drawing), camera, wireframe, pixels_per_point)
+        });
+        seen.collect()
+    }
+
+    fn advance(&mut self, ctx: &Context, input: &CompareInput<'_>) {
+        let (moves, holds) = ctx.input(|i| (i.pointer.delta() != egui::Vec2::ZERO, i.pointer.any_down()));
+        self.trace.follow(input.common.scene);
+        let equations =
+            if self.is_changed(input.common.scene) { self.equations(input.shown, input.system) } else { Vec::new() };
+        let mut is_new = false;
+        let share = WORK / u32::try_from(self.panes.len().max(1)).unwrap_or(1);
+        for pane in &mut self.panes {
+            let until = Instant::now() + share;
+            pane.advance(input.common.scene, &equations, Turn { moves, holds, runs: input.running, until });
+            is_new |= self.trace.record(input.common.scene, pane);
+            pane.judge(input.truth);
+        }
+        if !holds || !moves {
+            self.trace.ask(input.common.scene, ctx);
+        }
+        self.trace.record_truth(input.truth);
+        let busy = |pane: &Pane| !pane.is_settled() && !pane.is_away() && !pane.waits();
+        if is_new || input.running && self.panes.iter().any(busy) {
+            ctx.request_repaint();
+        } else if self.panes.iter().any(Pane::is_away) {
+            ctx.request_repaint_after(LISTEN);
+        }
+    }
+
+    /// Whether a pane is going to need equations.
+    fn is_changed(&self, scene: &Scene) -> bool {
+        self.panes.iter().any(|pane| pane.scene() != Some(&pane.setting.apply(scene)) || !pane.is_settled())
+    }
+
+    /// The presets over the panes, and the load curve under them.
+    pub(crate) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>, actions: &mut Vec<Action>) {
+        let height = ui.ctx().content_rect().height();
+        let panel = if input.common.view.bars && input.common.view.panel && !input.common.view.narrow {
+            crate::app::PANEL_WIDTH
+        } else {
+            0.0
+        };
+        let one_row = grid::first_row(self.panes.len(), ui.ctx().content_rect().width() - panel) == self.panes.len();
+        let low = if one_row { LOW } else { LOW_FOR_TWO_ROWS };
+        let shows_trace = self.shows_trace.unwrap_or(height >= low);
+        let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
+        if input.common.view.bars {
+            Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| self.presets(ui, input, shows_trace));
+        }
+        if shows_trace {
+            let height = TRACE_HEIGHT.min(TRACE_SHARE * height);
+            let panel = Panel::bottom("trace").exact_size(height).resizable(false).frame(frame);
+            panel.show(ui, |ui| {
+                self.trace.show(ui, input.common.scene, &self.panes, input.common.view.curve_plot, actions);
+            });
+        }
+    }
+
+    fn presets(&mut self, ui: &mut Ui, input: &CompareInput<'_>, shows_trace: bool) {
+        let elements: Vec<ElementKind> = input.common.scene.elements().collect();
+        let join = |words: Vec<&str>| words.join(" | ");
+        let methods = join(METHODS_PRESET.iter().map(|method| tr(method.id())).collect());
+        let meshed = join(elements.iter().map(|element| element.id()).collect());
+        let method = (input.common.scene.solver.method == MethodKind::Warped).then_some(MethodKind::Newton);
+        let chosen = [PaneSetting::default(), input.chosen.map(PaneSetting::from).unwrap_or_default()];
+        let presets = [
+            Preset {
+                name: methods,
+                settings: METHODS_PRESET.map(PaneSetting::of_method).to_vec(),
+                enabled: true,
+                tip: "Three methods on the panel's mesh",
+                unless: "",
+            },
+            Preset {
+                name: meshed,
+                settings: elements
+                    .iter()
+                    .map(|&element| PaneSetting { method, ..PaneSetting::of_element(element) })
+                    .collect(),
+                enabled: elements.len() > 1,
+                tip: "The elements that the mesh can have, by the panel's method; by newton in the place of warped, which cannot \
+                      follow all of them",
+                unless: "The mesh of this file can have one element only",
+            },
+            Preset {
+                name: tr("present | budget").to_owned(),
+                settings: chosen.to_vec(),
+                enabled: input.chosen.is_some(),
+                tip: "The present setting beside the fastest that meets the limits of Budget",
+                unless: "Measure in Budget first: what it marks is compared with the present setting",
+            },
+        ];
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            if let Some(settings) = grid::preset_buttons(ui, &self.settings(), presets) {
+                self.set(&settings);
+            }
+            if grid::add_button(ui, self.panes.len()) {
+                let used = |method: MethodKind| self.panes.iter().any(|pane| pane.setting.method == Some(method));
+                let unused = METHODS.iter().map(|entry| entry.kind).find(|&method| !used(method));
+                self.panes.push(Pane::new(unused.map(PaneSetting::of_method).unwrap_or_default()));
+                self.fit();
+            }
+            let icon = if shows_trace { Icon::Close } else { Icon::Open };
+            let button = icon_button(ui, icon, tr("Load curve"), Some(tr("Load curve")), shows_trace);
+            if button.on_hover_text(tr("The load curve, traced while the load is dragged")).clicked() {
+                self.shows_trace = Some(!shows_trace);
+            }
+        });
+    }
+
+    /// The panes; returns what is asked for of their load.
+    pub(crate) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) -> Wish {
+        self.advance(ui.ctx(), input);
+        for pane in &mut self.panes {
+            pane.update_shape(input.common.view, ui.visuals());
+        }
+        self.share_colors(input.common.view);
+        let whole = ui.available_rect_before_wrap();
+        let Grid { cells, key } = Grid::new(whole, self.panes.len());
+        for (pane, cell) in self.panes.iter_mut().zip(&cells) {
+            pane.place = Some(grid::body_place(*cell));
+        }
+        self.look(ui, input);
+        let (mut change, mut wish) = (None, Wish::default());
+        for (number, cell) in cells.into_iter().enumerate() {
+            let Some(place) = self.panes.get(number).and_then(Pane::place) else { continue };
+            grid::header(ui, number, [cell, place], |ui| self.header(ui, number, input, &mut change));
+            let own = self.body(ui, number, place, input);
+            if own.load.is_some() || own.restore.is_some() {
+                wish = own;
+            }
+        }
+        self.show_values(ui, input.common.view);
+        self.key(ui, key, input.common.view);
+        match change {
+            Some((number, Some(setting))) => {
+                if let Some(pane) = self.panes.get_mut(number) {
+                    pane.set(setting);
+                    ui.ctx().request_repaint();
+                }
+            }
+            Some((number, None)) if self.panes.len() > *PANES.start() => {
+                self.panes.remove(number);
+                self.fit();
+                ui.ctx().request_repaint();
+            }
+            _ => {}
+        }
+        ui.advance_cursor_after_rect(whole);
+        wish
+    }
+
+    /// Shows the values under the pointer, in every pane at the same point of the body.
+    fn show_values(&self, ui: &Ui, view: &ViewOptions) {
+        let under = self.panes.iter().enumerate().find_map(|(number, pane)| Some((number, pane.under_pointer()?)));
+        let Some((number, (rest, at))) = under else { return };
+        for (i, pane) in self.panes.iter().enumerate() {
+            pane.show_value(ui, view, rest, self.camera(), (i == number).then_some(at));
+        }
+    }
+
+    /// One range of colours for all: that of the equilibria.
+    fn share_colors(&mut self, view: &ViewOptions) {
+        let any = self.panes.iter().any(|pane| pane.range.is_some() && !pane.has_failed());
+        let counted = self.panes.iter().filter(|pane| !any || !pane.has_failed()).filter_map(|pane| pane.range);
+        let range = view.fixed_range.unwrap_or(grid::common_range(counted));
+        self.panes.iter_mut().for_each(|pane| pane.shape.range = range);
+    }
+
+    /// Looks at all bodies and the exact one, while nobody has moved the view; never after what has not converged.
+    fn look(&mut self, ui: &Ui, input: &CompareInput<'_>) {
+        let Some(size) = grid::common_size(self.panes.iter().filter_map(Pane::place)) else { return };
+        let (low, high) = input.system.mesh().bounds();
+        let rest = [low, high];
+        let iterates = self.is_iterating();
+        let margins = self.margins(input, size);
+        let eye = self.eye.get_or_insert_with(|| Eye::new(rest));
+        if !self.panes.iter().any(|pane| pane.pointer.holds()) {
+            let truth = input.truth.filter(|_| input.common.view.exact);
+            let mut bounds = truth.into_iter().flat_map(|truth| &truth.outline).flatten().fold(rest, grow);
+            let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
+            let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
+                self.panes.iter().filter(|pane| pane.is_sound()).partition(|pane| is_linear(pane));
+            bounds = others.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
+            // Linear theory may be far off: it must not shrink the others to dots.
+            const LARGEST: f64 = 1.5;
+            let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
+            let with = linear.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
+            let known = !others.is_empty() || truth.is_some();
+            if !known || size_of(with) < LARGEST * size_of(bounds) {
+                bounds = with;
+            }
+            if !iterates || eye.whole() == rest {
+                eye.set_body(rest);
+                eye.follow(bounds);
+            }
+        }
+        grid::aim(ui, eye, |[low, high]| Camera::fit(low, high, size, margins), input.common.eases);
+    }
+
+    /// Points kept free around the bodies when the view is fitted: room for supports, the loads' arrows and their words.
+    fn margins(&self, input: &CompareInput<'_>, [width, height]: [f64; 2]) -> Margins {
+        let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
+        let forces = self.panes.first().and_then(|pane| pane.forces(input.common.direction, input.common.opening));
+        let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
+        let longest = |along: fn(egui::Vec2) -> f32| {
+            arrows.iter().flatten().map(|arrow| f64::from(along(arrow.way))).fold(0.0, f64::max)
+        };
+        let (top, bottom) = ((0.08 * height).min(30.0), (0.16 * height).min(44.0));
+        Margins { sides: 40.0, top: top + longest(|way| -way.y), bottom: bottom + longest(|way| way.y) }
+    }
+
+    /// The pickers of a pane, and what it has found.
+    fn header(
+        &self,
+        ui: &mut Ui,
+        number: usize,
+        input: &CompareInput<'_>,
+        change: &mut Option<(usize, Option<PaneSetting>)>,
+    ) {
+        let Some(pane) = self.panes.get(number) else { return };
+        let palette = Palette::new(ui.visuals());
+        let shown = pane.setting.of(input.common.scene);
+        let name = fill!("Pane %{n}", n = number + 1);
+        ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
+        ui.horizontal(|ui| {
+            let color = shown.method.map_or(palette.text, |method| palette.method(method));
+            let (bar, _) = ui.allocate_exact_size(vec2(10.0, 18.0), Sense::hover());
+            ui.painter().rect_filled(bar, 3.0, color);
+            let mut setting = pane.setting;
+            let close = self.panes.len() > *PANES.start() && input.common.view.bars;
+            let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
+            let widths = [0.38, 0.25, 0.37].map(|share| (share * room).clamp(30.0, 120.0));
+            let method = METHODS.iter().map(|entry| (entry.kind, entry.id, entry.about));
+            let panels = (input.common.scene.solver.method.id(), "the panel's");
+            pick(ui, &palette, (&name, "method"), widths[0], (&mut setting.method, panels), method);
+            let elements = input.common.scene.elements().map(|e| (e, e.id(), e.entry().about));
+            let panels = (input.common.scene.element().id(), "the panel's");
+            pick(ui, &palette, (&name, "element"), widths[1], (&mut setting.element, panels), elements);
+            mesh_picker(ui, &palette, &name, widths[2], &mut setting.cells, input.common.scene);
+            if setting != pane.setting {
+                *change = Some((number, Some(setting)));
+            }
+            if close && grid::close_button(ui, number) {
+                *change = Some((number, None));
+            }
+        });
+        self.result(ui, &name, pane, input);
+    }
+
+    /// Error, time and iterations; or why there are none.
+    fn result(&self, ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
+        let palette = Palette::new(ui.visuals());
+        let setting = pane.setting.of(input.common.scene);
+        let (bad, words) = match pane.doing() {
+            Doing::Refused(reason) => (true, sentence(&translated(reason))),
+            Doing::Rests(end) => match end.status.failure() {
+                Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = translated(&reason))),
+                None => {
+                    let stopped = if end.status.is_success() { "" } else { tr(", stopped") };
+                    let time = engineering(two_digits(end.seconds), "s");
+                    // Pictures without bars have nothing that differs from run to run.
+                    let time = if input.common.view.bars { format!("{time} · ") } else { String::new() };
+                    (false, format!("{time}{}{stopped}", count(end.iterations, "iteration")))
+                }
+            },
+            Doing::Works(iterations) => {
+                (false, fill!("solving: %{iterations}", iterations = count(iterations, "iteration")))
+            }
+            Doing::Iterates(_) if !input.running => (false, tr("paused").to_owned()),
+            Doing::Iterates(iterations) => (false, count(iterations, "iteration")),
+        };
+        let error = pane.error.filter(|_| !bad);
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0), Sense::hover());
+        let painter = ui.painter();
+        let mut left = rect.left();
+        if bad {
+            painter.rect_filled(rect, 4.0, palette.error_chip);
+            left += 6.0;
+        } else {
+            let number = error.map_or_else(|| crate::app::shell::status_bar::UNKNOWN.to_owned(), percent);
+            let color = error_color(&palette, error);
+            let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
+            let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
+            semibold(painter, at.min, &galley, color);
+            left = at.right() + 12.0;
+        }
+        let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
+        let mut job = egui::text::LayoutJob::simple_singleline(words.clone(), FontId::proportional(size), ink);
+        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left - 4.0).max(0.0));
+        let galley = painter.layout_job(job);
+        let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
+        painter.galley(at.min, galley, ink);
+        let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));
+        let spoken = format!("{name}: {}: {error}{words}", setting.words());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+        let tip = fill!(
+            "Error: length of the difference of the displacement vectors of the first probe and of %{truth}, over the length \
+             of the latter. Time and iterations: of a solve from rest.",
+            truth = truth_words(input.truth)
+        );
+        response.on_hover_text(format!("{words}\n{tip}"));
+    }
+
+    /// The body of a pane, over what its pass has drawn.
+    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) -> Wish {
+        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Wish::default() };
+        let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
+        // What is no answer has no values.
+        let system = pane.system().filter(|_| pane.is_sound() && !pane.is_outdated()).cloned();
+        let forces = pane.forces(input.common.direction, input.common.opening);
+        let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&Projection { camera, rect: place }));
+        let reach = Reach {
+            mesh: system.as_ref().map(|system| system.mesh()),
+            camera,
+            positions: &pane.shape.nodes,
+            outline: &pane.drawing.boundary,
+            handles: &handles,
+            scales: eye.scales([place.width(), place.height()].map(f64::from)),
+        };
+        let wish = grid::follow(ui, (number, place), &mut pane.pointer, &reach, eye);
+        let Some(pane) = self.panes.get(number) else { return wish };
+        let palette = Palette::new(ui.visuals());
+        let painter = ui.painter_at(place);
+        if let (Some(system), Some(scene)) = (pane.system(), pane.scene()) {
+            let exact: &[_] = input.truth.filter(|_| input.common.view.exact).map_or(&[], |truth| &truth.outline);
+            let (drawing, shape, hot) = (&pane.drawing, &pane.shape, pane.pointer.hot_handle());
+            let body = PaneBody { scene, system, drawing, shape, exact, time: 0.0, hot };
+            body.paint(ui, place, camera, &input.common, &self.still);
+        }
+        if number == 0 {
+            overlay::scale_bar(&painter, place, &camera, &palette);
+        }
+        if pane.is_outdated() {
+            painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.6));
+            painter.text(
+                place.center(),
+                Align2::CENTER_CENTER,
+                tr("solving…"),
+                FontId::proportional(BODY),
+                palette.text,
+            );
+        } else if pane.has_failed() {
+            // What is no equilibrium is no result.
+            painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.55));
+        }
+        wish
+    }
+
+    /// What lines and colours mean, for all panes.
+    fn key(&self, ui: &Ui, rect: Rect, view: &ViewOptions) {
+        let palette = Palette::new(ui.visuals());
+        let painter = ui.painter_at(rect);
+        let font = FontId::proportional(SMALL);
+        let middle = rect.center().y;
+        let mut x = rect.left() + 12.0;
+        let mut entry = |words: &str, mark: Mark, color: Color32| {
+            mark.paint(&painter, pos2(x, middle), color);
+            let at = pos2(x + Mark::WIDTH + 6.0, middle);
+            let place = painter.text(at, Align2::LEFT_CENTER, tr(words), font.clone(), palette.secondary);
+            x = place.right() + 16.0;
+        };
+        if view.exact {
+            entry("exact", Mark::Dashes, palette.exact);
+        }
+        if view.rest_outline {
+            entry("rest", Mark::Outline, palette.rest);
+        }
+        let Some(range) = self.panes.first().map(|pane| pane.shape.range) else { return };
+        grid::color_key(ui, rect, x, view, range);
+    }
+}
+
+/// A picker of a pane: an own value, or that of the panel.
+fn pick<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    palette: &Palette,
+    (pane, what): (&str, &str),
+    width: f32,
+    (value, (panels, of_panel)): (&mut Option<T>, (&str, &str)),
+    entries: impl Iterator<Item = (T, &'static str, &'static str)> + Clone,
+) {
+    let id = value.and_then(|own| entries.clone().find(|entry| entry.0 == own)).map_or(panels, |entry| entry.1);
+    let mut menu = |ui: &mut Ui| {
+        ui.set_width(280.0);
+        for (kind, id, about) in entries.clone() {
+            if choice(ui, palette, *value == Some(kind), id, about).clicked() {
+                *value = Some(kind);
+            }
+        }
+        let about = fill!("%{setting} at present; follows the panel", setting = tr(panels));
+        if choice(ui, palette, value.is_none(), of_panel, &about).clicked() {
+            *value = None;
+        }
+    };
+    combo(ui, pane, what, id, width, &mut menu);
+}
+
+fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut dyn FnMut(&mut Ui)) {
+    let (words, text) = (format!("{pane} {}", tr(what)), tr(text));
+    let combo = ComboBox::from_id_salt(&words).selected_text(RichText::new(text)).width(width).height(420.0).truncate();
+    let response = combo.show_ui(ui, menu).response;
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::ComboBox, true, &words);
+        info.current_text_value = Some(text.to_owned());
+        info
+    });
+}
+
+/// Finer and coarser meshes than the panel's.
+fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &mut Option<[u32; 2]>, scene: &Scene) {
+    /// Most cells that are offered.
+    const MOST: u64 = 40_000;
+    let words = |[along, across]: [u32; 2]| format!("{along}×{across}");
+    let Some(beam) = &scene.beam else {
+        return combo(ui, pane, "mesh", "as meshed", width, &mut |ui| {
+            ui.label(tr("The mesh is that of the file."));
+        });
+    };
+    let own = beam.cells;
+    let text = words(cells.unwrap_or(own));
+    combo(ui, pane, "mesh", &text, width, &mut |ui| {
+        ui.set_width(200.0);
+        let about = fill!("%{setting} at present; follows the panel", setting = words(own));
+        if choice(ui, palette, cells.is_none(), "the panel's", &about).clicked() {
+            *cells = None;
+        }
+        let coarser = own.map(|n| n.div_ceil(2));
+        let finer = [1, 2, 4, 8, 16].map(|times| own.map(|n| n.saturating_mul(times)));
+        let offered = std::iter::once(coarser).filter(|&c| c != own).chain(finer);
+        let small = offered.filter(|[a, b]| u64::from(*a) * u64::from(*b) <= MOST);
+        let other = cells.filter(|own| !small.clone().any(|offered| offered == *own));
+        for offered in small.chain(other) {
+            let about = match offered {
+                _ if offered == own => "as the panel has it now, whatever it has then",
+                _ if offered[0] < own[0] => "coarser",
+                _ => "finer",
+            };
+            if choice(ui, palette, *cells == Some(offered), &words(offered), about).clicked() {
+                *cells = Some(offered);
+            }
+        }
+    });
+}

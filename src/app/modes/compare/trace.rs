@@ -1,0 +1,436 @@
+//! The load curve, traced while the load is dragged: what every pane has answered to the loads so far.
+
+use egui::{Pos2, Ui, WidgetInfo, pos2};
+use egui_plot::PlotResponse;
+use nalgebra::Vector2;
+
+use super::pane::{Doing, Pane};
+use super::setting::PaneSetting;
+use crate::app::action::Action;
+use crate::app::language::{fill, percent, tr};
+use crate::app::modes::budget::question;
+use crate::app::modes::explore::figure::{self, CurvePlot, Parts};
+use crate::app::modes::explore::load_curve::{axes, displacement_words, pair, quantities, usual};
+use crate::app::task::lazy::Finder;
+use crate::scene::limits::{self, Limit};
+use crate::scene::{Load, MethodKind, Place, Scene};
+use crate::study::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
+use crate::study::{LoadCurve, Reference};
+use crate::truth::error_percent;
+use crate::words::{engineering, three_digits};
+
+/// Dots of a setting that are kept.
+const MOST_DOTS: usize = 500;
+/// Dots nearer to each other than this, parts of their load, are one.
+const SAME_LOAD: f64 = 2e-3;
+
+/// So many times smaller than what the plot reaches, a load would not be seen.
+const TINY: f64 = 50.0;
+
+/// The load that is traced: the first force, else the first moment, else the weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Axis {
+    name: &'static str,
+    /// Of the edits of it.
+    label: &'static str,
+    limit: Limit,
+    /// Its number among the scene's loads.
+    load: usize,
+    magnitude: f64,
+    /// Of unit length; absent without load.
+    direction: Option<[f64; 2]>,
+}
+
+impl Axis {
+    fn of(scene: &Scene) -> Option<Self> {
+        let kinds: [fn(&Load) -> bool; 3] = [
+            |load| matches!(load, Load::Force { .. }),
+            |load| matches!(load, Load::Moment { .. }),
+            |load| matches!(load, Load::Gravity { .. }),
+        ];
+        let load = kinds.iter().find_map(|is_kind| scene.loads.iter().position(is_kind))?;
+        let (name, label, limit, vector) = match scene.loads.get(load)? {
+            Load::Force { force, .. } => ("force", "Force", limits::FORCE, *force),
+            Load::Moment { moment, .. } => ("moment", "Moment", limits::MOMENT, [*moment, 0.0]),
+            Load::Gravity { acceleration, .. } => ("gravity", "Gravity", limits::ACCELERATION, *acceleration),
+        };
+        let magnitude = vector[0].hypot(vector[1]);
+        let direction = (magnitude > 0.0).then(|| vector.map(|v| v / magnitude));
+        Some(Self { name, label, limit, load, magnitude, direction })
+    }
+
+    /// Makes it another magnitude.
+    fn set(&self, scene: &mut Scene, direction: [f64; 2], magnitude: f64) {
+        let vector = direction.map(|v| v * magnitude);
+        match scene.loads.get_mut(self.load) {
+            Some(Load::Force { force, .. }) => *force = vector,
+            Some(Load::Moment { moment, .. }) => *moment = vector[0],
+            Some(Load::Gravity { acceleration, .. }) => *acceleration = vector,
+            None => {}
+        }
+    }
+
+    /// What scenes that differ in the magnitude only have in common.
+    fn family(&self, scene: &Scene) -> Scene {
+        let mut family = question(scene);
+        self.set(&mut family, [0.0; 2], 0.0);
+        family
+    }
+}
+
+/// An answer to a load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Dot {
+    load: f64,
+    /// Displacement of the first probe, m.
+    u: Vector2<f64>,
+    /// Whether it is an equilibrium.
+    good: bool,
+}
+
+/// What has been answered so far.
+#[derive(Debug)]
+pub(super) struct Trace {
+    axis: Option<Axis>,
+    family: Option<Scene>,
+    direction: Option<[f64; 2]>,
+    series: Vec<(PaneSetting, Vec<Dot>)>,
+    exact: Finder<Vec<Exact>>,
+    /// The exact curve that was found last.
+    line: Vec<Exact>,
+    /// What is true of the loads that were there: plane elasticity may differ from the exact beam.
+    truths: Vec<Exact>,
+    /// The load at the right edge.
+    reach: f64,
+    /// Quantities that show most of this curve, once some of it is known.
+    usual: Option<CurvePlot>,
+}
+
+/// A load and the exact displacement of the first probe under it, m.
+type Exact = (f64, Vector2<f64>);
+
+impl Default for Trace {
+    fn default() -> Self {
+        Self {
+            axis: None,
+            family: None,
+            direction: None,
+            series: Vec::new(),
+            exact: Finder::new(|scene, _| exact_line(scene)),
+            line: Vec::new(),
+            truths: Vec::new(),
+            reach: 0.0,
+            usual: None,
+        }
+    }
+}
+
+/// The exact displacement of the first probe over the load that is traced.
+fn exact_line(scene: &Scene) -> Option<Vec<Exact>> {
+    let axis = Axis::of(scene).filter(|axis| axis.magnitude > 0.0)?;
+    // Along the curve of several loads all of them would grow.
+    if has_several_loads(scene) || scene.probes.first()?.place != Place::from("right") {
+        return None;
+    }
+    let curve = LoadCurve::new(scene)?;
+    Some(curve.samples.iter().map(|s| (s.factor * axis.magnitude, s.truth)).collect())
+}
+
+fn has_several_loads(scene: &Scene) -> bool {
+    let pulls = |load: &&Load| match load {
+        Load::Force { force: v, .. } | Load::Gravity { acceleration: v, .. } => *v != [0.0; 2],
+        Load::Moment { moment, .. } => *moment != 0.0,
+    };
+    scene.loads.iter().filter(pulls).count() > 1
+}
+
+impl Trace {
+    /// Goes on with the scene; another scene, or another direction of its load, begins a new curve.
+    pub(super) fn follow(&mut self, scene: &Scene) {
+        /// Directions that differ by less, as parts of a unit vector, are the same.
+        const SAME_DIRECTION: f64 = 1e-6;
+        self.axis = Axis::of(scene);
+        let family = self.axis.map(|axis| axis.family(scene));
+        let direction = self.axis.and_then(|axis| axis.direction);
+        let turned = self.direction.zip(direction).is_some_and(|(a, b)| {
+            // Along it or against it is the same curve no more.
+            (a[0] - b[0]).hypot(a[1] - b[1]) > SAME_DIRECTION
+        });
+        if family != self.family || turned {
+            *self = Self { axis: self.axis, family, ..Self::default() };
+        }
+        self.direction = direction.or(self.direction);
+    }
+
+    /// Looks for the exact curve, where that is not known far enough.
+    pub(super) fn ask(&mut self, scene: &Scene, ctx: &egui::Context) {
+        if self.needs_exact() {
+            self.exact.forget();
+        }
+        if self.axis.is_some_and(|axis| axis.magnitude > 0.0) {
+            self.exact.ask(scene, ctx);
+        }
+        self.take_exact();
+    }
+
+    /// Finds the exact curve, however long it takes.
+    pub(super) fn settle(&mut self, scene: &Scene) {
+        if self.needs_exact() {
+            self.exact.forget();
+        }
+        self.exact.settle(scene);
+        self.take_exact();
+    }
+
+    fn take_exact(&mut self) {
+        if let Some(line) = self.exact.get()
+            && self.line != *line
+        {
+            self.line.clone_from(line);
+        }
+    }
+
+    /// Whether the exact curve that is known ends before the load, or is too coarse for it.
+    fn needs_exact(&self) -> bool {
+        let (Some(end), Some(axis)) = (self.exact.get().and_then(|line| line.last()), self.axis) else { return false };
+        axis.magnitude > end.0 || axis.magnitude > 0.0 && TINY * axis.magnitude < end.0
+    }
+
+    /// Notes what is true of the present load.
+    pub(super) fn record_truth(&mut self, truth: Option<&Reference>) {
+        let (Some(axis), Some(truth)) = (self.axis, truth.and_then(Reference::first)) else { return };
+        let dot = (axis.magnitude, truth.displacement);
+        self.truths.retain(|other| (other.0 - dot.0).abs() > SAME_LOAD * dot.0);
+        self.truths.push(dot);
+        if self.truths.len() > MOST_DOTS {
+            self.truths.remove(0);
+        }
+    }
+
+    /// The true displacement under a load, where that is known; else that of the exact beam.
+    fn exact_at(&self, load: f64) -> Option<Vector2<f64>> {
+        let truth = self.truths.iter().find(|dot| dot.0 == load).map(|dot| dot.1);
+        let piece = || self.line.windows(2).find(|w| (w[0].0..=w[1].0).contains(&load));
+        let between = |w: &[Exact]| w[0].1 + (w[1].1 - w[0].1) * ((load - w[0].0) / (w[1].0 - w[0].0));
+        truth.or_else(|| piece().map(between))
+    }
+
+    /// Notes what a pane has answered to the present load. Says whether that is new.
+    pub(super) fn record(&mut self, scene: &Scene, pane: &Pane) -> bool {
+        let (Some(axis), Some((probe, good))) = (self.axis, pane.answer()) else { return false };
+        let dot = Dot { load: axis.magnitude, u: probe.u, good };
+        let setting = pane.setting.of(scene);
+        let number = self.series.iter().position(|(own, _)| *own == setting).unwrap_or_else(|| {
+            self.series.push((setting, Vec::new()));
+            self.series.len() - 1
+        });
+        let dots = &mut self.series[number].1;
+        let same = |other: &Dot| (other.load - dot.load).abs() <= SAME_LOAD * dot.load.max(f64::MIN_POSITIVE);
+        match dots.iter_mut().find(|other| same(other)) {
+            Some(other) if *other == dot => return false,
+            Some(other) => *other = dot,
+            None => dots.push(dot),
+        }
+        if dots.len() > MOST_DOTS {
+            dots.remove(0);
+        }
+        true
+    }
+
+    /// Every dot that is an equilibrium: setting, load, and both components of the displacement.
+    pub(super) fn dots(&self) -> Vec<(PaneSetting, [f64; 3])> {
+        let dots = self.series.iter().flat_map(|(setting, dots)| dots.iter().map(move |dot| (*setting, *dot)));
+        dots.filter(|(_, dot)| dot.good).map(|(setting, dot)| (setting, [dot.load, dot.u.x, dot.u.y])).collect()
+    }
+
+    fn dots_of(&self, setting: PaneSetting) -> &[Dot] {
+        self.series.iter().find(|(own, _)| *own == setting).map_or(&[], |(_, dots)| dots)
+    }
+
+    /// Shows the curve of the panes; a press in it sets the load.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene,
+        panes: &[Pane],
+        chosen: Option<CurvePlot>,
+        actions: &mut Vec<Action>,
+    ) {
+        const OFFERED: [CurvePlot; 3] = [CurvePlot::Path, CurvePlot::X, CurvePlot::Y];
+        let Some(axis) = self.axis else {
+            ui.centered_and_justified(|ui| ui.weak(tr("The scene has no load whose curve could be traced.")));
+            return;
+        };
+        // A picture whose edge moved under a pointer that scrubs in it would run away.
+        let pressed = ui.input(|i| i.pointer.any_down());
+        let settled = axis.magnitude > 0.9 * self.reach || TINY * axis.magnitude < self.reach;
+        if axis.magnitude > self.reach || settled && !pressed && axis.magnitude > 0.0 {
+            self.reach = 1.25 * axis.magnitude;
+        }
+        let shown = chosen.filter(|plot| OFFERED.contains(plot)).unwrap_or_else(|| self.usual(axis));
+        let drawn = self.figure(axis, scene, panes, shown);
+        let parts = Parts::of(ui.available_rect_before_wrap());
+        ui.scope_builder(egui::UiBuilder::new().max_rect(parts.plot), |ui| {
+            let response = figure::plot(ui, "trace", &drawn, Some(axis.magnitude));
+            self.set_load(response, axis, scene, &drawn, actions);
+        });
+        ui.scope_builder(egui::UiBuilder::new().max_rect(parts.table), |ui| {
+            figure::controls(ui, &drawn, &OFFERED, shown, actions);
+            figure::table(ui, &drawn);
+        });
+    }
+
+    /// Quantities that show most of the curve: decided once, where the load reaches first.
+    fn usual(&mut self, axis: Axis) -> CurvePlot {
+        let known: Vec<Vector2<f64>> = self.exact_at(axis.magnitude).into_iter().collect();
+        let curved = |s: &&(PaneSetting, Vec<Dot>)| s.0.method != Some(MethodKind::Linear);
+        let answers =
+            self.series.iter().filter(curved).flat_map(|(_, dots)| dots).filter(|dot| dot.good).map(|dot| dot.u);
+        let known: Vec<Vector2<f64>> = known.into_iter().chain(answers).collect();
+        if self.usual.is_none() && !known.is_empty() {
+            self.usual = Some(usual(known.iter().copied()));
+        }
+        self.usual.unwrap_or(CurvePlot::Y)
+    }
+
+    /// The curve of the panes, and their answers to the present load.
+    fn figure(&self, axis: Axis, scene: &Scene, panes: &[Pane], shown: CurvePlot) -> Figure {
+        let reach = if self.reach > 0.0 { self.reach } else { 1.0 };
+        let exact = |all: &[Exact]| -> Vec<FigurePoint> {
+            let seen = all.iter().filter(|(load, _)| *load <= 1.001 * reach);
+            seen.map(|&(load, u)| figure::point(load, u)).collect()
+        };
+        let series = |name: &str, ink, mark, may_leave, points| FigureSeries {
+            name: name.to_owned(),
+            ink,
+            mark,
+            may_leave,
+            points,
+        };
+        let exact_series = [
+            series(tr("exact beam"), Ink::Exact, Mark::Line, false, exact(&self.line)),
+            series(tr("exact"), Ink::Exact, Mark::Plus, false, exact(&self.truths)),
+        ];
+        let mut all: Vec<FigureSeries> = exact_series.into_iter().filter(|s| !s.points.is_empty()).collect();
+        let mut rows = Vec::new();
+        if !all.is_empty() {
+            let value = self.exact_at(axis.magnitude).map(pair).unwrap_or_default();
+            let (name, error) = (tr("exact").to_owned(), String::new());
+            rows.push(FigureRow { name, ink: Ink::Exact, mark: Mark::Line, value, error, is_bad: false });
+        }
+        let stretches = all.is_empty() && panes.iter().all(|p| p.setting.of(scene).method == Some(MethodKind::Linear));
+        for pane in panes {
+            let setting = pane.setting.of(scene);
+            let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
+            let (name, ink, is_linear) = (setting.words(), Ink::Method(method), method == MethodKind::Linear);
+            let dots: Vec<&Dot> = self.dots_of(setting).iter().filter(|dot| dot.load <= reach).collect();
+            // Linear theory is in proportion to its one load.
+            if let Some(dot) = dots.iter().rfind(|dot| dot.good && dot.load > 0.0)
+                && is_linear
+                && !has_several_loads(scene)
+            {
+                let ends = [0.0, reach].map(|load| figure::point(load, dot.u * (load / dot.load)));
+                let name = fill!("%{setting}, in proportion", setting = name);
+                all.push(series(&name, ink, Mark::Line, true, ends.to_vec()));
+            }
+            let points = dots.iter().map(|dot| self.point(dot, axis.magnitude)).collect();
+            all.push(series(&name, ink, Mark::Element(element), is_linear && !stretches, points));
+            let (value, is_bad) = match (pane.answer(), pane.doing()) {
+                (_, Doing::Refused(_)) => (tr("no solution").to_owned(), true),
+                (Some((probe, true)), _) => (pair(probe.u), false),
+                (Some((_, false)), _) => (tr("does not converge").to_owned(), true),
+                (None, _) => (tr("iterates").to_owned(), false),
+            };
+            let error = pane.error.filter(|_| !is_bad).map(percent).unwrap_or_default();
+            rows.push(FigureRow { name, ink, mark: Mark::Element(element), value, error, is_bad });
+        }
+        let load = engineering(three_digits(axis.magnitude), axis.limit.unit);
+        let bounds = self.bounds(&all, reach, axes(shown));
+        let quantity = Quantity::new(axis.name, axis.limit.unit);
+        Figure {
+            title: format!("{}: {}", tr(&scene.name), tr("Load curve")),
+            quantities: quantities(quantity, scene),
+            axes: axes(shown),
+            bounds,
+            series: all,
+            head: [format!("{} {load}", tr(axis.name)), displacement_words(scene), ERROR.to_owned()],
+            error_name: fill!("error %{measure}", measure = ERROR),
+            rows,
+        }
+    }
+
+    /// A dot of the curve; one that is no equilibrium has no displacement.
+    fn point(&self, dot: &Dot, present: f64) -> FigurePoint {
+        let u = dot.good.then_some(dot.u);
+        let exact = self.exact_at(dot.load);
+        FigurePoint {
+            values: vec![Some(dot.load), u.map(|u| u.x), u.map(|u| u.y)],
+            error_percent: u.zip(exact).and_then(|(u, exact)| error_percent(u, exact)),
+            state: tr(if dot.good { "converged" } else { "does not converge" }).to_owned(),
+            is_present: dot.load == present,
+        }
+    }
+
+    /// Corners of the plot: loads up to the reach, whatever has been answered.
+    fn bounds(&self, series: &[FigureSeries], reach: f64, axes: [usize; 2]) -> Option<[[f64; 2]; 2]> {
+        if axes[0] != 0 {
+            return None;
+        }
+        let free = Figure { axes, series: series.to_vec(), ..Figure::default() };
+        let [low, high] = free.corners();
+        Some([[0.0, low[1]], [reach, high[1]]])
+    }
+
+    /// Sets the load where the plot is pressed: in the path, that of the nearest point.
+    fn set_load(
+        &self,
+        response: PlotResponse<()>,
+        axis: Axis,
+        scene: &Scene,
+        drawn: &Figure,
+        actions: &mut Vec<Action>,
+    ) {
+        /// A dot so near, points, is meant.
+        const NEAR: f32 = 5.0;
+        let transform = response.transform;
+        let area = response.response;
+        let cursor = if drawn.axes[0] == 0 { egui::CursorIcon::ResizeHorizontal } else { egui::CursorIcon::Crosshair };
+        let area = area.on_hover_cursor(cursor);
+        area.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, tr("Load curve")));
+        let pressed = area.is_pointer_button_down_on() || area.clicked();
+        let (Some(at), Some(direction)) = (area.interact_pointer_pos().filter(|_| pressed), self.direction) else {
+            return;
+        };
+        let reach = if self.reach > 0.0 { self.reach } else { 1.0 };
+        let dots = || drawn.series.iter().filter(|s| !s.mark.is_line()).flat_map(|s| &s.points);
+        let wanted = if drawn.axes[0] == 0 {
+            let load = |x: f32| transform.value_from_position(pos2(x, at.y)).x;
+            let near = load(at.x - NEAR)..=load(at.x + NEAR);
+            let loads = dots().filter_map(|dot| dot.values.first().copied().flatten()).filter(|l| near.contains(l));
+            let off = |l: f64| (l - load(at.x)).abs();
+            let dot = loads.min_by(|a, b| off(*a).total_cmp(&off(*b)));
+            Some(dot.unwrap_or_else(|| three_digits(load(at.x))))
+        } else {
+            let distance = |p: &FigurePoint| {
+                let [x, y] = drawn.place(p)?;
+                let place: Pos2 = transform.position_from_point(&egui_plot::PlotPoint::new(x, y));
+                Some((place.distance(at), p.values.first().copied().flatten()?))
+            };
+            let nearest = |points: &mut dyn Iterator<Item = &FigurePoint>| {
+                points.filter_map(distance).min_by(|a, b| a.0.total_cmp(&b.0))
+            };
+            let dot = nearest(&mut dots()).filter(|dot| dot.0 <= NEAR);
+            let whole = || nearest(&mut drawn.series.iter().flat_map(|s| &s.points));
+            dot.or_else(whole).map(|(_, load)| load)
+        };
+        let Some(wanted) = wanted.map(|load| load.clamp(0.0, axis.limit.max.min(reach))) else { return };
+        if wanted != axis.magnitude {
+            let mut scene = Box::new(scene.clone());
+            axis.set(&mut scene, direction, wanted);
+            actions.push(Action::Edit(axis.label, scene));
+        }
+    }
+}
+
+/// The measure of errors, in symbols.
+const ERROR: &str = "|Δu|/|u|";

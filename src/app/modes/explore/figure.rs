@@ -1,0 +1,393 @@
+//! Figures in the window: the plot, the table beside it, the choice of quantities, and files of it.
+
+use std::path::PathBuf;
+
+use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, PlotResponse, Points, VLine};
+use thiserror::Error;
+
+use crate::app::action::Action;
+use crate::app::language::{fill, tr};
+use crate::app::modes::budget::marker;
+use crate::app::modes::explore::load_curve::{segments, still};
+use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::app::{NoName, free_name};
+use crate::export::{ExportError, write_text};
+use crate::picture::{PictureError, draw_svg};
+use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
+
+/// Quantities that a load curve shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CurvePlot {
+    /// The reaction of a support that moves, over its way.
+    Reaction,
+    /// The components of the displacement against each other.
+    Path,
+    /// The horizontal component over the load.
+    X,
+    /// The vertical component over the load.
+    Y,
+}
+
+impl CurvePlot {
+    /// The component along an axis: 0 is x.
+    pub(crate) fn component(axis: usize) -> Self {
+        if axis == 0 { Self::X } else { Self::Y }
+    }
+
+    fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Reaction => ("Reaction", "The reaction of the support over its way"),
+            Self::Path => ("Path", "The path of the point where errors are measured: u_y against u_x, in one scale"),
+            Self::X => ("u_x", "u_x against load, where errors are measured"),
+            Self::Y => ("u_y", "u_y against load, where errors are measured"),
+        }
+    }
+}
+
+/// Kind of a file that a figure is saved to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FigureFile {
+    Csv,
+    Png,
+    Svg,
+}
+
+impl FigureFile {
+    const ALL: [(Self, &'static str); 3] = [
+        (Self::Csv, "Every point as a table, with units"),
+        (Self::Png, "The plot and its table as a picture"),
+        (Self::Svg, "The plot and its table as a drawing that scales"),
+    ];
+
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Png => "png",
+            Self::Svg => "svg",
+        }
+    }
+}
+
+/// Reason why a figure is not saved.
+#[derive(Debug, Error)]
+pub(crate) enum SaveError {
+    #[error(transparent)]
+    NoName(#[from] NoName),
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+/// Saves a figure here under the first free name, which it returns.
+pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveError> {
+    let path = free_name(file.extension())?;
+    match file {
+        FigureFile::Csv => write_text(&path, &figure.csv())?,
+        FigureFile::Svg => write_text(&path, &figure.svg())?,
+        FigureFile::Png => draw_svg(&figure.svg())?.write_png(&path)?,
+    }
+    Ok(path)
+}
+
+/// Parts of the window that a figure is shown in: the plot, and the table on its right.
+pub(crate) struct Parts {
+    pub plot: Rect,
+    pub table: Rect,
+}
+
+impl Parts {
+    pub(crate) fn of(whole: Rect) -> Self {
+        let split = whole.right() - (0.4 * whole.width()).clamp(196.0, 330.0);
+        Self {
+            plot: Rect::from_min_max(whole.min, pos2(split - 12.0, whole.bottom())),
+            table: Rect::from_min_max(pos2(split, whole.top()), whole.max),
+        }
+    }
+}
+
+/// Draws the plot; a line marks the present load where the load is the horizontal axis.
+pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>) -> PlotResponse<()> {
+    let palette = Palette::new(ui.visuals());
+    let corners = figure.corners();
+    let [x, y] = [0, 1].map(|axis| figure.quantity(axis).map_or(("", ""), |q| (q.name.as_str(), q.unit)));
+    let mut plot = still(&palette, id, x, y).set_margin_fraction(egui::Vec2::ZERO);
+    for [x, y] in corners {
+        plot = plot.include_x(x).include_y(y);
+    }
+    if figure.has_one_scale() {
+        plot = plot.data_aspect(1.0);
+    }
+    let is_inside = |p: &[f64; 2]| {
+        let slack = [0, 1].map(|i| 1e-9 * (corners[1][i] - corners[0][i]));
+        (0..2).all(|i| p[i] >= corners[0][i] - slack[i] && p[i] <= corners[1][i] + slack[i])
+    };
+    let response = plot.show(ui, |plot| {
+        if let Some(load) = present.filter(|_| figure.axes[0] == 0) {
+            let now = VLine::new(tr("now"), load).color(palette.load.gamma_multiply(0.7)).width(1.0);
+            plot.vline(now.allow_hover(false));
+        }
+        let mut smaller = 0.0;
+        for series in &figure.series {
+            let color = color(&palette, series.ink);
+            let places = |present: Option<bool>| -> Vec<[f64; 2]> {
+                let own = series.points.iter().filter(|point| present.is_none_or(|p| p == point.is_present));
+                own.filter_map(|point| figure.place(point)).collect()
+            };
+            if series.mark.is_line() {
+                let style = match series.mark {
+                    Mark::Dashes => LineStyle::dashed_loose(),
+                    Mark::Dots => LineStyle::dotted_dense(),
+                    _ => LineStyle::Solid,
+                };
+                // A dashed line of many pieces would have no gaps.
+                let lines = match series.mark {
+                    Mark::Line => segments(&places(None)),
+                    _ => vec![places(None)],
+                };
+                for line in lines.into_iter().filter_map(|line| clipped(&line, corners)) {
+                    let line = Line::new(series.name.clone(), PlotPoints::from(line));
+                    plot.line(line.color(color).width(2.0).style(style));
+                }
+                continue;
+            }
+            for (is_present, radius, step) in [(false, 3.8, 0.7), (true, 7.0, 1.4)] {
+                let mut own = places(Some(is_present));
+                own.retain(is_inside);
+                let (shape, filled) = look(series.mark);
+                let points = Points::new(series.name.clone(), own).color(color).shape(shape).filled(filled);
+                // Marks in the same place lie in each other.
+                plot.points(points.radius((radius - step * smaller as f32).max(2.4)));
+            }
+            if matches!(series.mark, Mark::Element(_) | Mark::Disc) {
+                smaller += 1.0;
+            }
+        }
+    });
+    // The room for the numbers of an axis is known one frame late.
+    let id = ui.scope_id().with(("corners", id));
+    if ui.data_mut(|data| data.get_temp(id).replace(corners).is_none_or(|before: [[f64; 2]; 2]| before != corners)) {
+        ui.data_mut(|data| data.insert_temp(id, corners));
+        ui.ctx().request_repaint();
+    }
+    response
+}
+
+/// The parts of a line between the corners, from its first point inside; `None` where nothing of it is.
+fn clipped(line: &[[f64; 2]], [low, high]: [[f64; 2]; 2]) -> Option<Vec<[f64; 2]>> {
+    let inside = |p: &[f64; 2]| (0..2).all(|i| p[i] >= low[i] && p[i] <= high[i]);
+    let mut kept = Vec::new();
+    for pair in line.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        // Liang and Barsky's parameters of the part inside.
+        let (mut from, mut to) = (0.0_f64, 1.0_f64);
+        for i in 0..2 {
+            let d = b[i] - a[i];
+            for (distance, way) in [(a[i] - low[i], -d), (high[i] - a[i], d)] {
+                if way == 0.0 {
+                    if distance < 0.0 {
+                        to = -1.0;
+                    }
+                } else if way < 0.0 {
+                    from = from.max(distance / way);
+                } else {
+                    to = to.min(distance / way);
+                }
+            }
+        }
+        if from > to {
+            continue;
+        }
+        let at = |t: f64| [0, 1].map(|i| a[i] + t * (b[i] - a[i]));
+        if kept.is_empty() {
+            kept.push(if inside(&a) { a } else { at(from) });
+        }
+        kept.push(if inside(&b) { b } else { at(to) });
+    }
+    (kept.len() > 1).then_some(kept)
+}
+
+fn color(palette: &Palette, ink: Ink) -> Color32 {
+    match ink {
+        Ink::Exact => palette.exact,
+        Ink::Method(method) => palette.method(method),
+        Ink::Unstable => palette.error,
+        Ink::Scene => palette.text,
+    }
+}
+
+fn look(mark: Mark) -> (MarkerShape, bool) {
+    match mark {
+        Mark::Element(element) => (marker(element).0, true),
+        Mark::Ring => (MarkerShape::Circle, false),
+        Mark::Cross => (MarkerShape::Cross, true),
+        Mark::Plus => (MarkerShape::Plus, true),
+        _ => (MarkerShape::Circle, true),
+    }
+}
+
+/// Shows the choice of quantities and the menu of files.
+pub(crate) fn controls(
+    ui: &mut Ui,
+    figure: &Figure,
+    offered: &[CurvePlot],
+    shown: CurvePlot,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
+        for &plot in offered {
+            let (word, tip) = plot.words();
+            if ui.add(option_button(plot == shown, tr(word))).on_hover_text(tr(tip)).clicked() {
+                actions.push(Action::Plot(plot));
+            }
+        }
+        ui.menu_button(tr("Export"), |ui| {
+            for (file, tip) in FigureFile::ALL {
+                if ui.button(file.extension().to_uppercase()).on_hover_text(tr(tip)).clicked() {
+                    actions.push(Action::Export(Box::new(figure.clone()), file));
+                }
+            }
+        });
+    });
+}
+
+/// Shows the table: marks, names, present values and errors.
+pub(crate) fn table(ui: &mut Ui, figure: &Figure) {
+    ui.spacing_mut().item_spacing.y = 2.0;
+    ScrollArea::vertical().id_salt("table").auto_shrink([false, false]).show(ui, |ui| {
+        let errors = figure.rows.iter().any(|row| !row.error.is_empty());
+        let columns = Columns::new(ui, errors);
+        if figure.head.iter().any(|words| !words.is_empty()) {
+            head(ui, &columns, figure);
+        }
+        for row in &figure.rows {
+            show_row(ui, &columns, row);
+        }
+    });
+}
+
+/// Widths of the table's columns, points.
+struct Columns {
+    mark: f32,
+    error: f32,
+}
+
+impl Columns {
+    fn new(ui: &Ui, errors: bool) -> Self {
+        /// A narrower table has no column of errors: the panes tell them too.
+        const NARROW: f32 = 250.0;
+        Self { mark: 22.0, error: if errors && ui.available_width() >= NARROW { 54.0 } else { 0.0 } }
+    }
+}
+
+fn head(ui: &mut Ui, columns: &Columns, figure: &Figure) {
+    let palette = Palette::new(ui.visuals());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
+    let [name, value, error] = &figure.head;
+    let font = FontId::proportional(SMALL);
+    let put = |x: f32, align: Align2, words: &str, color| {
+        ui.painter().text(pos2(x, rect.center().y), align, words, font.clone(), color);
+    };
+    put(rect.left(), Align2::LEFT_CENTER, name, palette.load);
+    put(rect.right() - columns.error, Align2::RIGHT_CENTER, value, palette.secondary);
+    if columns.error > 0.0 {
+        put(rect.right(), Align2::RIGHT_CENTER, error, palette.secondary);
+    }
+    let spoken = [name, value, error].map(String::as_str).join(" ");
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, spoken.trim()));
+    if error.is_empty() {
+        return;
+    }
+    let measure = fill!(
+        "%{error}: length of the difference of the displacement vectors, over the length of the exact one",
+        error = figure.error_name
+    );
+    response.on_hover_text(format!("{}\n{measure}", tr("Press in the plot to set it")));
+}
+
+fn show_row(ui: &mut Ui, columns: &Columns, row: &FigureRow) {
+    let palette = Palette::new(ui.visuals());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
+    let painter = ui.painter();
+    paint_mark(ui, rect.left_center() + vec2(8.0, 0.0), row.mark, color(&palette, row.ink));
+    let ink = if row.is_bad { palette.error } else { palette.text };
+    let small = |words: &str, color| painter.layout_no_wrap(words.to_owned(), FontId::proportional(SMALL), color);
+    let mut right = rect.right();
+    let mut put = |words: &str, color, width: f32| {
+        let galley = small(words, color);
+        let at = Align2::RIGHT_CENTER.anchor_size(pos2(right, rect.center().y), galley.size());
+        right -= width.max(galley.size().x);
+        painter.galley(at.min, galley, color);
+    };
+    if columns.error > 0.0 {
+        put(&row.error, palette.text, columns.error);
+    }
+    put(&row.value, ink, 0.0);
+    let room = (right - rect.left() - columns.mark - 8.0).max(0.0);
+    let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), FontId::proportional(BODY), palette.text);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(room);
+    let galley = painter.layout_job(job);
+    let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + vec2(columns.mark, 0.0), galley.size());
+    painter.galley(at.min, galley, palette.text);
+    let mut spoken = row.name.clone();
+    for (separator, words) in [(": ", &row.value), (", ", &row.error)] {
+        if !words.is_empty() {
+            spoken = format!("{spoken}{separator}{words}");
+        }
+    }
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &spoken));
+    response.on_hover_text(spoken);
+}
+
+fn paint_mark(ui: &Ui, center: egui::Pos2, mark: Mark, color: Color32) {
+    let painter = ui.painter();
+    let stroke = Stroke::new(2.0, color);
+    let ends = [center - vec2(8.0, 0.0), center + vec2(8.0, 0.0)];
+    let across = |d: egui::Vec2| {
+        painter.line_segment([center - d, center + d], stroke);
+    };
+    match mark {
+        Mark::Line => _ = painter.line_segment(ends, stroke),
+        Mark::Dashes => _ = painter.add(egui::Shape::dashed_line(&ends, stroke, 4.0, 3.0)),
+        Mark::Dots => _ = painter.add(egui::Shape::dotted_line(&ends, color, 4.0, 1.2)),
+        Mark::Ring => _ = painter.circle_stroke(center, 4.0, Stroke::new(1.5, color)),
+        Mark::Cross => [vec2(4.0, 4.0), vec2(4.0, -4.0)].into_iter().for_each(across),
+        Mark::Plus => [vec2(4.5, 0.0), vec2(0.0, 4.5)].into_iter().for_each(across),
+        Mark::Disc => _ = painter.circle_filled(center, 4.5, color),
+        Mark::Element(element) => {
+            let corners: &[(f32, f32)] = match marker(element).0 {
+                MarkerShape::Up => &[(0.0, -5.0), (5.0, 4.0), (-5.0, 4.0)],
+                MarkerShape::Square => &[(-4.0, -4.0), (4.0, -4.0), (4.0, 4.0), (-4.0, 4.0)],
+                MarkerShape::Diamond => &[(0.0, -5.5), (5.5, 0.0), (0.0, 5.5), (-5.5, 0.0)],
+                _ => &[],
+            };
+            if corners.is_empty() {
+                painter.circle_filled(center, 4.5, color);
+            }
+            let corners = corners.iter().map(|&(x, y)| center + vec2(x, y)).collect();
+            painter.add(egui::Shape::convex_polygon(corners, color, Stroke::NONE));
+        }
+    }
+}
+
+/// A point of a load and the displacement under it.
+pub(crate) fn point(load: f64, u: nalgebra::Vector2<f64>) -> FigurePoint {
+    FigurePoint::new([load, u.x, u.y])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_cut_at_the_corners() {
+        let corners = [[0.0, 0.0], [2.0, 1.0]];
+        let line = [[-1.0, 0.5], [1.0, 0.5], [1.0, 3.0]];
+        assert_eq!(clipped(&line, corners), Some(vec![[0.0, 0.5], [1.0, 0.5], [1.0, 1.0]]));
+        assert_eq!(clipped(&[[3.0, 0.0], [3.0, 1.0]], corners), None);
+        assert_eq!(clipped(&[[0.0, -1.0], [-1.0, 0.0]], corners), None);
+    }
+}

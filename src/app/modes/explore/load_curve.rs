@@ -1,0 +1,286 @@
+//! The load curve. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory leaves. Of any
+//! other scene: its load path, what is unstable dashed.
+
+use egui::{Align2, Ui, UiBuilder};
+use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, Plot};
+use nalgebra::Vector2;
+
+use crate::app::action::Action;
+use crate::app::language::{fill, tr, translated};
+use crate::app::modes::explore::figure::{self, CurvePlot, Parts};
+use crate::app::viewport::overlay::boxed_text;
+use crate::app::widgets::palette::Palette;
+use crate::scene::{MethodKind, Scene};
+use crate::simulation::Status;
+use crate::study::figure::{
+    Figure, FigurePoint, FigureRow, FigureSeries, Ink, LoadAxis, Mark, Quantity, dominant_axis, leaves_the_axes,
+};
+use crate::study::path_chart::{self, Ordinate};
+use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
+use crate::words::{engineering, engineering_pair, three_digits, ticks};
+
+/// Load and displacement of a scene.
+#[derive(Debug)]
+pub(crate) enum Curve {
+    /// The curve of a cantilever, and its scene.
+    Beam(Box<(LoadCurve, Scene)>),
+    /// Of any scene at rest; of the scene with it.
+    Path(Box<(LoadPath, Scene)>),
+}
+
+impl Curve {
+    pub(crate) fn of(scene: &Scene) -> Option<Self> {
+        let path = || Some(Self::Path(Box::new((LoadPath::of(scene)?, scene.clone()))));
+        let beam = LoadCurve::new(scene).map(|curve| Self::Beam(Box::new((curve, scene.clone()))));
+        beam.or_else(path)
+    }
+}
+
+/// A plot that stands still, with round ticks and values in engineering units.
+pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
+    /// A value between ticks, to three digits.
+    fn value(value: f64, unit: &str) -> String {
+        engineering(three_digits(value), unit)
+    }
+    let ((x_name, x_unit), (y_name, y_unit)) = (x, y);
+    // The marks are as far apart as their numbers need.
+    let near = egui::Rangef::new(0.5 * APART[0], 0.75 * APART[0]);
+    let x_axis = AxisHints::new_x().label(x_name.to_owned()).label_spacing(near).min_thickness(X_AXIS).formatter(
+        move |mark, range| {
+            // In the corner stands the number of the other axis.
+            let in_corner = mark.value - range.start() < CORNER * (range.end() - range.start());
+            if in_corner { String::new() } else { engineering(mark.value, x_unit) }
+        },
+    );
+    let y_axis = AxisHints::new_y().label(y_name.to_owned()).min_thickness(Y_AXIS);
+    Plot::new(id.to_owned())
+        .custom_x_axes(vec![x_axis])
+        .custom_y_axes(vec![y_axis.formatter(move |mark, _| engineering(mark.value, y_unit))])
+        .x_grid_spacer(|input| round_marks(input, APART[0]))
+        .y_grid_spacer(|input| round_marks(input, APART[1]))
+        .label_formatter(move |at| match at {
+            HoverPosition::NearDataPoint { plot_name, position, .. } => {
+                Some(format!("{plot_name}\n{}, {}", value(position.x, x_unit), value(position.y, y_unit)))
+            }
+            HoverPosition::Elsewhere { .. } => None,
+        })
+        .grid_color(palette.line)
+        .grid_spacing(egui::Rangef::new(NEAREST, APART[1]))
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+}
+
+/// Room for the numbers and the title of an axis, points, before egui_plot has measured them.
+pub(crate) const X_AXIS: f32 = 38.0;
+pub(crate) const Y_AXIS: f32 = 68.0;
+
+/// Grid lines nearer to each other than this, points, are not drawn.
+const NEAREST: f32 = 8.0;
+/// Numbers so far apart, points, have room: beside each other, and over each other.
+const APART: [f32; 2] = [66.0, 26.0];
+
+/// The part of an axis, from its beginning, over which its numbers would touch those of the other axis.
+const CORNER: f64 = 0.02;
+
+/// Marks 1, 2 or 5 · 10ⁿ apart, as many as have room for their numbers.
+fn round_marks(input: GridInput, apart: f32) -> Vec<GridMark> {
+    const MOST: f64 = 9.0;
+    let (low, high) = input.bounds;
+    let room = (high - low) / input.base_step_size * f64::from(NEAREST / apart);
+    let ticks = ticks(low, high, room.clamp(2.0, MOST) as u32);
+    let step_size = ticks.windows(2).next().map_or(high - low, |pair| pair[1] - pair[0]);
+    ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
+}
+
+/// The pieces of a line: joints of one thick line would stick out where it turns sharply.
+pub(crate) fn segments(line: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    line.windows(2).map(<[_]>::to_vec).collect()
+}
+
+/// Shows the plot, that of the scene before while a new one is looked for; or says why there is none: not yet, or not at
+/// all.
+pub(crate) fn show(
+    ui: &mut Ui,
+    curve: Option<&Curve>,
+    looked_for: bool,
+    chosen: Option<CurvePlot>,
+    actions: &mut Vec<Action>,
+) {
+    let whole = ui.available_rect_before_wrap();
+    let Some(curve) = curve else {
+        ui.centered_and_justified(|ui| {
+            ui.weak(tr(if looked_for {
+                "No load curve: linear theory knows one straight line only."
+            } else {
+                "The load curve comes when the body has come to rest."
+            }));
+        });
+        return;
+    };
+    let offered = curve.offered();
+    let shown = chosen.filter(|plot| offered.contains(plot)).unwrap_or_else(|| curve.usual());
+    let drawn = curve.figure(shown);
+    let parts = Parts::of(whole);
+    ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| figure::plot(ui, "load curve", &drawn, None));
+    ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
+        figure::controls(ui, &drawn, offered, shown, actions);
+        figure::table(ui, &drawn);
+    });
+    ui.advance_cursor_after_rect(whole);
+    if !looked_for {
+        let words = "As it was before the last change; the new one comes when the body has come to rest.";
+        let at = parts.plot.center_top() + egui::vec2(0.0, 10.0);
+        let color = ui.visuals().weak_text_color();
+        boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(words), ui.visuals(), color, parts.plot.width());
+    }
+}
+
+impl Curve {
+    /// Quantities that can be shown.
+    fn offered(&self) -> &'static [CurvePlot] {
+        match self {
+            Self::Path(of) if of.0.driven.is_some() => {
+                &[CurvePlot::Reaction, CurvePlot::Path, CurvePlot::X, CurvePlot::Y]
+            }
+            _ => &[CurvePlot::Path, CurvePlot::X, CurvePlot::Y],
+        }
+    }
+
+    /// Quantities that show most: where linear theory leaves the exact beam, or where a path turns back.
+    fn usual(&self) -> CurvePlot {
+        match self {
+            Self::Beam(of) => usual(of.0.samples.iter().map(|s| s.truth)),
+            Self::Path(of) if of.0.driven.is_some() => CurvePlot::Reaction,
+            Self::Path(of) => {
+                let tip = |state: &PathState| state.probes.first().copied();
+                CurvePlot::component(dominant_axis(of.0.states.iter().filter_map(tip)))
+            }
+        }
+    }
+
+    fn figure(&self, shown: CurvePlot) -> Figure {
+        match self {
+            Self::Beam(of) => beam(&of.0, &of.1, shown),
+            Self::Path(of) => path(&of.0, &of.1, shown),
+        }
+    }
+}
+
+/// The path of a displacement that leaves the axes, else its larger component: there one sees most of an error.
+pub(crate) fn usual(displacements: impl Iterator<Item = Vector2<f64>> + Clone) -> CurvePlot {
+    if leaves_the_axes(displacements.clone()) {
+        CurvePlot::Path
+    } else {
+        CurvePlot::component(dominant_axis(displacements))
+    }
+}
+
+/// The load and both components of the displacement of the first probe.
+pub(crate) fn quantities(load: Quantity, scene: &Scene) -> Vec<Quantity> {
+    let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
+    let component = |axis: &str| Quantity::new(translated(&format!("u_{axis} of {probe}")), "m");
+    vec![Quantity::new(translated(&load.name), load.unit), component("x"), component("y")]
+}
+
+/// Head of a column of displacements.
+pub(crate) fn displacement_words(scene: &Scene) -> String {
+    let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
+    fill!("(u_x, u_y) of %{probe}", probe = tr(probe))
+}
+
+/// The axes of a plot, among the load and both components.
+pub(crate) fn axes(shown: CurvePlot) -> [usize; 2] {
+    match shown {
+        CurvePlot::Path => [1, 2],
+        CurvePlot::X => [0, 1],
+        CurvePlot::Y | CurvePlot::Reaction => [0, 2],
+    }
+}
+
+/// A displacement in a table, m.
+pub(crate) fn pair(u: Vector2<f64>) -> String {
+    engineering_pair([u.x, u.y].map(three_digits), "m")
+}
+
+fn path(path: &LoadPath, scene: &Scene, shown: CurvePlot) -> Figure {
+    let ordinate = match shown {
+        CurvePlot::Reaction => Ordinate::Usual,
+        CurvePlot::Path => Ordinate::Path(0),
+        CurvePlot::X => Ordinate::Component(0, 0),
+        CurvePlot::Y => Ordinate::Component(0, 1),
+    };
+    let mut figure = path_chart::figure(path, scene, &ordinate);
+    figure.title = curve_title(scene);
+    let names = figure.quantities.iter_mut().map(|q| &mut q.name);
+    let names = names.chain(figure.series.iter_mut().map(|s| &mut s.name));
+    names.chain(figure.rows.iter_mut().map(|r| &mut r.name)).for_each(|name| *name = translated(name));
+    figure
+}
+
+fn curve_title(scene: &Scene) -> String {
+    format!("{}: {}", tr(&scene.name), tr("Load curve"))
+}
+
+fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
+    let LoadAxis { quantity, full } = LoadAxis::of(scene);
+    let linear = Ink::Method(MethodKind::Linear);
+    let line = |value: fn(&Sample) -> Vector2<f64>| -> Vec<FigurePoint> {
+        let samples = curve.samples.iter();
+        samples.map(|s| figure::point(s.factor * full, value(s))).collect()
+    };
+    let series = |name: String, ink, mark, may_leave, points| FigureSeries { name, ink, mark, may_leave, points };
+    let mut all = vec![
+        series(tr("linear theory").to_owned(), linear, Mark::Line, true, line(|s| s.linear)),
+        series(tr("exact beam").to_owned(), Ink::Exact, Mark::Line, false, line(|s| s.truth)),
+    ];
+    let departures = curve.departures.iter().map(|d| figure::point(d.at.factor * full, d.at.truth)).collect();
+    let departs = departure_words(&curve.departures);
+    if let Some((name, _)) = &departs {
+        all.push(series(name.clone(), linear, Mark::Ring, false, departures));
+    }
+    for point in &curve.methods {
+        let converged = point.status == Status::Converged;
+        let mark = if converged { Mark::Disc } else { Mark::Cross };
+        let state = if converged { "" } else { tr("not converged") }.to_owned();
+        let may_leave = !converged || point.method == MethodKind::Linear;
+        let at = FigurePoint { state, is_present: true, ..figure::point(full, point.tip) };
+        all.push(series(tr(point.method.id()).to_owned(), Ink::Method(point.method), mark, may_leave, vec![at]));
+    }
+    let at_load = curve.samples.iter().find(|s| (s.factor - 1.0).abs() < 1e-9);
+    let value = |series: &FigureSeries| match series.mark {
+        Mark::Ring => departs.as_ref().map(|(_, angles)| angles.clone()),
+        Mark::Cross => Some(tr("not converged").to_owned()),
+        Mark::Line => at_load.map(|s| pair(if series.ink == Ink::Exact { s.truth } else { s.linear })),
+        _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| pair(p.tip)),
+    };
+    let row = |series: &FigureSeries| FigureRow {
+        name: series.name.clone(),
+        ink: series.ink,
+        mark: series.mark,
+        value: value(series).unwrap_or_default(),
+        error: String::new(),
+        is_bad: series.mark == Mark::Cross,
+    };
+    let load = engineering(three_digits(full), quantity.unit);
+    Figure {
+        title: curve_title(scene),
+        axes: axes(shown),
+        bounds: None,
+        rows: all.iter().map(row).collect(),
+        series: all,
+        head: [fill!("at %{load}", load = load), displacement_words(scene), String::new()],
+        error_name: String::new(),
+        quantities: quantities(quantity, scene),
+    }
+}
+
+/// Name and place of the loads at which linear theory leaves the exact beam: by so much, after these rotations.
+fn departure_words(departures: &[Departure]) -> Option<(String, String)> {
+    let each = |value: &dyn Fn(&Departure) -> String| departures.iter().map(value).collect::<Vec<_>>().join(", ");
+    let percent = each(&|departure| departure.percent.to_string());
+    let angles = each(&|departure| format!("{:.1}°", departure.at.rotation.to_degrees().abs()));
+    (!departures.is_empty())
+        .then(|| (fill!("linear off by %{percent} %", percent = percent), fill!("at %{angles}", angles = angles)))
+}

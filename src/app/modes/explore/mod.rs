@@ -1,0 +1,5 @@
+//! The mode Explore: plots under the body.
+
+pub(crate) mod figure;
+pub(crate) mod load_curve;
+pub(crate) mod motion_plot;

@@ -1,0 +1,116 @@
+//! How much the area has grown.
+
+use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
+use nalgebra::Vector2;
+
+use super::{Learn, Shown, triangle};
+use crate::app::action::Action;
+use crate::app::language::{fill, percent, spaced, tr};
+use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
+use crate::scene::limits::Limit;
+use crate::scene::{Load, MethodKind};
+
+/// Largest force of the slider, N.
+pub(super) const LARGEST_FORCE: f64 = 4e4;
+
+/// The force on the tip, and the area of the body beside that of the exact solution.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    force(ui, shown, learn, actions);
+    ui.add_space(4.0);
+    let method = shown.input.scene.solver.method;
+    let palette = Palette::new(ui.visuals());
+    let own = triangle::area_growth(shown.input.simulation);
+    row(ui, &palette, method.id(), Some(own), palette.method(method));
+    if method != MethodKind::Linear {
+        let linear = shown.input.linear.map(triangle::area_growth);
+        row(ui, &palette, MethodKind::Linear.id(), linear, palette.method(MethodKind::Linear));
+    }
+    let outline = shown.input.truth.filter(|_| shown.input.simulation.is_at_rest()).map(|truth| &truth.outline);
+    let exact = outline.map(|lines| {
+        let rest: f64 = shown.input.simulation.system().nodal_areas().iter().sum();
+        100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)
+    });
+    row(ui, &palette, "exact", exact, palette.exact);
+    ui.add_space(6.0);
+    let sources = RichText::new(tr(SOURCES)).size(SMALL).color(palette.secondary);
+    ui.add(egui::Label::new(spaced(sources, SMALL)).wrap());
+}
+
+/// The article, and the paper that it explains.
+const SOURCES: &str = "The article: \u{201c}\u{5b9e}\u{65f6}\u{7269}\u{7406}\u{6a21}\u{62df}\u{4e4b} Warped Stiffness \
+                       \u{65b9}\u{6cd5}\u{201d} (the warped stiffness method in real-time physical simulation), study \
+                       notes in Chinese in the style of Zhihu, without the author\u{2019}s name. The method: Matthias \
+                       M\u{fc}ller and Markus Gross, \u{201c}Interactive Virtual Materials\u{201d}, Graphics Interface \
+                       2004.";
+
+/// The size of the first force, which keeps its direction.
+fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let scene = shown.input.scene;
+    let first = scene.loads.iter().enumerate().find_map(|(i, load)| match load {
+        Load::Force { force, .. } if force[0].hypot(force[1]) > 0.0 => Some((i, *force)),
+        _ => None,
+    });
+    let Some((number, [x, y])) = first else {
+        ui.label(tr("There is no force: set the card up again."));
+        return;
+    };
+    let field = NumberField {
+        label: "Tip force",
+        tooltip: "The size of the force on the tip",
+        limit: Limit { unit: "N", min: 1.0, max: 1e6 },
+        slider: 1e3..=LARGEST_FORCE,
+        scale: SliderScale::Linear,
+        whole: false,
+    };
+    let size = x.hypot(y);
+    if let Some(new) = field.show(ui, &mut learn.messages, size) {
+        let mut scene = Box::new(scene.clone());
+        if scene.set_force(number, [x, y].map(|v| v * new / size)).is_ok() {
+            actions.push(Action::Edit("Force", scene));
+        }
+    }
+}
+
+/// The area inside a closed line, m², positive counter-clockwise.
+fn enclosed(line: &[Vector2<f64>]) -> f64 {
+    let next = line.iter().cycle().skip(1);
+    0.5 * line.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>()
+}
+
+/// A growth with its sign, in words.
+pub(super) fn growth_words(growth: f64) -> String {
+    /// Below this, percent, an area is what it was.
+    const NOTHING: f64 = 5e-3;
+    if growth.abs() < NOTHING {
+        return "0 %".to_owned();
+    }
+    format!("{}{}", if growth > 0.0 { "+" } else { "\u{2212}" }, percent(growth.abs()))
+}
+
+fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: egui::Color32) {
+    /// Percent, at the end of the bar.
+    const FULL: f64 = 110.0;
+    const NAME: f32 = 84.0;
+    const NUMBER: f32 = 78.0;
+    let name = fill!("area, %{name}", name = tr(name));
+    let words = growth.map_or_else(|| "\u{2013}".to_owned(), growth_words);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
+    let painter = ui.painter();
+    let put = |x: f32, text: RichText| {
+        let galley = egui::WidgetText::from(text).into_galley(ui, None, f32::INFINITY, egui::TextStyle::Body);
+        painter.galley(egui::pos2(x, rect.center().y - 0.5 * galley.size().y), galley, palette.text);
+    };
+    put(rect.left(), RichText::new(&name).size(SMALL).color(palette.secondary));
+    put(rect.left() + NAME, RichText::new(&words).size(HEADLINE).color(color));
+    let left = rect.left() + NAME + NUMBER;
+    let bar =
+        Rect::from_min_max(egui::pos2(left, rect.center().y - 4.0), egui::pos2(rect.right(), rect.center().y + 4.0));
+    if bar.width() > 20.0 {
+        painter.rect_filled(bar, 2.0, palette.line);
+        let part = (growth.unwrap_or(0.0).abs() / FULL).min(1.0) as f32;
+        painter.rect_filled(bar.with_max_x(bar.left() + part * bar.width()), 2.0, color);
+    }
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}: {words}")));
+    response.on_hover_text(tr("Growth of the area of the beam since rest"));
+}

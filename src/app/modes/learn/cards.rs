@@ -1,0 +1,279 @@
+//! The cards: a new one is an entry here, and a file for what it draws.
+
+use egui::{Painter, Ui};
+
+use super::{Learn, Needs, Shown, View, area, code, exploded, frames, locking, matrices, residuals, trade};
+use crate::app::action::Action;
+use crate::scene::{Load, MethodKind, Scene};
+use crate::simulation::Field;
+
+/// A step of the way through the article.
+pub(crate) struct Card {
+    pub title: &'static str,
+    /// Two or three sentences.
+    pub words: &'static str,
+    /// One or several, in the markup of [`super::formula`].
+    pub formula: &'static [&'static str],
+    /// Defines the letters that appear for the first time.
+    pub symbols: &'static str,
+    /// One thing to do.
+    pub task: &'static str,
+    pub setup: Setup,
+    /// What takes a while to find out, and is asked for.
+    pub needs: Needs,
+    /// Shows numbers and controls beside the words.
+    pub show: fn(&mut Ui, &Shown<'_>, &mut Learn, &mut Vec<Action>),
+    /// Paints over the body.
+    pub paint: fn(&Painter, &View<'_>, &Learn),
+    /// Whether the elements are drawn apart.
+    pub apart: bool,
+    /// `true` where a step goes to the next line of the pseudocode.
+    pub lines: bool,
+}
+
+/// What a card makes of scene and view.
+#[derive(Clone, Copy)]
+pub(crate) struct Setup {
+    /// Changes the article's scene.
+    pub edit: fn(&mut Scene),
+    pub field: Field,
+    /// Outlines: of the exact solution, at rest.
+    pub exact: bool,
+    pub rest: bool,
+    pub start: Start,
+    /// Makes the scene with the largest body that the card's slider reaches: the view has room for it from the beginning.
+    pub reach: Option<fn(&mut Scene)>,
+}
+
+/// How the body gets to its equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// From where it is.
+    Now,
+    /// From rest.
+    Rest,
+    /// From rest, when told.
+    Waiting,
+}
+
+/// Where the warped iteration converges, and where it does not: the force on the article's beam, N.
+const NEAR: f64 = 30e3;
+const FAR: f64 = 60e3;
+
+fn with(scene: &mut Scene, method: MethodKind, force: f64) {
+    scene.solver.method = method;
+    for load in &mut scene.loads {
+        if let Load::Force { force: vector, .. } = load {
+            *vector = [0.0, -force];
+        }
+    }
+}
+
+fn nothing(_: &Painter, _: &View<'_>, _: &Learn) {}
+
+/// Every card, in the order of the article.
+pub(crate) const CARDS: &[Card] = &[
+    Card {
+        title: "Linear theory makes it grow",
+        words: "Linear theory replaces a rotation by its tangent: what rotates by an angle \u{3b8} moves along a straight \
+                line instead of an arc. So it grows, its area by \u{3b8}\u{b2} (\u{3b8} in radians), whatever the \
+                material. The dashed line is the exact beam, which rotates without growing.",
+        formula: &["K u = f", "`det` ( I + \u{3b8} J ) = 1 + \u{3b8}^{2}"],
+        symbols: "K: stiffness matrix (N/m). u: displacements of the nodes (m). f: forces on the nodes (N). I: identity \
+                  matrix. J: rotation by 90\u{b0}. det: determinant, the factor by which an area grows.",
+        task: "Drag the tip force and watch the area.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Linear, NEAR),
+            field: Field::LargestStrain,
+            exact: true,
+            rest: true,
+            start: Start::Now,
+            reach: Some(|scene| with(scene, MethodKind::Linear, area::LARGEST_FORCE)),
+        },
+        needs: Needs::Nothing,
+        show: area::show,
+        paint: nothing,
+        apart: false,
+        lines: false,
+    },
+    Card {
+        title: "Every triangle rotates",
+        words: "The shape of a triangle at rest and its shape now define a matrix F. Polar decomposition splits F into a \
+                rotation R and a stretch S, in exactly one way; in the plane there is a closed formula. The two arrows in \
+                each triangle are the axes of its frame, the columns of R.",
+        formula: &["F = R S", "R^{T} R = I", "S = S^{T}"],
+        symbols: "F: deformation gradient. R: rotation matrix. S: stretch, a symmetric matrix. T: transpose. All are \
+                  2\u{d7}2.",
+        task: "Click a triangle to see its numbers.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Warped, NEAR),
+            field: Field::RotationAngle,
+            exact: false,
+            rest: true,
+            start: Start::Now,
+            reach: None,
+        },
+        needs: Needs::Nothing,
+        show: frames::show,
+        paint: frames::paint,
+        apart: false,
+        lines: false,
+    },
+    Card {
+        title: "Rotate back",
+        words: "Here each triangle is rotated back by the transpose of its own R and laid onto its shape at rest. The \
+                difference between the two is the strain \u{3b5}, and the stiffness K acts on that alone. The strain does \
+                not depend on the rotation.",
+        formula: &["R^{T} F = S = I + \u{3b5}"],
+        symbols: "\u{3b5}: strain, a symmetric 2\u{d7}2 matrix (Biot strain).",
+        task: "Move the slider between the bent beam and the triangles rotated back.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Warped, NEAR),
+            field: Field::LargestStrain,
+            exact: false,
+            rest: false,
+            start: Start::Now,
+            reach: None,
+        },
+        needs: Needs::Nothing,
+        show: exploded::show,
+        paint: exploded::paint,
+        apart: true,
+        lines: false,
+    },
+    Card {
+        title: "Rotate the stiffness instead",
+        words: "K is computed once, at rest. Rotated by R it acts on the bent beam, and the rest shape moves to the \
+                right-hand side. Each triangle adds nine 2\u{d7}2 blocks, at the rows and columns of its three nodes. The \
+                four unknowns of the two clamped nodes drop out: 24 \u{2212} 4 = 20.",
+        formula: &["R K R^{T} x = f + R K X"],
+        symbols: "x, X: positions of the nodes now and at rest (m); u = x \u{2212} X. K with index e: stiffness matrix of \
+                  one triangle (element). \u{3a3}: sum over all triangles.",
+        task: "Click triangles, and point at entries for their values.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Warped, NEAR),
+            field: Field::RotationAngle,
+            exact: false,
+            rest: true,
+            start: Start::Now,
+            reach: None,
+        },
+        needs: Needs::Nothing,
+        show: matrices::show,
+        paint: frames::paint,
+        apart: false,
+        lines: false,
+    },
+    Card {
+        title: "The method in ten lines",
+        words: "This is all of warped stiffness. One pass through lines 3 to 10 is an iteration. The program makes it in \
+                one go when you reach line 8; the numbers beside a line are of the beam as it is drawn.",
+        formula: &["A = \u{3a3} R K_{e} R^{T}", "b = \u{3a3} R K_{e} X"],
+        symbols: "A: stiffness matrix of the rotated triangles (N/m). b: forces that stand for the rest shape (N). f with \
+                  index int: internal forces, of all triangles; with index e: of one. r: residual, the share of the \
+                  forces that is out of balance.",
+        task: "Press \u{201c}Next line\u{201d} (N) and follow the numbers.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Warped, NEAR),
+            field: Field::RotationAngle,
+            exact: false,
+            rest: true,
+            start: Start::Waiting,
+            reach: None,
+        },
+        needs: Needs::Nothing,
+        show: code::show,
+        paint: frames::paint,
+        apart: false,
+        lines: true,
+    },
+    Card {
+        title: "Iterate",
+        words: "R depends on where the beam is, and the beam on R. So solve with the present R, compute the new R, and \
+                solve again. Near the equilibrium each iteration multiplies the residual by \u{3c1}.",
+        formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | \u{2248} \u{3c1} | r_{k} |"],
+        symbols: "k: number of the iteration. r: residual. \u{3c1}: convergence factor (spectral radius); below 1 the \
+                  iteration converges.",
+        task: "Press \u{201c}Step once\u{201d} (N) again and again: the points fall along the line.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Warped, NEAR),
+            field: Field::VonMises,
+            exact: false,
+            rest: true,
+            start: Start::Waiting,
+            reach: None,
+        },
+        needs: Needs::Rho,
+        show: residuals::steps,
+        paint: nothing,
+        apart: false,
+        lines: false,
+    },
+    Card {
+        title: "Beyond \u{3c1} = 1 it does not converge",
+        words: "Under twice the force, a change of R changes the forces by more than A accounts for: \u{3c1} is above 1, \
+                and no number of iterations helps. Newton\u{2019}s method adds the missing part G: how the forces change \
+                as R rotates. An iteration costs the same.",
+        formula: &["\u{3c1} = | \u{3bb} |_{`max`} ( A^{\u{2212}1} G )", "( A + G ) \u{394}x = f \u{2212} f_{`int`}"],
+        symbols: "\u{3bb}: eigenvalues; the largest counts. G: geometric stiffness (N/m). \u{394}x: change of the \
+                  positions (m).",
+        task: "Switch to newton, and back.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Warped, FAR),
+            field: Field::VonMises,
+            exact: false,
+            rest: true,
+            start: Start::Rest,
+            reach: None,
+        },
+        needs: Needs::Rho,
+        show: residuals::methods,
+        paint: nothing,
+        apart: false,
+        lines: false,
+    },
+    Card {
+        title: "Locking",
+        words: "The forces balance, and still the beam is far from the exact one (dashed). A three-node triangle has the \
+                same strain everywhere, so it cannot bend without stretching: it is too stiff. On the same five cells \
+                another element cures it.",
+        formula: &["`error` = | u \u{2212} u_{`exact`} | / | u_{`exact`} |"],
+        symbols: "u here: displacement of the tip (m). t3, t6: triangles of three and six nodes. q4: quadrilateral of four.",
+        task: "Try t6 and q4.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Newton, NEAR),
+            field: Field::VonMises,
+            exact: true,
+            rest: true,
+            start: Start::Now,
+            reach: None,
+        },
+        needs: Needs::Errors,
+        show: locking::show,
+        paint: nothing,
+        apart: false,
+        lines: false,
+    },
+    Card {
+        title: "The trade-off",
+        words: "Element, mesh and method each cost time and leave an error, and which choice is cheapest depends on your \
+                machine. The table has the time of the fastest setting that keeps the error you ask for. The mode Budget \
+                shows all settings.",
+        formula: &["`error` \u{2264} `mesh` + `iteration` + `theory`"],
+        symbols: "mesh: error of the finite cells. iteration: error of stopping early. theory: error of linear theory.",
+        task: "Press \u{201c}Measure\u{201d}; it runs in the background. Then ask for another error.",
+        setup: Setup {
+            edit: |scene| with(scene, MethodKind::Newton, NEAR),
+            field: Field::VonMises,
+            exact: true,
+            rest: true,
+            start: Start::Now,
+            reach: None,
+        },
+        needs: Needs::Nothing,
+        show: trade::show,
+        paint: nothing,
+        apart: false,
+        lines: false,
+    },
+];

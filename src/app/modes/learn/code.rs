@@ -1,0 +1,199 @@
+//! The method in ten lines of pseudocode. One line is highlighted; a step goes to the next.
+
+use egui::{Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use super::frames::angle_words;
+use super::triangle::{Triangle, frames};
+use super::{Learn, Shown, formula, not_triangles};
+use crate::app::action::Action;
+use crate::app::language::{count, fill, tr};
+use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::rotation::Rotation;
+use crate::scene::{ElementKind, MethodKind};
+use crate::simulation::{Simulation, Status};
+use crate::words::{engineering, three_digits};
+
+/// A line of the pseudocode.
+struct Line {
+    indent: u8,
+    /// In the markup of [`formula`].
+    code: &'static str,
+    /// Numbers of the line, from the simulation and the picked triangle; `None` for a line that a step passes over.
+    numbers: Option<fn(&Simulation, usize) -> String>,
+}
+
+const LINES: [Line; 10] = [
+    Line { indent: 0, code: "K_{e} = `stiffness of each triangle at rest`", numbers: Some(stiffness) },
+    Line { indent: 0, code: "x = X", numbers: Some(|_, _| tr("the beam at rest").to_owned()) },
+    Line { indent: 0, code: "`repeat`", numbers: None },
+    Line { indent: 1, code: "`for each triangle:`", numbers: None },
+    Line { indent: 2, code: "F = `gradient of the map from` X `to` x", numbers: Some(gradient) },
+    Line { indent: 2, code: "R, S = `polar decomposition of` F", numbers: Some(rotation) },
+    Line { indent: 2, code: "`add` R K_{e} R^{T} `to` A `and` R K_{e} X `to` b", numbers: Some(matrix) },
+    Line { indent: 1, code: "`solve` A x = f + b `for` x `(faer)`", numbers: Some(displacement) },
+    Line { indent: 1, code: "r = | f \u{2212} f_{`int`} | / \u{3a3} | f_{e} |", numbers: Some(residual) },
+    Line { indent: 0, code: "`until` r `is within the tolerance`", numbers: Some(verdict) },
+];
+
+/// Numbers of lines that a step treats differently, from 0.
+pub(crate) const AT_REST: usize = 1;
+const FIRST_OF_LOOP: usize = 4;
+pub(crate) const SOLVE: usize = 7;
+pub(crate) const UNTIL: usize = 9;
+
+/// `true` where the lines are those of the simulation.
+pub(super) fn describes(simulation: &Simulation) -> bool {
+    simulation.method() == MethodKind::Warped && simulation.system().mesh().element() == ElementKind::T3
+}
+
+/// The line after this one; `ended` says that the iteration is over.
+pub(super) fn after(line: usize, ended: bool) -> usize {
+    if line >= UNTIL {
+        return if ended { AT_REST } else { FIRST_OF_LOOP };
+    }
+    (line + 1..UNTIL).find(|&next| LINES[next].numbers.is_some()).unwrap_or(UNTIL)
+}
+
+fn stiffness(simulation: &Simulation, _: usize) -> String {
+    fill!("%{n} matrices, 6 \u{d7} 6", n = simulation.system().mesh().element_count())
+}
+
+fn gradient(simulation: &Simulation, picked: usize) -> String {
+    let Some(Triangle { gradient: f, .. }) = Triangle::of(simulation, picked) else { return String::new() };
+    let [a, b, c, d] = [f.m11, f.m12, f.m21, f.m22].map(|v| format!("{v:.2}").replace('-', "\u{2212}"));
+    fill!("triangle %{n}: [%{a} %{b}; %{c} %{d}]", n = picked + 1, a = a, b = b, c = c, d = d)
+}
+
+fn rotation(simulation: &Simulation, _: usize) -> String {
+    let size = |rotation: &Rotation| rotation.angle().abs();
+    let largest = frames(simulation).into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+    fill!("largest rotation: %{angle}", angle = angle_words(largest.unwrap_or(Rotation::IDENTITY)))
+}
+
+fn matrix(simulation: &Simulation, _: usize) -> String {
+    let n = simulation.system().dofs();
+    fill!("A: %{n} \u{d7} %{n} (clamped nodes removed)", n = n)
+}
+
+fn displacement(simulation: &Simulation, _: usize) -> String {
+    let largest = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+    fill!("largest displacement: %{u}", u = engineering(three_digits(largest), "m"))
+}
+
+fn residual(simulation: &Simulation, _: usize) -> String {
+    format!("r = {}", residual_words(simulation.residual()))
+}
+
+fn residual_words(residual: f64) -> String {
+    format!("{residual:.1e}").replace('-', "\u{2212}")
+}
+
+fn verdict(simulation: &Simulation, _: usize) -> String {
+    let iterations = count(simulation.iterations(), "iteration");
+    match simulation.status() {
+        Status::Converged => fill!("yes, after %{iterations}", iterations = iterations),
+        Status::Running => fill!("no: r = %{r}, repeat", r = residual_words(simulation.residual())),
+        _ => fill!("given up after %{iterations}", iterations = iterations),
+    }
+}
+
+/// Buttons that step, and the lines.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let simulation = shown.input.simulation;
+    if !describes(simulation) {
+        return not_triangles(ui, "These lines are of the method warped with three-node triangles.", learn, actions);
+    }
+    let running = shown.input.running && *simulation.status() == Status::Running;
+    ui.horizontal_wrapped(|ui| {
+        for (name, tip, action, on) in [
+            ("Next line", "The next line; the line that solves makes an iteration (N)", Action::Step, true),
+            ("From rest", "Back to rest (R)", Action::Reset, true),
+            (
+                "Go on",
+                "Iterate to the end (Space)",
+                Action::ToggleRun,
+                !running && *simulation.status() == Status::Running,
+            ),
+        ] {
+            if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
+                actions.push(action);
+            }
+        }
+        let iterations = count(simulation.iterations(), "iteration");
+        ui.add(egui::Label::new(fill!("%{iterations} so far", iterations = iterations)).extend());
+    });
+    let has_moved = std::mem::replace(&mut learn.shown_line, learn.line) != learn.line;
+    // The buttons stay where they are.
+    ScrollArea::vertical().id_salt("code").auto_shrink([false, false]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for (number, line) in LINES.iter().enumerate() {
+            let is_lit = number == learn.line;
+            let numbers = line.numbers.filter(|_| is_lit).map(|numbers| numbers(simulation, learn.picked));
+            let rect = row(ui, number, line, numbers.as_deref());
+            if is_lit && has_moved {
+                ui.scroll_to_rect(rect, None);
+            }
+        }
+    });
+}
+
+/// Paints a line; the one that is lit has numbers.
+fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
+    const HEIGHT: f32 = 17.5;
+    const GUTTER: f32 = 30.0;
+    const INDENT: f32 = 16.0;
+    let palette = Palette::new(ui.visuals());
+    let painter = ui.painter().clone();
+    let code = tr(line.code);
+    let galley = painter.layout_job(formula::sized(code, BODY, palette.text));
+    let left = GUTTER + INDENT * f32::from(line.indent);
+    let small = egui::FontId::proportional(SMALL);
+    let beside = numbers.map(|words| painter.layout_no_wrap(words.to_owned(), small.clone(), palette.accent));
+    let width = ui.available_width();
+    // Numbers that have no room beside the code stand under it.
+    let is_under = beside.as_ref().is_some_and(|beside| left + galley.size().x + 16.0 + beside.size().x > width);
+    let height = if is_under { HEIGHT + 16.0 } else { HEIGHT };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+    if numbers.is_some() {
+        painter.rect_filled(rect, 3.0, palette.chosen.gamma_multiply(0.6));
+        painter.rect_filled(rect.with_max_x(rect.left() + 3.0), 1.0, palette.accent);
+    }
+    let middle = rect.top() + 0.5 * HEIGHT;
+    let place = pos2(rect.left() + GUTTER - 10.0, middle);
+    painter.text(place, egui::Align2::RIGHT_CENTER, format!("{}", number + 1), small, palette.secondary);
+    painter.galley(pos2(rect.left() + left, middle - 0.5 * galley.size().y), galley, palette.text);
+    if let Some(beside) = beside {
+        let at = match is_under {
+            true => pos2(rect.left() + left, rect.top() + HEIGHT),
+            false => pos2(rect.right() - 6.0 - beside.size().x, middle - 0.5 * beside.size().y),
+        };
+        painter.galley(at, beside, palette.accent);
+    }
+    let plain = formula::plain(code);
+    response.widget_info(|| {
+        let words = match numbers {
+            Some(numbers) => fill!("line %{n}: %{code}; %{numbers}", n = number + 1, code = plain, numbers = numbers),
+            None => format!("{} {plain}", number + 1),
+        };
+        WidgetInfo::labeled(Role::Label, true, words)
+    });
+    rect
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_stop_at_the_lines_that_have_numbers_and_go_round() {
+        let mut line = 0;
+        let mut stops = vec![line];
+        for ended in [false, false, false, false, false, false, false, false, true] {
+            line = after(line, ended);
+            stops.push(line);
+        }
+        assert_eq!(stops, [0, 1, 4, 5, 6, 7, 8, 9, 4, 5]);
+        assert_eq!(after(UNTIL, true), AT_REST);
+        assert!(stops.iter().all(|&line| LINES[line].numbers.is_some()));
+    }
+}

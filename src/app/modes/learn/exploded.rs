@@ -1,0 +1,89 @@
+//! The triangles apart, each turned back by its Rᵀ onto its shape at rest.
+
+use egui::{Painter, RichText, Shape, Slider, Stroke, Ui};
+use nalgebra::Vector2;
+
+use super::frames::{angle_words, paint_picked};
+use super::triangle::{Triangle, frames};
+use super::{Learn, NOT_TRIANGLES, Shown, View, not_triangles};
+use crate::app::action::Action;
+use crate::app::language::{fill, percent, tr};
+use crate::app::widgets::palette::{Palette, SMALL};
+use crate::rotation::Rotation;
+use crate::simulation::Simulation;
+
+/// How far the middles of the triangles are apart, over those at rest.
+const APART: f64 = 1.5;
+
+/// Moves the drawn points of every element a part of the way to its shape at rest: turned back, and apart from the others.
+/// `rest` are the points at rest.
+pub(super) fn place(simulation: &Simulation, turned: f64, rest: &[Vector2<f64>], points: &mut [Vector2<f64>]) {
+    let count = simulation.system().mesh().element_count().max(1);
+    let each = (points.len() / count).max(1);
+    let body = mean(rest);
+    let rotations = frames(simulation);
+    for ((points, rest), rotation) in points.chunks_mut(each).zip(rest.chunks(each)).zip(rotations) {
+        let (now, apart) = (mean(points), body + (mean(rest) - body) * APART);
+        let center = now + (apart - now) * turned;
+        let back = Rotation::from_angle(-turned * rotation.angle());
+        points.iter_mut().for_each(|p| *p = center + back.apply(*p - now));
+    }
+}
+
+fn mean(points: &[Vector2<f64>]) -> Vector2<f64> {
+    points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64
+}
+
+/// Paints the shape at rest of every element where it is turned back to.
+pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
+    let mesh = view.simulation.system().mesh();
+    let strength = learn.turned as f32;
+    if strength > 0.0 && !view.is_fine() {
+        for (element, nodes) in mesh.elements().enumerate() {
+            let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.nodes()[n as usize]).collect();
+            let corners = &rest[..mesh.entry().cell.corners.len().min(rest.len())];
+            let shift = view.middle(element) - mean(corners);
+            let line: Vec<_> = corners.iter().map(|p| view.place(p + shift)).collect();
+            painter
+                .add(Shape::closed_line(line.clone(), Stroke::new(3.2, view.palette.canvas.gamma_multiply(strength))));
+            painter.add(Shape::closed_line(line, Stroke::new(1.5, view.palette.exact.gamma_multiply(strength))));
+        }
+    }
+    paint_picked(painter, view, learn);
+}
+
+/// The slider between the two views, and what is left of the clicked triangle.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let palette = Palette::new(ui.visuals());
+    let small = |text: &str| RichText::new(text).size(SMALL).color(palette.secondary);
+    ui.horizontal(|ui| {
+        ui.label(tr("As it is"));
+        ui.spacing_mut().slider_width = (ui.available_width() - 90.0).clamp(60.0, 260.0);
+        let name = "Rotated back";
+        let slider = ui.add(Slider::new(&mut learn.turned, 0.0..=1.0).show_value(false));
+        let label = ui.label(tr(name));
+        slider
+            .labelled_by(label.id)
+            .on_hover_text(tr("From the bent beam to its triangles, each rotated back by its own R"));
+    });
+    ui.add_space(6.0);
+    let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
+        return not_triangles(ui, NOT_TRIANGLES, learn, actions);
+    };
+    let angle = angle_words(triangle.rotation);
+    ui.label(fill!("Triangle %{n}: rotated by %{angle},", n = learn.picked + 1, angle = angle));
+    let s = triangle.stretch;
+    ui.label(fill!(
+        "strain \u{3b5}: along %{along}, across %{across}, shear %{shear}",
+        along = signed_percent(s.m11 - 1.0),
+        across = signed_percent(s.m22 - 1.0),
+        shear = signed_percent(s.m12),
+    ));
+    ui.label(small(tr("Line: the shape at rest. Colour: the largest strain; K turns strain into force.")));
+}
+
+/// A strain, percent.
+fn signed_percent(strain: f64) -> String {
+    let sign = if strain < 0.0 { "\u{2212}" } else { "+" };
+    format!("{sign}{}", percent(100.0 * strain.abs()))
+}

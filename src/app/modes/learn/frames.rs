@@ -1,0 +1,127 @@
+//! The frame R in every triangle, and F = R S of one.
+
+use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use nalgebra::{Matrix2, Vector2};
+
+use super::triangle::{Triangle, frames};
+use super::{Learn, NOT_TRIANGLES, Shown, View, formula, not_triangles};
+use crate::app::action::Action;
+use crate::app::language::{fill, tr};
+use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::rotation::Rotation;
+
+/// A shorter axis than this, points, is not drawn: the mesh is too fine for it.
+const SHORTEST: f32 = 5.0;
+
+/// Paints the axes of every element's frame.
+pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
+    let rotations = if view.is_fine() { Vec::new() } else { frames(view.simulation) };
+    for (element, rotation) in rotations.into_iter().enumerate() {
+        let corners = view.corners(element);
+        let Some(center) = middle(&corners) else { continue };
+        let length = 0.62 * corners.iter().map(|c| (*c - center).length()).fold(f32::INFINITY, f32::min);
+        if length < SHORTEST {
+            continue;
+        }
+        let wide = if element == learn.picked { 2.4 } else { 1.6 };
+        for (axis, color) in [(Vector2::x(), view.palette.load), (Vector2::y(), view.palette.exact)] {
+            let along = rotation.apply(axis);
+            let tip = center + length * vec2(along.x as f32, -along.y as f32);
+            arrow(painter, center, tip, Stroke::new(wide + 2.0, view.palette.canvas));
+            arrow(painter, center, tip, Stroke::new(wide, color));
+        }
+        painter.circle_filled(center, wide + 0.6, view.palette.text);
+    }
+    paint_picked(painter, view, learn);
+}
+
+/// Paints the outline of the clicked element.
+pub(super) fn paint_picked(painter: &Painter, view: &View<'_>, learn: &Learn) {
+    let corners = view.corners(learn.picked);
+    if corners.len() >= 3 {
+        painter.add(Shape::closed_line(corners.clone(), Stroke::new(5.0, view.palette.canvas)));
+        painter.add(Shape::closed_line(corners, Stroke::new(2.5, view.palette.accent)));
+    }
+}
+
+fn middle(corners: &[Pos2]) -> Option<Pos2> {
+    let sum = corners.iter().fold(egui::Vec2::ZERO, |sum, c| sum + c.to_vec2());
+    (!corners.is_empty()).then(|| (sum / corners.len() as f32).to_pos2())
+}
+
+fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
+    let way = to - from;
+    let head = (0.3 * way.length()).min(7.0);
+    let along = way.normalized();
+    let across = vec2(-along.y, along.x);
+    painter.line_segment([from, to], stroke);
+    for side in [-0.6, 0.6] {
+        painter.line_segment([to, to - head * along + side * head * across], stroke);
+    }
+}
+
+/// F = R S with the numbers of the clicked triangle.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
+        return not_triangles(ui, NOT_TRIANGLES, learn, actions);
+    };
+    let palette = Palette::new(ui.visuals());
+    let angle = angle_words(triangle.rotation);
+    ui.label(fill!("Triangle %{n}, rotated by %{angle}", n = learn.picked + 1, angle = angle));
+    ui.add_space(6.0);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
+        let r = triangle.rotation.matrix();
+        for (name, before, matrix) in
+            [("F", "", &triangle.gradient), ("R", "=", &r), ("S", "\u{b7}", &triangle.stretch)]
+        {
+            show_matrix(ui, (name, before), matrix, &palette);
+        }
+    });
+    ui.add_space(4.0);
+    ui.label(
+        egui::RichText::new(tr("S is symmetric: it stretches along two axes at right angles, and rotates nothing."))
+            .size(SMALL)
+            .color(palette.secondary),
+    );
+}
+
+/// An angle with its sense.
+pub(super) fn angle_words(rotation: Rotation) -> String {
+    format!("{:.1}\u{b0}", rotation.angle().to_degrees()).replace('-', "\u{2212}")
+}
+
+/// The numbers of a 2×2 matrix in brackets, after a sign, with the name below.
+fn show_matrix(ui: &mut Ui, (name, before): (&str, &str), m: &Matrix2<f64>, palette: &Palette) {
+    const CELL: egui::Vec2 = vec2(54.0, 22.0);
+    const BRACKET: f32 = 5.0;
+    const SIGN: f32 = 16.0;
+    const NAME: f32 = 26.0;
+    let sign = if before.is_empty() { 0.0 } else { SIGN };
+    let size = vec2(sign + 2.0 * CELL.x + 6.0, 2.0 * CELL.y + NAME);
+    let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
+    let rect = Rect::from_min_size(whole.min + vec2(sign, 0.0), vec2(2.0 * CELL.x + 6.0, 2.0 * CELL.y));
+    let painter = ui.painter();
+    let number = |v: f64| {
+        let text = format!("{v:.3}");
+        if text == "-0.000" { "0.000".to_owned() } else { text.replace('-', "\u{2212}") }
+    };
+    let numbers = [m.m11, m.m12, m.m21, m.m22].map(number);
+    for ((row, column), text) in [(0.5, 1.0), (0.5, 2.0), (1.5, 1.0), (1.5, 2.0)].into_iter().zip(&numbers) {
+        let at = rect.min + vec2(CELL.x * column, CELL.y * row);
+        painter.text(at, Align2::RIGHT_CENTER, text, FontId::monospace(BODY - 1.0), palette.text);
+    }
+    for (x, inward) in [(rect.left(), BRACKET), (rect.right(), -BRACKET)] {
+        let points = [(x + inward, rect.top()), (x, rect.top()), (x, rect.bottom()), (x + inward, rect.bottom())];
+        let points = points.map(|(x, y)| pos2(x, y)).to_vec();
+        painter.add(Shape::line(points, Stroke::new(1.2, palette.text)));
+    }
+    if !before.is_empty() {
+        let at = pos2(whole.left() + 4.0, rect.center().y);
+        painter.text(at, Align2::CENTER_CENTER, before, FontId::proportional(BODY + 4.0), palette.text);
+    }
+    let galley = painter.layout_job(formula::set(name, palette.secondary));
+    painter.galley(pos2(rect.center().x - 0.5 * galley.size().x, rect.bottom() + 2.0), galley, palette.secondary);
+    let [a, b, c, d] = numbers;
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} = [{a} {b}; {c} {d}]")));
+}

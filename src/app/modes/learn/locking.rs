@@ -1,0 +1,74 @@
+//! The same beam with every element: a button each, with its error.
+
+use egui::{Button, RichText, Ui};
+
+use super::{Learn, Shown};
+use crate::app::action::Action;
+use crate::app::language::{fill, percent, tr};
+use crate::app::widgets::palette::{Palette, SMALL};
+use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::simulation::{Simulation, Status, probe_results};
+use crate::study::Reference;
+
+/// How far an element is off on the scene's cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ElementError {
+    pub element: ElementKind,
+    /// Free unknowns.
+    pub unknowns: usize,
+    /// Percent of the true displacement of the first probe.
+    pub percent: f64,
+}
+
+/// The errors of every element that the scene's cells can be, each at its own equilibrium.
+pub(super) fn errors(scene: &Scene) -> Option<Vec<ElementError>> {
+    let truth = Reference::of(scene).ok()?.first()?;
+    let error = |element: ElementKind| {
+        let mut scene = scene.clone();
+        scene.set_element(element);
+        scene.solver.method = MethodKind::Newton;
+        let mut simulation = Simulation::new(&scene).ok()?;
+        if *simulation.solve() != Status::Converged {
+            return None;
+        }
+        let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
+        Some(ElementError { element, unknowns: simulation.system().dofs(), percent: truth.error_percent(&probe)? })
+    };
+    scene.elements().map(error).collect()
+}
+
+/// A button an element.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let palette = Palette::new(ui.visuals());
+    let scene = shown.input.scene;
+    let known = learn.errors().map(<[ElementError]>::to_vec);
+    for element in scene.elements() {
+        let error = known.as_ref().and_then(|all| all.iter().find(|e| e.element == element));
+        let words = match error {
+            Some(e) => fill!(
+                "%{element}: %{error} off, %{n} unknowns",
+                element = element.id(),
+                error = percent(e.percent),
+                n = e.unknowns
+            ),
+            None => element.id().to_owned(),
+        };
+        let chosen = scene.element() == element;
+        let button = ui.add(Button::selectable(chosen, RichText::new(&words).size(16.0)));
+        if button.clicked() && !chosen {
+            let mut scene = Box::new(scene.clone());
+            scene.set_element(element);
+            actions.push(Action::Edit("Element", scene));
+        }
+        ui.add(egui::Label::new(RichText::new(tr(element.entry().about)).size(SMALL).color(palette.secondary)).wrap());
+        ui.add_space(2.0);
+    }
+    if known.is_none() {
+        let words = if learn.is_looking() {
+            "Looking for the errors."
+        } else {
+            "No reference solution of this scene is known."
+        };
+        ui.label(RichText::new(tr(words)).size(SMALL).color(palette.secondary));
+    }
+}

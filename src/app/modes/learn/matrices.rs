@@ -1,0 +1,160 @@
+//! Ke and R Ke Rᵀ of the clicked triangle in colours, and where its blocks go.
+
+use egui::{Color32, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use nalgebra::DMatrix;
+
+use super::triangle::{Triangle, assembled, frames};
+use super::{Learn, NOT_TRIANGLES, Shown, formula, not_triangles};
+use crate::app::action::Action;
+use crate::app::language::{fill, spaced, tr};
+use crate::app::widgets::palette::{Palette, SMALL};
+use crate::render::colormap;
+use crate::simulation::Field;
+use crate::words::{engineering, three_digits};
+
+/// Side of a small matrix, and of the large one, points.
+const SMALL_SIDE: f32 = 120.0;
+const LARGE_SIDE: f32 = 146.0;
+const GAP: f32 = 18.0;
+/// A body of more unknowns is not drawn as a matrix.
+const MOST_UNKNOWNS: usize = 96;
+
+/// Shows the matrices.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let simulation = shown.input.simulation;
+    let triangle = Triangle::of(simulation, learn.picked);
+    let stiffness = triangle.and_then(|triangle| Some((triangle, triangle.stiffness(simulation)?)));
+    let Some((triangle, stiffness)) = stiffness else {
+        return not_triangles(ui, NOT_TRIANGLES, learn, actions);
+    };
+    let palette = Palette::new(ui.visuals());
+    let rotation = frames(simulation).get(learn.picked).copied().unwrap_or(triangle.rotation);
+    let turned = stiffness.rkrt(rotation);
+    let largest = stiffness.ke.amax().max(turned.amax());
+    let local = |i: usize| name_of(triangle.unknowns()[i]);
+    let room = ui.available_width() - 2.0 * GAP;
+    let scale = (room / (2.0 * SMALL_SIDE + LARGE_SIDE)).clamp(0.5, 1.0);
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        for (markup, plain, matrix) in [("K_{e}", "Ke", &stiffness.ke), ("R K_{e} R^{T}", "R Ke RT", &turned)] {
+            ui.vertical(|ui| {
+                ui.label(formula::set(markup, palette.text));
+                let words = fill!("%{matrix} of triangle %{n}, 6 by 6", matrix = plain, n = learn.picked + 1);
+                cells(ui, &palette, (scale * SMALL_SIDE, largest, &words), matrix, &local, &|_, _| true);
+            });
+        }
+        ui.vertical(|ui| whole(ui, shown, &palette, scale * LARGE_SIDE, &triangle));
+    });
+    let (all, free) = (2 * simulation.system().mesh().nodes().len(), simulation.system().dofs());
+    let note = fill!(
+        "Triangle %{n}: nodes %{nodes}; framed: its blocks. Grey: what clamping takes away, %{all} \u{2212} %{clamped} = \
+         %{free} unknowns. Red is positive, blue negative.",
+        n = learn.picked + 1,
+        nodes = triangle.nodes.map(|n| (n + 1).to_string()).join(", "),
+        all = all,
+        clamped = all - free,
+        free = free,
+    );
+    ui.add(egui::Label::new(spaced(RichText::new(note), SMALL).size(SMALL).color(palette.secondary)).wrap());
+}
+
+/// The matrix of the body before clamping, and what clamping takes from it.
+fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle: &Triangle) {
+    let simulation = shown.input.simulation;
+    let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
+    let (all, free) = (2 * nodes, pattern.dofs());
+    ui.label(formula::set("\u{3a3} R K_{e} R^{T}", palette.text));
+    let matrix = (all <= MOST_UNKNOWNS).then(|| assembled(simulation)).flatten();
+    let Some(matrix) = matrix else {
+        ui.label(tr("Too many unknowns to draw."));
+        return;
+    };
+    let mesh = simulation.system().mesh();
+    let mut coupled = vec![false; nodes * nodes];
+    for element in mesh.elements() {
+        for &a in element {
+            element.iter().for_each(|&b| coupled[a as usize * nodes + b as usize] = true);
+        }
+    }
+    let stored = |i: usize, j: usize| coupled[(i / 2) * nodes + j / 2];
+    let words =
+        fill!("the body's matrix, %{all} by %{all}, of which %{free} by %{free} are left", all = all, free = free);
+    let (rect, _) = cells(ui, palette, (side, matrix.amax(), &words), &matrix, &name_of, &stored);
+    let cell = rect.width() / all as f32;
+    let block = |i: usize, j: usize, size: f32| {
+        Rect::from_min_size(rect.min + vec2(j as f32, i as f32) * cell, vec2(size, size) * cell)
+    };
+    for unknown in 0..all {
+        if pattern.fixed(unknown as u32 / 2)[unknown % 2] {
+            let (row, column) = (block(unknown, 0, 1.0), block(0, unknown, 1.0));
+            let veil = palette.absent.gamma_multiply(0.55);
+            ui.painter().rect_filled(row.with_max_x(rect.right()), 0.0, veil);
+            ui.painter().rect_filled(column.with_max_y(rect.bottom()), 0.0, veil);
+        }
+    }
+    for a in triangle.nodes {
+        for b in triangle.nodes {
+            let frame = block(2 * a as usize, 2 * b as usize, 2.0);
+            ui.painter().rect_stroke(frame, 0.0, Stroke::new(1.5, palette.accent), StrokeKind::Inside);
+        }
+    }
+}
+
+/// An unknown, in words.
+fn name_of(unknown: usize) -> String {
+    fill!("node %{n} %{axis}", n = unknown / 2 + 1, axis = if unknown.is_multiple_of(2) { "x" } else { "y" })
+}
+
+/// A square of coloured cells, zero in the middle of the map; pointing at one says its value.
+fn cells(
+    ui: &mut Ui,
+    palette: &Palette,
+    (side, largest, words): (f32, f64, &str),
+    matrix: &DMatrix<f64>,
+    name: &dyn Fn(usize) -> String,
+    stored: &dyn Fn(usize, usize) -> bool,
+) -> (Rect, Response) {
+    let count = matrix.nrows();
+    let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
+    let cell = side / count.max(1) as f32;
+    let map = palette.map(Field::RotationAngle);
+    let gap = if cell > 12.0 { 1.0 } else { 0.0 };
+    ui.painter().rect_filled(rect, 0.0, palette.canvas);
+    for i in 0..count {
+        for j in 0..count {
+            if stored(i, j) {
+                let corner = rect.min + vec2(j as f32, i as f32) * cell;
+                let own = Rect::from_min_size(corner, vec2(cell - gap, cell - gap));
+                ui.painter().rect_filled(own, 0.0, color_of(&map, matrix[(i, j)], largest));
+            }
+        }
+    }
+    ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, palette.secondary), StrokeKind::Outside);
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, words));
+    let under = response.hover_pos().and_then(|at| index(rect, cell, count, at));
+    let response = match under {
+        Some((i, j)) => {
+            let value =
+                if stored(i, j) { engineering(three_digits(matrix[(i, j)]), "N/m") } else { tr("no entry").into() };
+            let places = fill!("force: %{row}, moved: %{column}", row = name(i), column = name(j));
+            response.on_hover_text_at_pointer(format!("{value}\n{places}"))
+        }
+        None => response,
+    };
+    (rect, response)
+}
+
+fn color_of(map: &colormap::ColorMap, value: f64, largest: f64) -> Color32 {
+    // Of the root: small entries are seen too.
+    let part = if largest > 0.0 { (value.abs() / largest).sqrt().copysign(value) } else { 0.0 };
+    let [r, g, b] = map.color(colormap::position(part, [-1.0, 1.0]));
+    Color32::from_rgb(r, g, b)
+}
+
+/// Row and column of the cell at a place.
+fn index(rect: Rect, cell: f32, count: usize, at: Pos2) -> Option<(usize, usize)> {
+    let at = at - rect.min;
+    let at = pos2(at.x / cell, at.y / cell);
+    let inside = at.x >= 0.0 && at.y >= 0.0 && (at.x as usize) < count && (at.y as usize) < count;
+    inside.then_some((at.y as usize, at.x as usize))
+}

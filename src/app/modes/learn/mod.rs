@@ -1,0 +1,576 @@
+//! The mode Learn: the article, walked through on a row of cards. Each sets the scene up, and everything can be touched at
+//! any time; the lab that was is put aside, and comes back at the end.
+
+use egui::{Context, FontId, Key, Painter, Panel, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
+use nalgebra::Vector2;
+
+use crate::app::action::{Action, Toggle, ViewOptions};
+use crate::app::language::{fill, spaced, tr};
+use crate::app::mode::Mode;
+use crate::app::panel::PanelInput;
+use crate::app::shell::lab::Lab;
+use crate::app::task::lazy::{Finder, Search};
+use crate::app::widgets::number_field::Messages;
+use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
+use crate::render::Camera;
+use crate::render::display_geometry::Drawing;
+use crate::scene::{self, Analysis, MethodKind, Scene, SolverSettings, Source, registry};
+use crate::simulation::Simulation;
+use crate::study::Study;
+
+mod area;
+mod cards;
+mod code;
+mod exploded;
+mod formula;
+mod frames;
+mod locking;
+mod matrices;
+mod residuals;
+mod trade;
+mod triangle;
+
+pub(crate) use cards::{CARDS, Card, Start};
+pub(crate) use code::{AT_REST, SOLVE, UNTIL};
+
+use locking::ElementError;
+
+/// Height of the row of cards, points; at most a part of the window's.
+const HEIGHT: f32 = 258.0;
+const SHARE: f32 = 0.42;
+/// The same in a low window, which has no status bar here.
+const LOW_SHARE: f32 = 0.46;
+/// A row of less height, points, has no room for most cards.
+const LOW: f32 = 240.0;
+
+/// Below this width, points, what is beside the words is under them.
+const TWO_COLUMNS: f32 = 560.0;
+
+/// A window below this height, points, has no room for a status bar beside the cards.
+const LOW_WINDOW: f32 = 560.0;
+
+/// More elements than this are not painted over one by one.
+const MOST_ELEMENTS: usize = 3000;
+
+/// What takes a while to find out of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Needs {
+    Nothing,
+    /// ρ of the warped iteration at the equilibrium.
+    Rho,
+    /// The errors of all elements.
+    Errors,
+}
+
+/// Something found beside the window, of a part of the scene.
+#[derive(Debug)]
+struct Known<T> {
+    finder: Finder<T>,
+    /// What it depends on.
+    key: fn(&Scene) -> Scene,
+    of: Option<Scene>,
+}
+
+impl<T: Send + 'static> Known<T> {
+    fn new(find: Search<T>, key: fn(&Scene) -> Scene) -> Self {
+        Self { finder: Finder::new(find), key, of: None }
+    }
+
+    fn follow(&mut self, scene: &Scene) {
+        let key = (self.key)(scene);
+        if self.of.as_ref() != Some(&key) {
+            self.finder.forget();
+            self.of = Some(key);
+        }
+    }
+}
+
+/// What is remembered while the article is walked through.
+#[derive(Debug)]
+pub(crate) struct Learn {
+    /// The lab as it was.
+    before: Box<Lab>,
+    card: usize,
+    /// The number of the element that was clicked last.
+    picked: usize,
+    /// How far the elements are turned back, where they are apart: 0 to 1.
+    turned: f64,
+    /// The error that the trade is for, percent.
+    asked: f64,
+    rho: Known<f64>,
+    errors: Known<Vec<ElementError>>,
+    messages: Messages,
+    /// Highlighted line of the pseudocode, from 0.
+    pub line: usize,
+    /// The same in the last frame.
+    shown_line: usize,
+    /// The largest body that the card's slider reaches.
+    pub reach: Option<Simulation>,
+}
+
+/// What a card shows numbers of.
+pub(crate) struct Shown<'a> {
+    pub input: PanelInput<'a>,
+    /// What has been measured.
+    pub study: Option<&'a Study>,
+    /// Fraction that is done and what is measured now, while a study runs.
+    pub progress: Option<(f32, &'a str)>,
+}
+
+/// The view that a card paints over.
+pub(crate) struct View<'a> {
+    pub simulation: &'a Simulation,
+    pub drawing: &'a Drawing,
+    /// Where the drawn points are, m.
+    pub points: &'a [Vector2<f64>],
+    pub camera: Camera,
+    pub rect: Rect,
+    pub palette: Palette,
+}
+
+impl View<'_> {
+    /// The window position of a point of the plane.
+    fn place(&self, p: Vector2<f64>) -> Pos2 {
+        let [x, y] = self.camera.to_view(p).map(|v| v.clamp(-1e5, 1e5) as f32);
+        self.rect.center() + vec2(x, y)
+    }
+
+    /// Whether there are too many elements to paint each.
+    fn is_fine(&self) -> bool {
+        self.simulation.system().mesh().element_count() > MOST_ELEMENTS
+    }
+
+    /// The drawn points of an element.
+    fn points_of(&self, element: usize) -> &[Vector2<f64>] {
+        let each = self.points.len() / self.simulation.system().mesh().element_count().max(1);
+        self.points.get(element * each..(element + 1) * each).unwrap_or_default()
+    }
+
+    /// The middle of an element as it is drawn, m.
+    fn middle(&self, element: usize) -> Vector2<f64> {
+        let points = self.points_of(element);
+        points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64
+    }
+
+    /// The line around an element as it is drawn.
+    fn corners(&self, element: usize) -> Vec<Pos2> {
+        let entry = self.simulation.system().mesh().element().entry();
+        let points = self.points_of(element);
+        let lattice = (entry.cell.lattice)(entry.drawn_pieces);
+        let around = lattice.sides.iter().flat_map(|side| &side[..side.len().saturating_sub(1)]);
+        around.filter_map(|&p| points.get(p as usize)).map(|&p| self.place(p)).collect()
+    }
+}
+
+impl Learn {
+    /// At the card of this number, from 0.
+    pub(crate) fn new(before: Box<Lab>, card: usize) -> Self {
+        Self {
+            before,
+            card: card.min(CARDS.len() - 1),
+            picked: 6,
+            turned: 1.0,
+            asked: 1.0,
+            rho: Known::new(
+                |scene, _| fixed_point_rho(scene),
+                |scene| Scene { solver: SolverSettings::default(), ..scene.clone() },
+            ),
+            errors: Known::new(
+                |scene, _| locking::errors(scene),
+                |scene| {
+                    let mut scene = Scene { solver: SolverSettings::default(), ..scene.clone() };
+                    let first = scene.elements().next().unwrap_or_default();
+                    scene.set_element(first);
+                    scene
+                },
+            ),
+            messages: Messages::new(),
+            line: 0,
+            shown_line: 0,
+            reach: None,
+        }
+    }
+
+    /// The lab as it was, and the number of the last card.
+    pub(crate) fn leave(self) -> (Box<Lab>, usize) {
+        (self.before, self.card)
+    }
+
+    /// The lab as it was before the mode.
+    pub(crate) fn lab_before(&self) -> &Lab {
+        &self.before
+    }
+
+    /// How the lab was looked at.
+    pub(crate) fn view_before(&self) -> &ViewOptions {
+        self.before.view()
+    }
+
+    pub(crate) fn card(&self) -> &'static Card {
+        &CARDS[self.card.min(CARDS.len() - 1)]
+    }
+
+    /// Goes to the card of this number, from 0.
+    pub(crate) fn go_to(&mut self, card: usize) {
+        self.card = card.min(CARDS.len() - 1);
+        self.messages.clear();
+    }
+
+    /// Whether the elements are drawn apart.
+    pub(crate) fn is_apart(&self) -> bool {
+        self.card().apart && self.turned > 0.0
+    }
+
+    /// The line of the pseudocode that a step goes to; `None` on other cards.
+    pub(crate) fn next_line(&self, simulation: &Simulation, ended: bool) -> Option<usize> {
+        (self.card().lines && code::describes(simulation)).then(|| code::after(self.line, ended))
+    }
+
+    /// ρ at the equilibrium, once it is known.
+    pub(crate) fn rho(&self) -> Option<f64> {
+        self.rho.finder.get().copied()
+    }
+
+    fn errors(&self) -> Option<&[ElementError]> {
+        self.errors.finder.get().map(Vec::as_slice)
+    }
+
+    /// Whether what the card needs is still being looked for.
+    pub(crate) fn is_looking(&self) -> bool {
+        match self.card().needs {
+            Needs::Nothing => false,
+            Needs::Rho => self.rho.finder.is_open(),
+            Needs::Errors => self.errors.finder.is_open(),
+        }
+    }
+
+    /// Looks for what the card needs.
+    fn find_out(&mut self, scene: &Scene, ctx: &Context) {
+        self.follow(scene);
+        match self.card().needs {
+            Needs::Nothing => {}
+            Needs::Rho => self.rho.finder.ask(scene, ctx),
+            Needs::Errors => self.errors.finder.ask(scene, ctx),
+        }
+    }
+
+    fn follow(&mut self, scene: &Scene) {
+        self.rho.follow(scene);
+        self.errors.follow(scene);
+    }
+
+    /// Finds out what the card needs, however long it takes.
+    pub(crate) fn settle(&mut self, scene: &Scene) {
+        self.follow(scene);
+        match self.card().needs {
+            Needs::Nothing => {}
+            Needs::Rho => self.rho.finder.settle(scene),
+            Needs::Errors => self.errors.finder.settle(scene),
+        }
+    }
+
+    /// Moves the drawn points to where a card that draws the elements apart has them.
+    pub(crate) fn place(&self, simulation: &Simulation, drawing: &Drawing, points: &mut [Vector2<f64>]) {
+        let mesh = simulation.system().mesh();
+        let mut rest = Vec::new();
+        drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
+        exploded::place(simulation, self.turned, &rest, points);
+    }
+
+    /// Takes the element that is drawn at a place in the window.
+    pub(crate) fn pick(&mut self, view: &View<'_>, at: Pos2) {
+        let place = |p: u32| view.points.get(p as usize).map(|&p| view.place(p));
+        let side = |a: Pos2, b: Pos2| (b - a).x * (at - a).y - (b - a).y * (at - a).x;
+        let found = view.drawing.triangles.iter().position(|corners| {
+            let [Some(a), Some(b), Some(c)] = corners.map(place) else { return false };
+            let sides = [side(a, b), side(b, c), side(c, a)];
+            sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
+        });
+        let each = view.drawing.triangles.len() / view.simulation.system().mesh().element_count().max(1);
+        if let Some(triangle) = found {
+            self.picked = triangle / each.max(1);
+        }
+    }
+
+    /// Paints over the body.
+    pub(crate) fn paint(&self, painter: &Painter, view: &View<'_>) {
+        (self.card().paint)(painter, view, self);
+    }
+
+    /// Shows the card.
+    pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, keys: bool, actions: &mut Vec<Action>) {
+        self.find_out(shown.input.scene, ui.ctx());
+        if keys {
+            actions.extend(self.keys(ui.ctx()));
+        }
+        let share = if is_low(ui.ctx()) { LOW_SHARE } else { SHARE };
+        let height = HEIGHT.min(share * ui.ctx().content_rect().height());
+        let frame = egui::Frame::side_top_panel(ui.style()).fill(egui::Color32::TRANSPARENT);
+        let frame = frame.inner_margin(egui::Margin { left: 14, right: 10, top: 6, bottom: 4 });
+        Panel::bottom("learn").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
+            self.header(ui, actions);
+            ui.add_space(2.0);
+            let card = self.card();
+            let bars = egui::scroll_area::ScrollBarVisibility::VisibleWhenNeeded;
+            ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
+            let number = self.card;
+            let scroll = |ui: &mut Ui, part: &str, show: &mut dyn FnMut(&mut Ui)| {
+                // A bar that came would wrap the words anew, and might go again for that: in a low row its room is free.
+                let room = ui.available_width() - ui.spacing().scroll.allocated_width();
+                let area = ScrollArea::vertical().id_salt((part, number)).auto_shrink([false, false]);
+                area.scroll_bar_visibility(bars).show(ui, |ui| {
+                    if height < LOW {
+                        ui.set_max_width(room);
+                    }
+                    show(ui);
+                });
+            };
+            if ui.available_width() < TWO_COLUMNS {
+                scroll(ui, "card", &mut |ui| {
+                    text(ui, card);
+                    ui.add_space(8.0);
+                    (card.show)(ui, shown, self, actions);
+                });
+                return;
+            }
+            let (left, right) = split(ui.available_rect_before_wrap());
+            let mut column = |rect: Rect, show: &mut dyn FnMut(&mut Ui)| {
+                let layout = egui::Layout::top_down(egui::Align::Min);
+                let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+                ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
+                show(&mut ui);
+            };
+            column(left, &mut |ui| scroll(ui, "words", &mut |ui| text(ui, card)));
+            column(right, &mut |ui| scroll(ui, "drawing", &mut |ui| (card.show)(ui, shown, self, actions)));
+        });
+    }
+
+    /// Title, and the way to the other cards.
+    fn header(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let palette = Palette::new(ui.visuals());
+        let (card, count) = (self.card, CARDS.len());
+        ui.horizontal(|ui| {
+            let wide = ui.available_width() > 720.0;
+            let title = RichText::new(tr(self.card().title)).size(HEADLINE).strong().color(palette.text);
+            let nav = if wide { 470.0 } else { 246.0 };
+            let room = (ui.available_width() - nav).max(80.0);
+            ui.scope(|ui| {
+                ui.set_max_width(room);
+                ui.add(egui::Label::new(title).truncate());
+            });
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = 6.0;
+                if ui.button(tr("Leave")).on_hover_text(tr("Back to your own scene (Esc)")).clicked() {
+                    actions.push(Action::Toggle(Toggle::Mode(Mode::Explore)));
+                }
+                if wide {
+                    let tip = "This card\u{2019}s scene again, as it was";
+                    if ui.button(tr("Set up again")).on_hover_text(tr(tip)).clicked() {
+                        actions.push(Action::Card(card));
+                    }
+                }
+                let next = ui.add_enabled(card + 1 < count, egui::Button::new(tr("Next \u{203a}")));
+                if next.on_hover_text(tr("The next card (right arrow or Enter)")).clicked() {
+                    actions.push(Action::Card(card + 1));
+                }
+                if wide {
+                    dots(ui, &palette, card, actions);
+                }
+                ui.label(
+                    RichText::new(fill!("%{n} of %{count}", n = card + 1, count = count)).color(palette.secondary),
+                );
+                let back = ui.add_enabled(card > 0, egui::Button::new(tr("\u{2039} Back")));
+                if back.on_hover_text(tr("The card before (left arrow)")).clicked() {
+                    actions.push(Action::Card(card - 1));
+                }
+            });
+        });
+    }
+
+    /// What the keys of this frame ask for, while nothing has the focus.
+    fn keys(&self, ctx: &Context) -> Option<Action> {
+        let escape = ctx.input(|i| i.key_pressed(Key::Escape));
+        if escape && !ctx.text_edit_focused() {
+            return Some(Action::Toggle(Toggle::Mode(Mode::Explore)));
+        }
+        if ctx.memory(|memory| memory.focused().is_some()) {
+            return None;
+        }
+        let (forth, back) = ctx.input(|i| {
+            let plain = i.modifiers.is_none();
+            let pressed = |key| plain && i.key_pressed(key);
+            (pressed(Key::ArrowRight) || pressed(Key::Enter), pressed(Key::ArrowLeft))
+        });
+        match (forth, back) {
+            (true, _) if self.card + 1 < CARDS.len() => Some(Action::Card(self.card + 1)),
+            (_, true) if self.card > 0 => Some(Action::Card(self.card - 1)),
+            _ => None,
+        }
+    }
+}
+
+/// `true` in a window that has no room for a status bar beside the cards.
+pub(crate) fn is_low(ctx: &Context) -> bool {
+    ctx.content_rect().height() < LOW_WINDOW
+}
+
+/// The places of the words, and of what is beside them.
+fn split(rect: Rect) -> (Rect, Rect) {
+    /// Lines of more letters than fit in this are hard to read.
+    const WIDEST: f32 = 470.0;
+    const GUTTER: f32 = 24.0;
+    const WIDEST_DRAWING: f32 = 620.0;
+    let words = (0.48 * (rect.width() - GUTTER)).min(WIDEST);
+    let drawing = rect.with_min_x(rect.left() + words + GUTTER);
+    (rect.with_max_x(rect.left() + words), drawing.with_max_x(drawing.right().min(drawing.left() + WIDEST_DRAWING)))
+}
+
+/// A dot a card; a click goes there.
+fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) {
+    // From the right.
+    ui.spacing_mut().item_spacing.x = 0.0;
+    for i in (0..CARDS.len()).rev() {
+        let (rect, response) = ui.allocate_exact_size(vec2(15.0, 20.0), Sense::click());
+        let color = if i == card { palette.accent } else { palette.secondary };
+        let radius = if i == card || response.hovered() { 4.5 } else { 3.0 };
+        ui.painter().circle_filled(rect.center(), radius, color);
+        if response.has_focus() {
+            ui.painter().circle_stroke(rect.center(), 7.0, egui::Stroke::new(1.5, palette.accent));
+        }
+        let name = fill!("Card %{n}: %{title}", n = i + 1, title = tr(CARDS[i].title));
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, i == card, &name));
+        if response.on_hover_text(tr(CARDS[i].title)).clicked() {
+            actions.push(Action::Card(i));
+        }
+    }
+    ui.spacing_mut().item_spacing.x = 6.0;
+    ui.add_space(6.0);
+}
+
+/// Sentences, formula, its symbols, and what to do.
+fn text(ui: &mut Ui, card: &Card) {
+    let palette = Palette::new(ui.visuals());
+    let is_low = is_low(ui.ctx());
+    let words = spaced(RichText::new(tr(card.words)), BODY).color(palette.text);
+    ui.add(egui::Label::new(words).wrap());
+    ui.add_space(4.0);
+    let chip = egui::Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(egui::Margin::symmetric(12, 5));
+    chip.show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let width = ui.max_rect().width();
+            let size = if is_low { formula::LOW_SIZE } else { formula::SIZE };
+            let set = |part: &&str| formula::fitted(ui.painter(), part, size, palette.text, width);
+            let galleys: Vec<_> = card.formula.iter().map(set).collect();
+            // Closer together where they would not be in one row.
+            let gaps = width - galleys.iter().map(|galley| galley.size().x).sum::<f32>();
+            let gap = gaps / card.formula.len().saturating_sub(1).max(1) as f32;
+            ui.spacing_mut().item_spacing.x = gap.floor().clamp(14.0, 36.0);
+            for (part, galley) in card.formula.iter().zip(galleys) {
+                let response = ui.add(egui::Label::new(galley).extend());
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, formula::plain(part)));
+            }
+        });
+    });
+    let symbols = |ui: &mut Ui| {
+        ui.add_space(2.0);
+        let symbols = RichText::new(tr(card.symbols)).size(SMALL).color(palette.secondary);
+        ui.add(egui::Label::new(spaced(symbols, SMALL)).wrap());
+    };
+    if !is_low {
+        symbols(ui);
+    }
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 16.0), Sense::hover());
+        let triangle = [vec2(-3.0, -5.0), vec2(5.0, 0.0), vec2(-3.0, 5.0)].map(|v| rect.center() + v);
+        ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
+        ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
+    });
+    // In a low row that scrolls, the task comes first.
+    if is_low {
+        symbols(ui);
+    }
+}
+
+const NOT_TRIANGLES: &str = "These numbers are of three-node triangles.";
+
+/// Says why a card has nothing to show of the scene, with a button that sets the card up again.
+fn not_triangles(ui: &mut Ui, words: &str, learn: &Learn, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(tr(words));
+        if ui.button(tr("Back to the article\u{2019}s beam")).clicked() {
+            actions.push(Action::Card(learn.card));
+        }
+    });
+}
+
+/// The article's scene.
+pub(crate) fn article() -> Option<(Source, Scene)> {
+    let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
+    let scene = scene::open(&source).ok()?;
+    Some((source, scene))
+}
+
+/// ρ of the warped iteration at a scene's equilibrium, which newton finds where that cannot.
+fn fixed_point_rho(scene: &Scene) -> Option<f64> {
+    if scene.analysis != Analysis::Static {
+        return None;
+    }
+    let mut scene = scene.clone();
+    scene.solver.method = MethodKind::Newton;
+    let mut simulation = Simulation::new(&scene).ok()?;
+    simulation.solve();
+    simulation.certify().fixed_point_rho
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every letter of every card, and of what is written beside, is in the fonts.
+    #[test]
+    fn the_fonts_have_every_letter_of_the_cards() {
+        let ctx = Context::default();
+        ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
+        let mut all: String = CARDS.iter().flat_map(|c| [c.title, c.words, c.symbols, c.task]).collect();
+        all.extend(CARDS.iter().flat_map(|card| card.formula).map(|part| formula::plain(part)));
+        all.push_str("\u{2039}\u{203a}\u{2212}\u{3a3}\u{3b5}\u{b7}\u{d7}\u{2013}\u{b0}\u{201c}\u{201d}");
+        for size in [crate::app::widgets::palette::BODY, formula::SIZE] {
+            let font = FontId::proportional(size);
+            for letter in all.chars().filter(|c| *c != '\n') {
+                assert!(ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter)), "no glyph for {letter:?}");
+            }
+        }
+        assert!(
+            !ctx.fonts_mut(|fonts| fonts.has_glyph(&FontId::proportional(14.0), '\u{10ffff}')),
+            "the check is blind"
+        );
+    }
+
+    #[test]
+    fn every_card_sets_up_a_scene_and_says_something() {
+        assert_eq!(CARDS.len(), 9);
+        for card in CARDS {
+            let (_, mut scene) = article().unwrap();
+            (card.setup.edit)(&mut scene);
+            assert!(scene.validate().is_ok(), "{}", card.title);
+            let sentences = card.words.split_inclusive(['.', '?']).filter(|s| s.trim().len() > 3).count();
+            assert!((2..=4).contains(&sentences), "{}: {sentences} sentences", card.title);
+            assert!(!card.formula.is_empty() && !card.symbols.is_empty() && !card.task.is_empty());
+        }
+    }
+    /// Every variable is defined on the card where it first appears, or before.
+    #[test]
+    fn every_letter_of_the_formulas_is_defined() {
+        let mut defined = String::new();
+        for card in CARDS {
+            defined.push_str(card.symbols);
+            defined.push_str(card.words);
+            for letter in card.formula.iter().flat_map(|markup| formula::variables(markup)) {
+                let is_defined = [":", ",", "x:"].iter().any(|end| defined.contains(&format!("{letter}{end}")))
+                    || ["angle", "strain", "by"].iter().any(|before| defined.contains(&format!("{before} {letter}")));
+                assert!(is_defined, "{}: {letter}", card.title);
+            }
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! The residual, iteration by iteration, on a logarithmic scale, beside a line that falls by ρ each time.
+
+use egui::{Align2, FontId, Painter, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use super::{Learn, Shown};
+use crate::app::action::Action;
+use crate::app::diagnosis::rho_number;
+use crate::app::language::{count, fill, tr};
+use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::palette::{Palette, SMALL};
+use crate::method::METHODS;
+use crate::scene::MethodKind;
+use crate::simulation::Status;
+
+/// Buttons that iterate, and the residuals.
+pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        let ended = *shown.input.simulation.status() != Status::Running;
+        for (name, tip, action, on) in [
+            ("Step once", "One iteration (N)", Action::Step, true),
+            ("From rest", "Back to rest (R)", Action::Reset, true),
+            ("Go on", "Iterate to the end (Space)", Action::ToggleRun, !ended && !shown.input.running),
+        ] {
+            if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
+                actions.push(action);
+            }
+        }
+        if let Some(ratio) = last_ratio(shown.input.residuals) {
+            let words = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
+            ui.add(egui::Label::new(words).extend());
+        }
+    });
+    plot(ui, shown, learn);
+}
+
+/// Buttons that choose a method, and the residuals.
+pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
+            let chosen = shown.input.scene.solver.method == method.kind;
+            let words = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
+            if ui.add(option_button(chosen, tr(words))).on_hover_text(tr(method.about)).clicked() && !chosen {
+                let mut scene = Box::new(shown.input.scene.clone());
+                scene.solver.method = method.kind;
+                actions.push(Action::Edit("Method", scene));
+            }
+        }
+        let simulation = shown.input.simulation;
+        let iterations = count(simulation.iterations(), "iteration");
+        let words = match simulation.status() {
+            Status::Converged => fill!("converged after %{iterations}", iterations = iterations),
+            Status::Running => iterations,
+            _ => fill!("given up after %{iterations}", iterations = iterations),
+        };
+        ui.add(egui::Label::new(words).extend());
+    });
+    plot(ui, shown, learn);
+}
+
+/// By how much the last iteration has shrunk the residual.
+fn last_ratio(residuals: &[f64]) -> Option<f64> {
+    let [.., before, last] = residuals else { return None };
+    let ratio = last / before;
+    (ratio.is_finite() && *before > 0.0).then_some(ratio)
+}
+
+fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
+    /// Iterations and decades that are always shown.
+    const FEWEST: usize = 12;
+    const HIGHEST: f64 = 1.0;
+    const LEFT: f32 = 40.0;
+    const BELOW: f32 = 20.0;
+    let palette = Palette::new(ui.visuals());
+    let rho = learn.rho();
+    let size = vec2(ui.available_width().min(460.0), (ui.available_height() - 4.0).clamp(96.0, 150.0));
+    let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
+    let rect = Rect::from_min_max(whole.min + vec2(LEFT, 6.0), whole.max - vec2(8.0, BELOW));
+    let asked = shown.input.scene.solver.tolerance.max(1e-300).log10();
+    let residuals = shown.input.residuals;
+    let decade = |r: f64| r.clamp(1e-300, 1e300).log10();
+    let bottom = residuals.iter().map(|&r| decade(r)).fold(asked, f64::min).max(asked - 6.0) - 0.5;
+    let most = residuals.len().max(FEWEST) as f64;
+    let place = |k: f64, exponent: f64| {
+        let x = rect.left() + rect.width() * (k / most) as f32;
+        pos2(x, rect.top() + rect.height() * ((HIGHEST - exponent) / (HIGHEST - bottom)) as f32)
+    };
+    let painter = ui.painter().with_clip_rect(whole.intersect(ui.clip_rect()));
+    axes(&painter, rect, &palette, (bottom, HIGHEST), most, &place);
+    let inside = painter.with_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
+    dashed(&inside, place(0.0, asked), place(most, asked), Stroke::new(1.0, palette.secondary));
+    if let Some(rho) = rho {
+        // Through the last point, as it goes on from there; where that goes nowhere, through the lowest.
+        let mut points = residuals.iter().enumerate().map(|(i, &r)| (i as f64 + 1.0, decade(r)));
+        let anchor = if rho < 1.0 { points.next_back() } else { points.min_by(|a, b| a.1.total_cmp(&b.1)) };
+        let (k, r) = anchor.unwrap_or((0.0, 0.0));
+        let line = |at: f64| place(at, r + (at - k) * rho.log10());
+        dashed(&inside, line(0.0), line(most), Stroke::new(1.8, palette.exact));
+    }
+    let color = palette.method(shown.input.scene.solver.method);
+    let points: Vec<_> = residuals.iter().enumerate().map(|(i, &r)| place(i as f64 + 1.0, decade(r))).collect();
+    for point in &points {
+        inside.circle_filled(*point, 3.0, color);
+    }
+    inside.line(points, Stroke::new(1.6, color));
+    let small = FontId::proportional(SMALL);
+    if let Some(rho) = rho {
+        let words = fill!("\u{3c1} = %{rho}: the line's slope", rho = rho_number(rho));
+        painter.text(rect.right_top() + vec2(-2.0, 22.0), Align2::RIGHT_TOP, words, small, palette.exact);
+    }
+    let iterations = count(residuals.len() as u64, "iteration");
+    let words = match (residuals.last(), rho) {
+        (Some(last), Some(rho)) => fill!(
+            "Residual %{residual} after %{iterations}; rho = %{rho}",
+            residual = format!("{last:.1e}"),
+            iterations = iterations,
+            rho = rho_number(rho)
+        ),
+        _ => fill!("%{iterations} so far", iterations = iterations),
+    };
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &words));
+    response.on_hover_text(tr(
+        "Force out of balance over all forces, after each iteration; grey dashes: what is asked for",
+    ));
+    if rho.is_none() && learn.is_looking() {
+        ui.label(RichText::new(tr("Looking for \u{3c1}.")).size(SMALL).color(palette.secondary));
+    }
+}
+
+fn axes(
+    painter: &Painter,
+    rect: Rect,
+    palette: &Palette,
+    (bottom, top): (f64, f64),
+    most: f64,
+    place: &dyn Fn(f64, f64) -> egui::Pos2,
+) {
+    let font = FontId::proportional(SMALL);
+    let grid = Stroke::new(1.0, palette.line);
+    for exponent in ((bottom.ceil() as i32)..=(top.floor() as i32)).rev().filter(|e| e % 2 == 0) {
+        let at = place(0.0, f64::from(exponent));
+        painter.line_segment([at, pos2(rect.right(), at.y)], grid);
+        let words = if exponent == 0 { "1".to_owned() } else { format!("1e{exponent}").replace('-', "\u{2212}") };
+        painter.text(at - vec2(5.0, 0.0), Align2::RIGHT_CENTER, words, font.clone(), palette.secondary);
+    }
+    for k in crate::words::ticks(0.0, most, 7) {
+        let at = pos2(place(k, top).x, rect.bottom());
+        painter.line_segment([at, at + vec2(0.0, 3.0)], grid);
+        painter.text(at + vec2(0.0, 3.0), Align2::CENTER_TOP, format!("{k}"), font.clone(), palette.secondary);
+    }
+    painter.line_segment([rect.left_bottom(), rect.right_bottom()], grid);
+}
+
+fn dashed(painter: &Painter, from: egui::Pos2, to: egui::Pos2, stroke: Stroke) {
+    painter.extend(egui::Shape::dashed_line(&[from, to], stroke, 6.0, 4.0));
+}

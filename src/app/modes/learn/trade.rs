@@ -1,0 +1,96 @@
+//! What an error costs: elements by methods, measured beside the window when asked.
+
+use egui::{Button, Grid, ProgressBar, RichText, Ui};
+
+use super::{Learn, Shown};
+use crate::app::action::Action;
+use crate::app::language::{fill, percent, tr, translated};
+use crate::app::modes::budget::setting_words;
+use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::palette::{Palette, SMALL};
+use crate::method::METHODS;
+use crate::scene::{ElementKind, MethodKind};
+use crate::study::{Measurement, Study};
+use crate::words::{engineering, two_digits};
+
+/// Errors that can be asked for, percent.
+pub(super) const ASKED: [f64; 3] = [10.0, 1.0, 0.1];
+
+/// The fastest setting of an element and a method whose error is at most `percent`; else the closest.
+pub(super) fn best(
+    study: &Study,
+    element: ElementKind,
+    method: MethodKind,
+    percent: f64,
+) -> Option<(Measurement, bool)> {
+    let own = study.measurements.iter().filter(|m| (m.setting.element, m.setting.method) == (element, method));
+    let good = own.clone().filter(|m| m.error.bound() <= percent).min_by_key(|m| m.time.total());
+    let closest = || own.min_by(|a, b| a.error.bound().total_cmp(&b.error.bound()));
+    good.map(|m| (*m, true)).or_else(|| Some((*closest()?, false)))
+}
+
+/// The table, and the button that measures it.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let palette = Palette::new(ui.visuals());
+    ui.horizontal_wrapped(|ui| {
+        if let Some((fraction, now)) = shown.progress {
+            if ui.button(tr("Cancel")).on_hover_text(tr("Stop measuring; what has been measured stays")).clicked() {
+                actions.push(Action::Measure(false));
+            }
+            ui.add(ProgressBar::new(fraction).desired_width(110.0).show_percentage());
+            ui.add(egui::Label::new(RichText::new(translated(now)).size(SMALL)).truncate());
+        } else {
+            let tip = "Measure error and time of every element and method on meshes up to 40 cells, on this machine";
+            if ui.add(Button::new(tr("Measure"))).on_hover_text(tr(tip)).clicked() {
+                actions.push(Action::Measure(true));
+            }
+            ui.label(tr("error at most"));
+            for asked in ASKED {
+                if ui.add(option_button(learn.asked == asked, percent(asked))).clicked() {
+                    learn.asked = asked;
+                }
+            }
+        }
+    });
+    ui.add_space(4.0);
+    Grid::new("trade").num_columns(METHODS.len() + 1).spacing([14.0, 6.0]).show(ui, |ui| {
+        ui.label("");
+        for method in METHODS {
+            ui.label(RichText::new(tr(method.id)).color(palette.method(method.kind)));
+        }
+        ui.end_row();
+        for element in shown.input.scene.elements() {
+            ui.label(element.id());
+            for method in METHODS {
+                let best = shown.study.and_then(|study| best(study, element, method.kind, learn.asked));
+                cell(ui, &palette, best.as_ref());
+            }
+            ui.end_row();
+        }
+    });
+    let words = match shown.study {
+        Some(study) => fill!(
+            "Error against %{truth}. Grey: the closest it gets.",
+            truth = translated(&study.reference.to_string())
+        ),
+        None => tr("Nothing measured yet: it takes some seconds.").to_owned(),
+    };
+    ui.label(RichText::new(words).size(SMALL).color(palette.secondary));
+}
+
+fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, bool)>) {
+    let Some((m, good)) = best else {
+        ui.label(RichText::new("\u{2013}").color(palette.secondary));
+        return;
+    };
+    let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
+    let words = if *good { time.clone() } else { fill!("at most %{error}", error = percent(m.error.bound())) };
+    let color = if *good { palette.text } else { palette.secondary };
+    let tip = fill!(
+        "%{setting}: %{time}, error at most %{error}",
+        setting = setting_words(&m.setting),
+        time = time,
+        error = percent(m.error.bound())
+    );
+    ui.label(RichText::new(words).color(color)).on_hover_text(tip);
+}

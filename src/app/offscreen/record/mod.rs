@@ -1,0 +1,513 @@
+//! Moving pictures of a lab without a window.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use self::film::Film;
+pub use self::film::MovieFormat;
+pub(crate) use self::live::{LiveRecording, pointer};
+use crate::app::language::{self, Language, fill};
+use crate::app::offscreen::shot::Canvas;
+use crate::app::panel::range_of;
+use crate::app::shell::lab::Lab;
+use crate::app::{AppError, ThemeChoice};
+use crate::picture::Picture;
+use crate::render::{Gpu, RenderError};
+use crate::scene::{Analysis, Scene, Source};
+use crate::simulation::{Field, Simulation, SimulationError, Status};
+use crate::state::State;
+use crate::stress::RecoveryScratch;
+
+mod colors;
+mod film;
+mod live;
+
+/// Pictures a second of a motion, where none are asked for: what GIF can say exactly.
+const MOTION_RATE: u16 = 25;
+/// Pictures a second of an iteration: slow enough to see each.
+const SEARCH_RATE: u16 = 4;
+/// How long an equilibrium is shown at the end, s.
+const HOLD: f64 = 2.0;
+/// A fraction of a step, or of the time between pictures, that is rounding.
+const NO_TIME: f64 = 1e-6;
+/// Sizes of the body that the picture may show: what goes farther leaves it.
+const LARGEST_VIEW: f64 = 20.0;
+/// How much larger than what is shown in the end the way to it may be.
+const LARGEST_WAY: f64 = 1.5;
+/// Pictures whose colours a palette is made of, at most.
+const SAMPLES: usize = 12;
+
+/// Why there is no moving picture.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// The file name asks for a format there is not.
+    #[error(
+        "{}: expected a file name ending in .gif or .png, or the name of a folder for numbered pictures, \
+         which ffmpeg makes a film of",
+        .0.display()
+    )]
+    UnknownFormat(PathBuf),
+    /// There is no folder to write the file to.
+    #[error("{}: no such folder", .0.display())]
+    NoFolder(PathBuf),
+    /// A folder has numbered pictures already.
+    #[error("{}: has {count} numbered pictures; --overwrite replaces them", folder.display())]
+    HasPictures {
+        /// The folder.
+        folder: PathBuf,
+        /// Its numbered pictures.
+        count: usize,
+    },
+    /// A time was asked of a body at rest.
+    #[error("expected no --seconds and no --speed: this scene is static, and each picture is an iteration")]
+    NotInMotion,
+    /// The scene cannot be simulated.
+    #[error("{scene}: {error}")]
+    Simulation {
+        /// What it was opened as.
+        scene: String,
+        /// Why.
+        error: SimulationError,
+    },
+    /// The recording cannot be written.
+    #[error("{}: {reason}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        reason: String,
+    },
+}
+
+/// What a recording looks like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordOptions {
+    /// Pixels.
+    pub size: [u32; 2],
+    /// How much of a motion is recorded, s; else the scene's duration.
+    pub seconds: Option<f64>,
+    /// Seconds of the motion in a second of the recording; else 1.
+    pub speed: Option<f64>,
+    /// Pictures a second; else 25, and 4 of a search.
+    pub fps: Option<u16>,
+    /// Replaces the numbered pictures that the folder has.
+    pub overwrite: bool,
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// Of the words.
+    pub language: Language,
+}
+
+/// What is being done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The motion is run to find what the camera and the colours have to span.
+    Looking,
+    /// Pictures are drawn.
+    Drawing,
+}
+
+/// How far a recording is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordProgress {
+    /// What is being done.
+    pub phase: Phase,
+    /// Fraction of that, 0 to 1.
+    pub fraction: f64,
+    /// Time of the motion that has been reached, s.
+    pub time: f64,
+    /// Pictures drawn so far.
+    pub drawn: u64,
+    /// Pictures in all; 0 while that is being found out.
+    pub pictures: u64,
+}
+
+/// Is told how far a recording is, and calls it off with [`ControlFlow::Break`].
+pub type RecordObserver<'a> = &'a mut dyn FnMut(RecordProgress) -> ControlFlow<()>;
+
+/// What has been recorded.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Recorded {
+    /// Pictures written; 0: there is no file.
+    pub pictures: u64,
+    /// Pictures a second, as the format can have them.
+    pub rate: f64,
+    /// The format.
+    pub format: MovieFormat,
+    /// Whether it was called off before its end.
+    pub interrupted: bool,
+    /// How the motion, or the search, ended, or where it was called off.
+    pub status: Status,
+}
+
+/// Records the scene in motion, or on its way to equilibrium, from its start. It is run twice: once to learn what the
+/// camera and the colours have to span, so that neither moves, and once to draw. What `observe` calls off is a shorter
+/// recording, and none where nothing has been drawn yet.
+///
+/// # Errors
+/// [`AppError::Render`], [`AppError::Record`].
+pub fn record(
+    source: &Source,
+    mut scene: Scene,
+    options: &RecordOptions,
+    output: &Path,
+    observe: RecordObserver<'_>,
+) -> Result<Recorded, AppError> {
+    let format = MovieFormat::of(output)?;
+    if format == MovieFormat::Folder && !options.overwrite {
+        // Before the work, not after.
+        film::clear(output, false)?;
+    }
+    let moves = scene.analysis == Analysis::Dynamic;
+    if !moves && (options.seconds.is_some() || options.speed.is_some()) {
+        return Err(RecordError::NotInMotion.into());
+    }
+    if let Some(seconds) = options.seconds {
+        scene.dynamics.duration = seconds;
+    }
+    let failed = |error| RecordError::Simulation { scene: source.name.display().to_string(), error };
+    let simulation = Simulation::new(&scene).map_err(failed)?;
+    let again = || Simulation::with_system(&scene, simulation.system().clone()).map_err(failed);
+    let gpu = Gpu::headless()?;
+    let mut canvas = Canvas::new(&gpu, options.size, 1.0, options.theme.into())?;
+
+    let delay = format.delay(options.fps.unwrap_or(if moves { MOTION_RATE } else { SEARCH_RATE }));
+    let reel = Reel { between: delay.seconds() * options.speed.unwrap_or(1.0), duration: scene.dynamics.duration };
+    let mut recorded =
+        Recorded { pictures: 0, rate: 1.0 / delay.seconds(), format, interrupted: true, status: Status::Running };
+    let Some(preview) = Preview::new(&reel, again()?, observe) else { return Ok(recorded) };
+
+    let new_lab = || -> Result<Lab, AppError> {
+        let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
+        lab.set_panel(false);
+        lab.set_language(options.language);
+        let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));
+        lab.fix_view(camera, preview.range);
+        Ok(lab)
+    };
+    let mut samples = Vec::new();
+    if format == MovieFormat::Gif {
+        let mut lab = new_lab()?;
+        for state in &preview.samples {
+            // A state of the same equations is taken.
+            if lab.restore(state) {
+                samples.push(draw(&mut canvas, &mut lab, 0)?);
+            }
+        }
+    }
+
+    let mut lab = new_lab()?;
+    if format == MovieFormat::Folder {
+        film::clear(output, options.overwrite)?;
+    }
+    let mut film = Film::create(output, format, delay, preview.pictures, &samples, options.size)?;
+    for k in 0..preview.pictures {
+        let told = |time: f64| RecordProgress {
+            phase: Phase::Drawing,
+            fraction: k as f64 / preview.pictures as f64,
+            time,
+            drawn: k,
+            pictures: preview.pictures,
+        };
+        let reached = reel.advance(k, &mut lab, &mut |time| observe(told(time)));
+        // At least a picture: a file without one is none.
+        if k > 0 && reached != Reached::Picture {
+            break;
+        }
+        let picture = draw(&mut canvas, &mut lab, k)?;
+        let last = k + 1 == preview.pictures;
+        film.add(&picture, if last && !moves { HOLD } else { 0.0 })?;
+        recorded.pictures = k + 1;
+    }
+    film.finish()?;
+    recorded.interrupted = recorded.pictures < preview.pictures;
+    recorded.status = match lab.simulation().status() {
+        // The last picture may be earlier than the last step.
+        Status::Running if moves && !recorded.interrupted => Status::Finished,
+        status => status.clone(),
+    };
+    Ok(recorded)
+}
+
+/// Draws the lab, and the time or the iteration above the body.
+fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, RenderError> {
+    language::speak(lab.language());
+    let simulation = lab.simulation();
+    let text = match simulation.motion() {
+        Some(_) => {
+            // As many digits as tell steps apart.
+            let digits = -simulation.scene().dynamics.time_step.log10();
+            format!("{:.*} s", digits.ceil().clamp(2.0, 9.0) as usize, simulation.state().time())
+        }
+        None => fill!("iteration %{n}", n = k),
+    };
+    canvas.draw(lab, &mut |ctx| {
+        let painter = ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("recorded time")));
+        let at = ctx.content_rect().center_top() + egui::vec2(0.0, 14.0);
+        let color = ctx.global_style().visuals.strong_text_color();
+        painter.text(at, egui::Align2::CENTER_TOP, &text, egui::FontId::monospace(13.0), color);
+    })
+}
+
+/// Which states are the pictures: those of a motion at times evenly spread, those of a search one by one.
+struct Reel {
+    /// Time of the motion from picture to picture, s.
+    between: f64,
+    /// When it ends, s.
+    duration: f64,
+}
+
+/// Where a simulation has been taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reached {
+    /// The state of the picture that was asked for.
+    Picture,
+    /// There is no such picture.
+    End,
+    /// Called off on the way.
+    CalledOff,
+}
+
+/// What is taken from picture to picture: a simulation, or a lab that remembers the way for its trail.
+trait Moving {
+    fn simulation(&self) -> &Simulation;
+    fn step(&mut self);
+}
+
+impl Moving for Simulation {
+    fn simulation(&self) -> &Simulation {
+        self
+    }
+
+    fn step(&mut self) {
+        Simulation::step(self);
+    }
+}
+
+impl Moving for Lab {
+    fn simulation(&self) -> &Simulation {
+        self.simulation()
+    }
+
+    fn step(&mut self) {
+        self.iterate(1);
+    }
+}
+
+impl Reel {
+    /// Takes a simulation from picture to picture `k`: the last step that is not later. `observe` is told the time.
+    fn advance(&self, k: u64, body: &mut impl Moving, observe: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Reached {
+        let time = |body: &dyn Moving| body.simulation().state().time();
+        if observe(time(body)).is_break() {
+            return Reached::CalledOff;
+        }
+        if body.simulation().motion().is_none() {
+            if k > 0 {
+                if *body.simulation().status() != Status::Running {
+                    return Reached::End;
+                }
+                body.step();
+            }
+            return Reached::Picture;
+        }
+        let at = k as f64 * self.between;
+        if at > self.duration + NO_TIME * self.between {
+            return Reached::End;
+        }
+        let step = body.simulation().scene().dynamics.time_step;
+        while *body.simulation().status() == Status::Running && time(body) + step <= at + NO_TIME * step {
+            body.step();
+            if observe(time(body)).is_break() {
+                return Reached::CalledOff;
+            }
+        }
+        // A motion that was given up has no pictures beyond.
+        let given_up = matches!(body.simulation().status(), Status::Stopped(_)) && time(body) + step <= at;
+        if given_up { Reached::End } else { Reached::Picture }
+    }
+}
+
+/// What a run shows of its pictures before they are drawn.
+struct Preview {
+    pictures: u64,
+    /// The box that holds the body, m.
+    low: Vector2<f64>,
+    high: Vector2<f64>,
+    /// The values that the colours span.
+    range: [f64; 2],
+    /// Some of the states, evenly spread.
+    samples: Vec<State>,
+}
+
+impl Preview {
+    /// Of a whole run; `None` where it was called off.
+    fn new(reel: &Reel, mut simulation: Simulation, observe: RecordObserver<'_>) -> Option<Self> {
+        let moves = simulation.motion().is_some();
+        let (low, high) = simulation.system().mesh().bounds();
+        let largest = LARGEST_VIEW * (high - low).norm();
+        let mut preview = Self { pictures: 0, low, high, range: [0.0, 1.0], samples: Vec::new() };
+        let (mut values, mut extremes) = (Vec::new(), Vec::new());
+        let mut way = Vec::new();
+        let mut stride = 1;
+        loop {
+            let told = |time| RecordProgress {
+                phase: Phase::Looking,
+                fraction: if moves { time / reel.duration } else { 0.0 },
+                time,
+                drawn: 0,
+                pictures: 0,
+            };
+            match reel.advance(preview.pictures, &mut simulation, &mut |time| observe(told(time))) {
+                Reached::CalledOff => return None,
+                Reached::End => break,
+                Reached::Picture => {}
+            }
+            let (low, high) = bounds(&simulation);
+            if moves {
+                // What explodes neither shrinks the body to a dot nor takes all colours.
+                if preview.include(low, high, largest) {
+                    smooth_values(&simulation, &mut values);
+                    values.append(&mut extremes);
+                    let finite = values.iter().flatten().copied();
+                    extremes = vec![finite.clone().reduce(f64::min), finite.reduce(f64::max)];
+                }
+            } else {
+                way.push((low, high));
+            }
+            if preview.pictures.is_multiple_of(stride) {
+                preview.samples.push(simulation.state().clone());
+                if preview.samples.len() > SAMPLES {
+                    let mut even = (0..).map(|i: u32| i.is_multiple_of(2));
+                    preview.samples.retain(|_| even.next().unwrap_or_default());
+                    stride *= 2;
+                }
+            }
+            preview.pictures += 1;
+        }
+        if moves {
+            preview.range = range_of(&extremes);
+        } else {
+            let (low, high) = bounds(&simulation);
+            preview.include(low, high, f64::INFINITY);
+            let largest = LARGEST_WAY * (preview.high - preview.low).norm();
+            for (low, high) in way {
+                preview.include(low, high, largest);
+            }
+            smooth_values(&simulation, &mut values);
+            preview.range = range_of(&values);
+        }
+        Some(preview)
+    }
+
+    /// Widens the box to hold another, unless it were larger than this then; whether it does.
+    fn include(&mut self, low: Vector2<f64>, high: Vector2<f64>, largest: f64) -> bool {
+        let (low, high) = (self.low.inf(&low), self.high.sup(&high));
+        // Not of a box that is not finite either.
+        let fits = (high - low).norm() <= largest;
+        if fits {
+            (self.low, self.high) = (low, high);
+        }
+        fits
+    }
+}
+
+/// The box that holds the nodes where they are, m.
+fn bounds(simulation: &Simulation) -> (Vector2<f64>, Vector2<f64>) {
+    let nodes = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+    let none = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
+    nodes.fold(none, |(low, high), p| (low.inf(&p), high.sup(&p)))
+}
+
+/// The values that colour the body.
+fn smooth_values(simulation: &Simulation, values: &mut Vec<Option<f64>>) {
+    simulation.smooth_field(Field::default(), (&mut None, &mut RecoveryScratch::default()), values);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn simulation(id: &str, set: &[&str]) -> Simulation {
+        let assignments = set.iter().map(|s| (*s).to_owned()).collect();
+        Simulation::new(&crate::scene::open(&Source { name: id.into(), assignments }).unwrap()).unwrap()
+    }
+
+    fn reel(simulation: &Simulation, between: f64) -> Reel {
+        Reel { between, duration: simulation.scene().dynamics.duration }
+    }
+
+    /// Runs to the end; `each` sees every picture.
+    fn run(reel: &Reel, mut simulation: Simulation, each: &mut dyn FnMut(u64, &Simulation)) -> u64 {
+        for k in 0.. {
+            match reel.advance(k, &mut simulation, &mut |_| ControlFlow::Continue(())) {
+                Reached::Picture => each(k, &simulation),
+                _ => return k,
+            }
+        }
+        0
+    }
+
+    #[test]
+    fn a_picture_shows_the_last_step_that_is_not_later() {
+        // Steps shorter than the time between pictures, the same, and longer.
+        for (step, between, pictures) in [(0.01, 0.04, 26), (0.01, 0.03, 34), (0.04, 0.04, 26), (0.1, 0.04, 26)] {
+            let swing = simulation("swing", &[&format!("dynamics.time_step={step}"), "dynamics.duration=1"]);
+            let reel = reel(&swing, between);
+            let seen = run(&reel, swing, &mut |k, simulation| {
+                let (at, time) = (k as f64 * between, simulation.state().time());
+                assert!(time <= at + 1e-9 && time > at - step + 1e-9, "picture {k} at {at} s shows {time} s");
+            });
+            assert_eq!(seen, pictures, "{step}, {between}");
+        }
+    }
+
+    #[test]
+    fn the_preview_spans_every_picture() {
+        for id in ["swing", "jelly", "spin", "elastica"] {
+            let again = || simulation(id, if id == "elastica" { &[] } else { &["dynamics.duration=1.5"] });
+            let reel = reel(&again(), 0.04);
+            let preview = Preview::new(&reel, again(), &mut |_| ControlFlow::Continue(())).unwrap();
+            assert!(preview.samples.len() <= SAMPLES && preview.samples.len() >= SAMPLES.min(3), "{id}");
+            let mut values = Vec::new();
+            let moves = again().motion().is_some();
+            let seen = run(&reel, again(), &mut |k, simulation| {
+                let (low, high) = bounds(simulation);
+                // On the way to an equilibrium an iteration may leave the picture; the end is in it.
+                let shown = moves || *simulation.status() == Status::Converged;
+                assert!(!shown || low >= preview.low && high <= preview.high, "{id}, picture {k}");
+                smooth_values(simulation, &mut values);
+                let [low, high] = range_of(&values);
+                // A body at rest has a range of its own.
+                let strained = values.iter().flatten().any(|v| *v > 0.0);
+                assert!(
+                    !moves || !strained || low >= preview.range[0] && high <= preview.range[1],
+                    "{id}, picture {k}"
+                );
+            });
+            assert_eq!(seen, preview.pictures, "{id}");
+        }
+        let called_off =
+            Preview::new(&Reel { between: 0.04, duration: 1.0 }, simulation("swing", &[]), &mut |progress| {
+                if progress.time > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+        assert!(called_off.is_none());
+    }
+
+    /// A motion that explodes does not make the picture infinitely large.
+    #[test]
+    fn what_explodes_leaves_the_picture() {
+        let swing = simulation("swing", &["dynamics.integrator=symplectic-euler", "dynamics.time_step=0.001"]);
+        let size = {
+            let (low, high) = swing.system().mesh().bounds();
+            (high - low).norm()
+        };
+        let preview = Preview::new(&reel(&swing, 0.001), swing, &mut |_| ControlFlow::Continue(())).unwrap();
+        assert!((preview.high - preview.low).norm() <= LARGEST_VIEW * size && preview.range[1].is_finite());
+        assert!(preview.pictures > 1);
+    }
+}

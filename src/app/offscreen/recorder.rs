@@ -1,0 +1,95 @@
+//! A recording that is made beside the window: the scene from its start, into a GIF in the present folder.
+
+use std::path::Path;
+
+use thiserror::Error;
+
+use crate::app::language::{self, Language, count, fill, tr, translated};
+use crate::app::offscreen::record::{Phase, RecordOptions, RecordProgress, record};
+use crate::app::task::thread::{Heard, Job, Line};
+use crate::app::{NoName, ThemeChoice, free_name};
+use crate::scene::{Scene, Source};
+
+/// Pixels of the recording.
+const SIZE: [u32; 2] = [640, 400];
+
+/// Why there is no recording.
+#[derive(Debug, Error)]
+pub(crate) enum RecorderError {
+    #[error(transparent)]
+    NoName(#[from] NoName),
+    #[error("no thread for it: {0}")]
+    NoThread(#[from] std::io::Error),
+}
+
+/// Fraction that is done, and what is done now.
+type Said = (f32, String);
+
+/// A recording in a thread of its own. Dropped, it is called off.
+#[derive(Debug)]
+pub(crate) struct Recorder {
+    job: Job<Said, String>,
+    /// Fraction that is done, 0 to 1.
+    pub fraction: f32,
+    /// What is done now.
+    pub words: String,
+}
+
+impl Recorder {
+    /// Starts to record a scene.
+    ///
+    /// # Errors
+    /// [`RecorderError`].
+    pub(crate) fn start(
+        source: Source,
+        scene: Scene,
+        theme: ThemeChoice,
+        language: Language,
+    ) -> Result<Self, RecorderError> {
+        let path = free_name("gif")?;
+        let job = Job::start("record", move |line| work(&source, scene, (theme, language), &path, line))?;
+        Ok(Self { job, fraction: 0.0, words: String::new() })
+    }
+
+    /// Ends it with what it has.
+    pub(crate) fn stop(&self) {
+        self.job.call_off();
+    }
+
+    /// Hears how far it is; returns what there is to say once it has ended.
+    pub(crate) fn listen(&mut self) -> Option<String> {
+        loop {
+            match self.job.hear() {
+                Heard::News(said) => (self.fraction, self.words) = said,
+                Heard::Done(words) => return Some(words),
+                Heard::Nothing => return None,
+                Heard::Died => return Some(tr("The recording ended unexpectedly").to_owned()),
+            }
+        }
+    }
+}
+
+fn work(
+    source: &Source,
+    scene: Scene,
+    (theme, language): (ThemeChoice, Language),
+    path: &Path,
+    line: &Line<Said, String>,
+) -> String {
+    language::speak(language);
+    let mut observe = |progress: RecordProgress| {
+        let words = match progress.phase {
+            Phase::Looking => tr("Looking ahead").to_owned(),
+            Phase::Drawing => fill!("Recording %{file}", file = path.display()),
+        };
+        line.say((progress.fraction as f32, words))
+    };
+    let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, overwrite: true, theme, language };
+    match record(source, scene, &options, path, &mut observe) {
+        Ok(recorded) if recorded.pictures == 0 => tr("Nothing was recorded").to_owned(),
+        Ok(recorded) => {
+            fill!("Saved %{file}, %{pictures}", file = path.display(), pictures = count(recorded.pictures, "picture"))
+        }
+        Err(error) => fill!("No recording: %{reason}", reason = translated(&error.to_string())),
+    }
+}

@@ -1,0 +1,232 @@
+//! Pictures of a lab without a window.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use egui_wgpu::ScreenDescriptor;
+
+use crate::app::language::Language;
+use crate::app::modes::compare::PaneSetting;
+use crate::app::offscreen::painter::Stage;
+use crate::app::shell::lab::Lab;
+use crate::app::{AppError, ThemeChoice};
+use crate::picture::Picture;
+use crate::render::{FORMAT, Gpu, RenderError, read_texture};
+use crate::scene::{IntegratorKind, Scene, Source};
+use crate::simulation::{Simulation, Status};
+use crate::study::{Extent, Observer, Study};
+
+/// Largest side of a shot, pixels.
+pub const MAX_SHOT_SIDE: u32 = 8192;
+
+/// What a shot looks like.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShotOptions {
+    /// Pixels.
+    pub size: [u32; 2],
+    /// Whether the panel is in it.
+    pub panel: bool,
+    /// Whether the load curve is.
+    pub curve: bool,
+    /// Whether error against time is, measured now; in the place of the load curve.
+    pub study: bool,
+    /// A card of the mode Learn, from 1: with the article's beam, whatever the scene.
+    pub learn: Option<usize>,
+    /// Whether the plot of a motion's energy is, and the integrators that are shown beside the scene's.
+    pub motion: Option<Vec<IntegratorKind>>,
+    /// The settings that are compared in panes; none for one view of the scene's own.
+    pub compare: Vec<PaneSetting>,
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// Of the words.
+    pub language: Language,
+}
+
+impl Default for ShotOptions {
+    fn default() -> Self {
+        Self {
+            size: [1280, 800],
+            panel: true,
+            curve: false,
+            study: false,
+            motion: None,
+            compare: Vec::new(),
+            learn: None,
+            theme: ThemeChoice::default(),
+            language: Language::default(),
+        }
+    }
+}
+
+/// Solves the scene and writes its picture; returns how the solve ended. `observe` receives the progress of a study, and cancels
+/// it: the picture then has what was measured.
+///
+/// # Errors
+/// [`AppError::Render`].
+pub fn shot(
+    source: Source,
+    scene: Scene,
+    simulation: Simulation,
+    options: &ShotOptions,
+    output: &Path,
+    observe: Observer<'_>,
+) -> Result<Status, AppError> {
+    let gpu = Gpu::headless()?;
+    let mut lab = Lab::new(source, scene, simulation);
+    lab.set_adapter(gpu.describe());
+    lab.set_panel(options.panel);
+    lab.set_language(options.language);
+    if options.curve {
+        lab.show_curve();
+    }
+    if let Some(card) = options.learn {
+        lab.show_card(card);
+    }
+    if options.study {
+        let extent = if options.learn.is_some() { Extent::Quick } else { Extent::Full };
+        match Study::until_cancelled(lab.scene(), extent, observe) {
+            Ok((study, _)) => lab.show_study(study),
+            Err(error) => log::error!("no study: {error}"),
+        }
+    }
+    if let Some(integrators) = &options.motion {
+        lab.show_motion_plots();
+        integrators.iter().for_each(|&integrator| lab.compare_with(integrator));
+    }
+    if !options.compare.is_empty() {
+        lab.show_comparison(&options.compare);
+    }
+    lab.solve();
+    let picture = picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?;
+    picture.write_png(output).map_err(RenderError::from)?;
+    Ok(lab.simulation().status().clone())
+}
+
+/// Draws the lab as it stands into a picture of this many pixels.
+///
+/// # Errors
+/// [`RenderError::TooLarge`], [`RenderError::ReadBack`].
+pub fn picture(
+    gpu: &Gpu,
+    lab: &mut Lab,
+    size: [u32; 2],
+    pixels_per_point: f32,
+    theme: egui::Theme,
+) -> Result<Picture, RenderError> {
+    Canvas::new(gpu, size, pixels_per_point, theme)?.draw(lab, &mut |_| {})
+}
+
+/// What the stages of a frame took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameTimes {
+    /// The lab's part: controls, plots, and the shape of the body.
+    pub layout: Duration,
+    /// egui's shapes to triangles.
+    pub tessellate: Duration,
+    /// Uploads, and commands for the graphics device.
+    pub record: Duration,
+    /// What the device took after that: all of the drawing, where it is a processor.
+    pub draw: Duration,
+}
+
+impl FrameTimes {
+    /// All of the frame.
+    #[must_use]
+    pub fn total(&self) -> Duration {
+        self.layout + self.tessellate + self.record + self.draw
+    }
+}
+
+/// What pictures of one size are drawn with, one after the other.
+pub struct Canvas<'a> {
+    gpu: &'a Gpu,
+    ctx: egui::Context,
+    stage: Stage,
+    target: wgpu::Texture,
+    screen: ScreenDescriptor,
+    /// egui's passes so far.
+    passes: u32,
+}
+
+impl<'a> Canvas<'a> {
+    /// One of this many pixels.
+    ///
+    /// # Errors
+    /// [`RenderError::TooLarge`].
+    pub fn new(gpu: &'a Gpu, size: [u32; 2], pixels_per_point: f32, theme: egui::Theme) -> Result<Self, RenderError> {
+        if size.iter().any(|&side| side > gpu.max_side()) {
+            return Err(RenderError::TooLarge { size, limit: gpu.max_side() });
+        }
+        let ctx = egui::Context::default();
+        ctx.set_theme(theme);
+        let stage = Stage::new(gpu, FORMAT);
+        let target = gpu.target("shot", FORMAT, size, 1, wgpu::TextureUsages::COPY_SRC);
+        let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
+        Ok(Self { gpu, ctx, stage, target, screen, passes: 0 })
+    }
+
+    /// Draws the lab as it stands, and over it what `over` paints.
+    ///
+    /// # Errors
+    /// [`RenderError::ReadBack`].
+    pub(crate) fn draw(&mut self, lab: &mut Lab, over: &mut dyn FnMut(&egui::Context)) -> Result<Picture, RenderError> {
+        self.submit(lab, over);
+        read_texture(self.gpu, &self.target)
+    }
+
+    /// Draws the lab as it stands and waits for the end of it, without looking: the price of a frame.
+    ///
+    /// # Errors
+    /// [`RenderError::ReadBack`].
+    pub fn paint(&mut self, lab: &mut Lab) -> Result<FrameTimes, RenderError> {
+        let times = self.submit(lab, &mut |_| {});
+        let start = Instant::now();
+        let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        done.map_err(|error| RenderError::ReadBack(error.to_string()))?;
+        Ok(FrameTimes { draw: start.elapsed(), ..times })
+    }
+
+    /// Hands a frame to the device; says what that took.
+    fn submit(&mut self, lab: &mut Lab, over: &mut dyn FnMut(&egui::Context)) -> FrameTimes {
+        /// egui needs a pass to learn sizes, another to use them, and one more to come to rest.
+        const FIRST_PASSES: u32 = 3;
+        let Self { gpu, ctx, stage, target, screen, passes } = self;
+        let ScreenDescriptor { size_in_pixels: size, pixels_per_point } = *screen;
+        let mut unused = Vec::new();
+        let mut times = FrameTimes::default();
+        let mut stage_start = Instant::now();
+        let mut lap = || std::mem::replace(&mut stage_start, Instant::now()).elapsed();
+        let primitives = loop {
+            let mut input = egui::RawInput {
+                screen_rect: Some(egui::Rect::from_min_size(
+                    egui::Pos2::ZERO,
+                    egui::vec2(size[0] as f32, size[1] as f32) / pixels_per_point,
+                )),
+                time: Some(f64::from(*passes)),
+                max_texture_side: Some(gpu.max_side() as usize),
+                focused: true,
+                ..Default::default()
+            };
+            input.viewports.entry(egui::ViewportId::ROOT).or_default().native_pixels_per_point = Some(pixels_per_point);
+            let mut output = ctx.run_ui(input, |ui| {
+                lab.ui(ui);
+                over(ui.ctx());
+            });
+            times.layout += lap();
+            stage.set_textures(gpu, &mut output.textures_delta);
+            unused.push(output.textures_delta);
+            *passes = passes.saturating_add(1);
+            times.record += lap();
+            if *passes >= FIRST_PASSES {
+                break ctx.tessellate(output.shapes, pixels_per_point);
+            }
+        };
+        times.tessellate = lap();
+        stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), screen, &primitives, lab);
+        for mut textures in unused {
+            stage.free_textures(&mut textures);
+        }
+        times.record += lap();
+        times
+    }
+}

@@ -1,0 +1,196 @@
+//! Keeps the time of a motion in step with the clock on the wall: steps are due as time goes by, whatever the frame rate.
+
+use std::time::{Duration, Instant};
+
+use crate::words::two_digits;
+
+/// Displayed frames a second, for which costs of motions are told.
+pub(crate) const FRAMES: f64 = 60.0;
+/// Share of a frame that steps may take: the rest is for drawing.
+const WORK: Duration = Duration::from_millis(24);
+
+/// Least speed, simulated seconds per second.
+const SLOWEST: f64 = 1e-6;
+/// Slowest of the speeds that every motion offers.
+const SLOW: f64 = 0.125;
+/// Periods per second, Hz, that can still be watched.
+const WATCHABLE: f64 = 2.0;
+/// A frame that was away for longer, s, makes up for no more than this.
+const LONGEST_FRAME: f64 = 0.1;
+/// Over so much time, s, the real-time factor is measured.
+const WINDOW: f64 = 0.5;
+
+/// The speed, simulated seconds per second, that shows one period of a frequency, Hz, per second: a whole number's inverse.
+/// `None` where slow motion at 1/8 is slow enough.
+pub(crate) fn speed_of_period(frequency: f64) -> Option<f64> {
+    let is_fast = frequency.is_finite() && frequency * SLOW > WATCHABLE;
+    is_fast.then(|| 1.0 / two_digits(frequency).round())
+}
+
+/// A speed in words: as a number, or as a fraction with numerator 1 where it is small.
+pub(crate) fn fraction(speed: f64) -> String {
+    if speed > 0.0 && speed < 0.1 { format!("1/{:.0}", 1.0 / speed) } else { format!("{speed:.2}") }
+}
+
+/// How much time a motion owes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Pace {
+    /// Simulated seconds a second that are asked for.
+    speed: f64,
+    /// When the last frame was, s.
+    last: Option<f64>,
+    /// Simulated time that is due and not yet stepped, s.
+    owed: f64,
+    /// Since when steps are counted, and the simulated time of those, s.
+    counted: (f64, f64),
+    /// Simulated seconds a second, measured.
+    factor: Option<f64>,
+}
+
+/// Steps of a frame: those that are due, as far as there is time for them, and one at least.
+#[derive(Debug)]
+pub(crate) struct Steps {
+    due: u32,
+    made: u32,
+    begun: Instant,
+}
+
+impl Steps {
+    /// Returns `true` if another step is to be made, and counts it.
+    pub(crate) fn next(&mut self) -> bool {
+        let goes_on = self.made < self.due && (self.made == 0 || self.begun.elapsed() < WORK);
+        self.made += u32::from(goes_on);
+        goes_on
+    }
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Self { speed: 1.0, last: None, owed: 0.0, counted: (0.0, 0.0), factor: None }
+    }
+}
+
+impl Pace {
+    /// Simulated seconds a second that are asked for.
+    pub(crate) fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Asks for so many simulated seconds a second.
+    pub(crate) fn set_speed(&mut self, speed: f64) {
+        self.speed = speed.clamp(SLOWEST, 1.0);
+        self.rest();
+    }
+
+    /// Simulated seconds a second, measured; `None` at rest and before half a second has passed.
+    pub(crate) fn factor(&self) -> Option<f64> {
+        self.factor
+    }
+
+    /// Whether the machine cannot keep up with what is asked for.
+    pub(crate) fn lags(&self) -> bool {
+        self.factor.is_some_and(|factor| factor < 0.9 * self.speed)
+    }
+
+    /// Nothing runs: the time that passes is not owed.
+    pub(crate) fn rest(&mut self) {
+        self.last = None;
+        self.owed = 0.0;
+        self.factor = None;
+    }
+
+    /// The frame at `now`, s, begins: whole steps of this length, s, that are due.
+    fn begin(&mut self, now: f64, step: f64) -> u32 {
+        let Some(last) = self.last.replace(now) else {
+            self.counted = (now, 0.0);
+            // The first frame shows that it runs.
+            return 1;
+        };
+        self.owed += (now - last).clamp(0.0, LONGEST_FRAME) * self.speed;
+        // Owed time that is a hair short of a step is a step: frames of the step's own length give one each.
+        (self.owed / step + 1e-6) as u32
+    }
+
+    /// The frame at `now`, s, begins: steps of this length, s.
+    pub(crate) fn begin_steps(&mut self, now: f64, step: f64) -> Steps {
+        Steps { due: self.begin(now, step), made: 0, begun: Instant::now() }
+    }
+
+    /// The steps of the frame, of this length, s, have been made.
+    pub(crate) fn end_steps(&mut self, steps: &Steps, step: f64) {
+        self.end(steps.due, steps.made, step);
+    }
+
+    /// So many steps were made of those that were due. What is missing is forgotten: a machine that cannot keep up slows
+    /// the motion down.
+    fn end(&mut self, due: u32, made: u32, step: f64) {
+        self.owed = if made < due { 0.0 } else { (self.owed - f64::from(made) * step).max(0.0) };
+        let now = self.last.unwrap_or_default();
+        self.counted.1 += f64::from(made) * step;
+        let (since, simulated) = self.counted;
+        if now - since >= WINDOW {
+            self.factor = Some(simulated / (now - since));
+            self.counted = (now, 0.0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The steps made in four seconds of frames so long, s.
+    fn steps(frame: f64, speed: f64) -> u32 {
+        let mut pace = Pace::default();
+        pace.set_speed(speed);
+        let frames = (4.0 / frame).round() as u32;
+        let mut all = 0;
+        for i in 0..=frames {
+            let due = pace.begin(f64::from(i) * frame, 1.0 / 60.0);
+            pace.end(due, due, 1.0 / 60.0);
+            all += due;
+        }
+        all
+    }
+
+    #[test]
+    fn the_speed_of_a_motion_does_not_depend_on_the_frame_rate() {
+        for frame in [1.0 / 240.0, 1.0 / 144.0, 1.0 / 60.0, 1.0 / 25.0, 0.07] {
+            for (speed, expected) in [(1.0, 240), (0.5, 120), (0.125, 30)] {
+                let made = steps(frame, speed);
+                assert!(made.abs_diff(expected) <= 3, "frames of {frame} s at {speed}: {made} steps, not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_machine_that_cannot_keep_up_slows_the_motion_and_says_so() {
+        let mut pace = Pace::default();
+        let mut made = 0;
+        for i in 0..60 {
+            let due = pace.begin(f64::from(i) * 0.05, 0.01);
+            assert!(due <= 11, "the debt grows: {due} steps are due");
+            let able = due.min(2);
+            pace.end(due, able, 0.01);
+            made += able;
+        }
+        assert!(made < 125);
+        assert!(pace.lags() && pace.factor().is_some_and(|f| (0.3..0.5).contains(&f)), "{pace:?}");
+    }
+
+    #[test]
+    fn a_frame_after_a_long_absence_makes_up_for_little() {
+        let mut pace = Pace::default();
+        let due = pace.begin(0.0, 0.01);
+        pace.end(due, due, 0.01);
+        assert!(pace.begin(3600.0, 0.01) <= 10);
+    }
+    #[test]
+    fn what_vibrates_fast_is_shown_a_period_a_second() {
+        let offered: Vec<String> =
+            [0.5, 10.0, 16.0, 41.3, 4873.0].into_iter().filter_map(speed_of_period).map(fraction).collect();
+        assert_eq!(offered, ["1/41", "1/4900"]);
+        assert_eq!([1.0, 0.125, 0.0].map(fraction), ["1.00", "0.12", "0.00"]);
+        assert!([f64::NAN, f64::INFINITY, -1.0].into_iter().all(|frequency| speed_of_period(frequency).is_none()));
+    }
+}

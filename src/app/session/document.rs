@@ -1,0 +1,152 @@
+//! Where the scene comes from and how it is there: a built-in scene, or a file that is read, written and may change.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use thiserror::Error;
+
+use crate::scene::{self, Scene, SceneError, Source};
+
+/// A scene's place, and the scene that is there.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Document {
+    pub source: Source,
+    /// The scene as it was opened or saved last.
+    pub original: Scene,
+    /// `true` if the scene comes from a file: it is neither built in nor read from a stream.
+    has_file: bool,
+    /// When the file was written last, as far as is known.
+    stamp: Option<SystemTime>,
+}
+
+/// Why a scene was not saved.
+#[derive(Debug, Error)]
+pub(crate) enum SaveError {
+    #[error("the scene could not be written as TOML: {0}")]
+    Toml(#[from] toml::ser::Error),
+    #[error("{path}: {reason}", path = .path.display())]
+    File { path: PathBuf, reason: std::io::Error },
+}
+
+impl Document {
+    pub(crate) fn new(source: Source, original: Scene) -> Self {
+        let has_file = source.built_in().is_none() && !source.is_stream();
+        let mut document = Self { source, original, has_file, stamp: None };
+        document.stamp = document.path().and_then(written);
+        document
+    }
+
+    /// Opens a scene.
+    ///
+    /// # Errors
+    /// [`SceneError`].
+    pub(crate) fn open(source: Source) -> Result<Self, SceneError> {
+        let original = scene::open(&source)?;
+        Ok(Self::new(source, original))
+    }
+
+    /// The scene's file; `None` for a built-in scene, and for one that came from a stream.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        self.has_file.then_some(self.source.name.as_path())
+    }
+
+    /// Whether the file has been written since it was read or saved here.
+    pub(crate) fn has_changed(&self) -> bool {
+        self.path().and_then(written).is_some_and(|now| Some(now) != self.stamp)
+    }
+
+    /// The file as it is now is known, and not wanted.
+    pub(crate) fn ignore_change(&mut self) {
+        self.stamp = self.path().and_then(written);
+    }
+
+    /// Writes a scene to a file, which it comes from then. A mesh that is found beside the file it came from is named by
+    /// its whole path where the new file is elsewhere.
+    ///
+    /// # Errors
+    /// [`SaveError`]; the file is as it was then.
+    pub(crate) fn save(&self, scene: &Scene, path: &Path) -> Result<Self, SaveError> {
+        let mut scene = scene.clone();
+        let folder =
+            |path: &Path| path.parent().map(|folder| std::path::absolute(folder.join("."))).and_then(Result::ok);
+        let before = self.path().and_then(folder);
+        if let (Some(mesh), Some(before)) =
+            (&mut scene.mesh, before.filter(|before| Some(before) != folder(path).as_ref()))
+            && before.join(&mesh.file).is_file()
+            && let Some(whole) = before.join(&mesh.file).to_str()
+        {
+            mesh.file = whole.to_owned();
+        }
+        let toml = scene.to_toml()?;
+        write_whole(path, toml.as_bytes()).map_err(|reason| SaveError::File { path: path.to_owned(), reason })?;
+        Ok(Self::new(Source { name: path.to_owned(), assignments: Vec::new() }, scene))
+    }
+}
+
+/// When a file was written last.
+fn written(path: &Path) -> Option<SystemTime> {
+    std::fs::metadata(path).and_then(|m| m.modified()).ok()
+}
+
+/// Writes a file beside its place and moves it there: whoever reads it sees the old one or the new one, all of it.
+///
+/// # Errors
+/// The system's; what was there is unchanged then.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_beside(path, bytes, true)
+}
+
+/// [`write_whole`] without waiting for the disk: the file outlives a crash of the program, not of the machine.
+///
+/// # Errors
+/// The system's; what was there is unchanged then.
+pub(crate) fn write_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_beside(path, bytes, false)
+}
+
+fn write_beside(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
+    // Through a link, the file that it leads to is written.
+    let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let name = path.file_name().ok_or(std::io::ErrorKind::InvalidInput)?;
+    let mut beside = std::ffi::OsString::from(".");
+    beside.push(name);
+    beside.push(format!(".{}.part", std::process::id()));
+    let beside = path.with_file_name(beside);
+    let write = || {
+        let mut file = std::fs::File::create(&beside)?;
+        file.write_all(bytes)?;
+        if syncs {
+            file.sync_all()?;
+        }
+        if let Ok(before) = std::fs::metadata(&path) {
+            file.set_permissions(before.permissions())?;
+        }
+        drop(file);
+        std::fs::rename(&beside, &path)
+    };
+    write().inspect_err(|_| drop(std::fs::remove_file(&beside)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_that_cannot_be_written_leaves_the_file_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        write_whole(&path, b"one").unwrap();
+        write_whole(&path, b"two").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"two");
+        // A folder is in the way.
+        let taken = folder.path().join("taken");
+        std::fs::create_dir_all(taken.join("inside")).unwrap();
+        assert!(write_whole(&taken, b"three").is_err());
+        assert!(write_whole(&folder.path().join("nowhere/scene.toml"), b"three").is_err());
+        // Nothing is left beside.
+        let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        assert_eq!(names, ["scene.toml", "taken"]);
+    }
+}

@@ -1,0 +1,132 @@
+//! The last seconds of a motion, to go back to.
+
+use std::collections::VecDeque;
+
+use crate::simulation::{Moment, Simulation};
+
+/// Most moments that are kept: fifteen seconds of play at 60 a second.
+const MOST_MOMENTS: usize = 900;
+
+/// Moments of a motion in the order of time.
+#[derive(Debug, Default)]
+pub(crate) struct Past {
+    moments: VecDeque<Moment>,
+    /// Moments that are no longer of use, to be filled again.
+    spare: Vec<Moment>,
+}
+
+impl Past {
+    /// Adds where a motion is now, and forgets the oldest moments beyond so many bytes. Nothing of a search.
+    pub(crate) fn record(&mut self, simulation: &Simulation, most_bytes: usize) {
+        let now = simulation.state().time();
+        if self.moments.back().is_some_and(|last| last.state().time() == now) {
+            return;
+        }
+        if let Some(bytes) = self.moments.front().map(Moment::bytes) {
+            let most = (most_bytes / bytes.max(1)).min(MOST_MOMENTS);
+            while self.moments.len() >= most.max(1) {
+                self.spare.extend(self.moments.pop_front());
+            }
+            self.spare.truncate(1);
+            if most == 0 {
+                self.clear();
+                return;
+            }
+        }
+        let recorded = match self.spare.pop() {
+            Some(mut moment) => {
+                simulation.copy_moment(&mut moment);
+                Some(moment)
+            }
+            None => simulation.moment(),
+        };
+        self.moments.extend(recorded);
+    }
+
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Forgets what came after a time, s.
+    pub(crate) fn forget_after(&mut self, time: f64) {
+        self.moments.truncate(self.moments.partition_point(|moment| moment.state().time() <= time));
+    }
+
+    /// Moments, the oldest first.
+    pub(crate) fn moments(&self) -> &VecDeque<Moment> {
+        &self.moments
+    }
+
+    /// The moment at a time, s, exactly.
+    pub(crate) fn at(&self, time: f64) -> Option<&Moment> {
+        let after = self.moments.partition_point(|moment| moment.state().time() < time);
+        self.moments.get(after).filter(|moment| moment.state().time() == time)
+    }
+
+    /// The time of the moment that is nearest to a time, s.
+    pub(crate) fn nearest(&self, time: f64) -> Option<f64> {
+        let after = self.moments.partition_point(|moment| moment.state().time() < time);
+        let near = self.moments.range(after.saturating_sub(1)..self.moments.len().min(after + 1));
+        near.map(|moment| moment.state().time()).min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()))
+    }
+
+    /// The time, s, of the last moment before a time, or of the first one after it.
+    pub(crate) fn neighbour(&self, time: f64, forward: bool) -> Option<f64> {
+        let at = if forward {
+            self.moments.partition_point(|moment| moment.state().time() <= time)
+        } else {
+            self.moments.partition_point(|moment| moment.state().time() < time).checked_sub(1)?
+        };
+        self.moments.get(at).map(|moment| moment.state().time())
+    }
+
+    #[cfg(test)]
+    fn bytes(&self) -> usize {
+        self.moments.iter().chain(&self.spare).map(Moment::bytes).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{IntegratorKind, Scene};
+
+    /// A past of steps of 1 s under a bound of memory, in moments; and the bytes of one.
+    fn after(steps: u32, most: usize) -> (Past, usize) {
+        let scene = Scene::beam(2.0, 1.0).clamp("left").moving(IntegratorKind::TrBdf2, 1.0);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let bytes = simulation.moment().unwrap().bytes();
+        let mut past = Past::default();
+        for _ in 0..steps {
+            past.record(&simulation, most * bytes);
+            // Nothing has moved on.
+            past.record(&simulation, most * bytes);
+            simulation.step();
+            assert!(past.bytes() <= most.max(1) * bytes, "{} bytes", past.bytes());
+        }
+        (past, bytes)
+    }
+
+    #[test]
+    fn memory_and_count_are_bounded() {
+        let (past, _) = after(20, 7);
+        let times: Vec<f64> = past.moments().iter().map(|moment| moment.state().time()).collect();
+        assert_eq!(times, [13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0], "the last seven");
+        assert!(after(20, 0).0.moments().len() <= 1, "no room for two");
+        assert_eq!(after(1000, 5000).0.moments().len(), MOST_MOMENTS);
+    }
+
+    #[test]
+    fn moments_are_found_by_their_time() {
+        let (mut past, _) = after(10, 100);
+        assert_eq!([-3.0, 4.4, 4.6, 30.0].map(|time| past.nearest(time)), [0.0, 4.0, 5.0, 9.0].map(Some));
+        assert_eq!((past.neighbour(4.0, false), past.neighbour(4.0, true)), (Some(3.0), Some(5.0)));
+        assert_eq!((past.neighbour(0.0, false), past.neighbour(9.0, true)), (None, None));
+        assert!(past.at(4.0).is_some() && past.at(4.5).is_none());
+        past.forget_after(4.0);
+        assert_eq!(past.nearest(30.0), Some(4.0));
+        past.clear();
+        assert_eq!((past.nearest(1.0), past.bytes()), (None, 0));
+    }
+}

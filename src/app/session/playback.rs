@@ -1,0 +1,365 @@
+//! A motion in the window: its pace, its past, the place to go back to, and the same motion under other integrators.
+
+use nalgebra::Vector2;
+
+use crate::app::session::clock::Pace;
+use crate::app::session::history::History;
+use crate::app::session::past::Past;
+use crate::mesh::MaterialPoint;
+use crate::scene::{Analysis, IntegratorKind, Scene};
+use crate::simulation::{Motion, Simulation, Status};
+use crate::state::State;
+
+/// Memory that the last seconds of everything that moves may take, bytes.
+const MOST_BYTES: usize = 64 << 20;
+/// Least time of play between two moments that are kept, s: a frame at 60 a second, less rounding.
+const BETWEEN_MOMENTS: f64 = 1.0 / 61.0;
+
+/// The same motion under another integrator, to be compared.
+#[derive(Debug)]
+pub(crate) struct Companion {
+    pub integrator: IntegratorKind,
+    pub simulation: Simulation,
+    pub history: History,
+    past: Past,
+    /// `true` while the body is shown at a moment at which this motion had not been added.
+    pub is_absent: bool,
+}
+
+/// What a window of moving things has beside the body.
+#[derive(Debug, Default)]
+pub(crate) struct Playback {
+    pub pace: Pace,
+    pub history: History,
+    /// Moments of the last seconds.
+    past: Past,
+    /// Time of the moment that is shown, s, where it is not the latest.
+    shown: Option<f64>,
+    /// Seconds of play since the start: simulated time over speed.
+    played: f64,
+    /// Seconds of play until the last moment that was kept.
+    kept: f64,
+    /// Where a reset goes, in place of the start.
+    here: Option<State>,
+    companions: Vec<Companion>,
+    /// Integrators that became unstable and were taken out of the comparison since this was last asked for, with their longest
+    /// stable step, s, where they have one.
+    unstable: Vec<(IntegratorKind, Option<f64>)>,
+}
+
+impl Playback {
+    /// Makes the time steps that are due at `now`, s.
+    pub(crate) fn advance(&mut self, now: f64, simulation: &mut Simulation) {
+        let step = simulation.scene().dynamics.time_step;
+        let mut steps = self.pace.begin_steps(now, step);
+        while steps.next() {
+            self.make_step(simulation);
+            if simulation.is_at_rest() && !self.companions_move() {
+                break;
+            }
+        }
+        self.pace.end_steps(&steps, step);
+        if self.played - self.kept >= BETWEEN_MOMENTS {
+            self.keep_moment(simulation);
+        }
+    }
+
+    /// One time step of everything that moves.
+    pub(crate) fn step(&mut self, simulation: &mut Simulation) {
+        self.make_step(simulation);
+        self.keep_moment(simulation);
+    }
+
+    fn make_step(&mut self, simulation: &mut Simulation) {
+        self.forget_future();
+        if self.history.samples().is_empty() {
+            self.history.record(simulation);
+            self.keep_moment(simulation);
+        }
+        let before = simulation.state().time();
+        simulation.step();
+        self.played += (simulation.state().time() - before) / self.pace.speed();
+        self.history.record(simulation);
+        for companion in &mut self.companions {
+            companion.simulation.step();
+            companion.history.record(&companion.simulation);
+        }
+        // Its energies would set the axes of everything else.
+        let unstable = &mut self.unstable;
+        self.companions.retain(|companion| {
+            let stopped = matches!(companion.simulation.status(), Status::Stopped(_));
+            if stopped {
+                let step = companion.simulation.motion().and_then(Motion::critical_step);
+                unstable.push((companion.integrator, step));
+            }
+            !stopped
+        });
+    }
+
+    /// Keeps the present moment of everything that moves.
+    fn keep_moment(&mut self, simulation: &Simulation) {
+        let most_bytes = MOST_BYTES / (1 + self.companions.len());
+        self.past.record(simulation, most_bytes);
+        for companion in self.companions.iter_mut().filter(|companion| !companion.is_absent) {
+            companion.past.record(&companion.simulation, most_bytes);
+        }
+        self.kept = self.played;
+    }
+
+    /// Times of the first and the last moment that can be shown, s; `None` where there is one at most.
+    pub(crate) fn span(&self) -> Option<[f64; 2]> {
+        let moments = self.past.moments();
+        let ends = [moments.front()?.state().time(), moments.back()?.state().time()];
+        (ends[0] < ends[1]).then_some(ends)
+    }
+
+    /// Time of the moment that is shown, s, where it is not the latest.
+    pub(crate) fn shown_time(&self) -> Option<f64> {
+        self.shown
+    }
+
+    /// Seconds of play since the start.
+    pub(crate) fn played(&self) -> f64 {
+        self.played
+    }
+
+    /// Shows the moment next to a time, s. What came after it stays until the next step.
+    pub(crate) fn show_moment(&mut self, time: f64, simulation: &mut Simulation) {
+        self.keep_latest(simulation);
+        let Some(time) = self.past.nearest(time) else { return };
+        self.show_exactly(time, simulation);
+    }
+
+    /// Shows the moment before the one that is shown, or the one after it. Returns `false` where there is none.
+    pub(crate) fn show_neighbour(&mut self, forward: bool, simulation: &mut Simulation) -> bool {
+        self.keep_latest(simulation);
+        let Some(time) = self.past.neighbour(simulation.state().time(), forward) else { return false };
+        self.show_exactly(time, simulation);
+        true
+    }
+
+    fn keep_latest(&mut self, simulation: &Simulation) {
+        if self.shown.is_none() && !self.history.samples().is_empty() {
+            self.keep_moment(simulation);
+        }
+    }
+
+    fn show_exactly(&mut self, time: f64, simulation: &mut Simulation) {
+        // The pointer holds a body of another moment.
+        simulation.release();
+        self.release();
+        let Some(moment) = self.past.at(time) else { return };
+        if simulation.return_to(moment).is_err() {
+            return;
+        }
+        self.shown = (self.span().is_some_and(|[_, last]| time < last)).then_some(time);
+        for companion in &mut self.companions {
+            let moment = companion.past.at(time);
+            companion.is_absent = moment.is_none_or(|moment| companion.simulation.return_to(moment).is_err());
+        }
+    }
+
+    /// Forgets what came after the moment that is shown. Motions that had not been added then begin there.
+    fn forget_future(&mut self) {
+        let shown = self.shown.take();
+        let is_whole = self.companions.iter().all(|companion| !companion.is_absent);
+        let latest = self.past.moments().back().map(|moment| moment.state().time()).filter(|_| !is_whole);
+        let Some(time) = shown.or(latest) else { return };
+        self.past.forget_after(time);
+        self.history.forget_after(time);
+        let here = self.past.at(time);
+        for companion in &mut self.companions {
+            companion.past.forget_after(time);
+            companion.history.forget_after(time);
+            if let Some(here) = here.filter(|_| companion.is_absent) {
+                // It is a state of the same body.
+                let _ = companion.simulation.restore(here.state());
+                companion.is_absent = false;
+            }
+        }
+    }
+
+    fn forget_past(&mut self) {
+        self.past.clear();
+        self.companions.iter_mut().for_each(|companion| companion.past.clear());
+        (self.shown, self.kept) = (None, self.played);
+    }
+
+    /// Takes the integrators that became unstable since the last call, with their longest stable step, s.
+    pub(crate) fn take_unstable(&mut self) -> Vec<(IntegratorKind, Option<f64>)> {
+        std::mem::take(&mut self.unstable)
+    }
+
+    /// The same motion under other integrators.
+    pub(crate) fn companions(&self) -> &[Companion] {
+        &self.companions
+    }
+
+    /// Whether one of these moves still.
+    pub(crate) fn companions_move(&self) -> bool {
+        self.companions.iter().any(|c| !c.simulation.is_at_rest())
+    }
+
+    /// Back to the start of the scene, or to the place that was marked.
+    pub(crate) fn reset(&mut self, simulation: &mut Simulation) {
+        let here = self.here.clone();
+        let bodies = std::iter::once(simulation).chain(self.companions.iter_mut().map(|c| &mut c.simulation));
+        for body in bodies {
+            body.reset();
+            if let Some(here) = &here {
+                // A mark of a body that is no more was forgotten with it.
+                let _ = body.restore(here);
+            }
+        }
+        self.start_anew();
+    }
+
+    /// A reset goes to where the body is now, from now on; or to the start again.
+    pub(crate) fn mark(&mut self, simulation: &Simulation) {
+        self.here = if self.here.is_none() { Some(simulation.state().clone()) } else { None };
+    }
+
+    /// Whether a reset goes to a marked place.
+    pub(crate) fn is_marked(&self) -> bool {
+        self.here.is_some()
+    }
+
+    fn start_anew(&mut self) {
+        self.history.clear();
+        self.companions.iter_mut().for_each(|c| {
+            c.history.clear();
+            c.is_absent = false;
+        });
+        self.forget_past();
+        self.pace.rest();
+    }
+
+    /// The scene under the body has changed; `is_another` says whether the body has. The moments before were another
+    /// scene's.
+    pub(crate) fn follow(&mut self, scene: &Scene, is_another: bool) {
+        self.forget_future();
+        self.forget_past();
+        if is_another {
+            self.here = None;
+            self.start_anew();
+        }
+        let moves = scene.analysis == Analysis::Dynamic;
+        self.companions.retain_mut(|c| {
+            let differs = c.integrator != scene.dynamics.integrator;
+            moves && differs && c.simulation.change_scene(&with(scene, c.integrator)).is_ok()
+        });
+    }
+
+    /// Shows the same motion under another integrator, from where the body is now; or no longer.
+    pub(crate) fn toggle(&mut self, kind: IntegratorKind, simulation: &Simulation) {
+        let before = self.companions.len();
+        self.companions.retain(|c| c.integrator != kind);
+        if self.companions.len() == before {
+            self.add(kind, simulation);
+        }
+    }
+
+    fn add(&mut self, integrator: IntegratorKind, simulation: &Simulation) {
+        let scene = with(simulation.scene(), integrator);
+        // On the body's own equations: nothing of them is made twice.
+        let Ok(mut companion) = Simulation::with_system(&scene, simulation.system().clone()) else { return };
+        if companion.restore(simulation.state()).is_ok() {
+            let (history, past) = (History::default(), Past::default());
+            self.companions.push(Companion { integrator, simulation: companion, history, past, is_absent: false });
+            self.companions.last_mut().into_iter().for_each(|c| c.past.record(&c.simulation, MOST_BYTES));
+        }
+    }
+
+    /// Takes hold of the same point of everything that moves.
+    pub(crate) fn grab(&mut self, point: MaterialPoint) {
+        for companion in &mut self.companions {
+            companion.simulation.grab(point);
+        }
+    }
+
+    /// Pulls everything to the same place.
+    pub(crate) fn pull_to(&mut self, place: Vector2<f64>) {
+        for companion in &mut self.companions {
+            // A pointer has a finite place.
+            let _ = companion.simulation.pull_to(place);
+        }
+    }
+
+    /// Lets everything go.
+    pub(crate) fn release(&mut self) {
+        self.companions.iter_mut().for_each(|c| c.simulation.release());
+    }
+}
+
+fn with(scene: &Scene, integrator: IntegratorKind) -> Scene {
+    let mut scene = scene.clone();
+    scene.dynamics.integrator = integrator;
+    scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::INTEGRATORS;
+
+    /// A beam that falls, compared with another integrator after five steps of ten.
+    fn falling(kind: IntegratorKind) -> (Playback, Simulation, Vec<[State; 2]>) {
+        let scene = Scene::beam(2.0, 0.5).clamp("left").gravity([0.0, -9.81]).moving(kind, 0.01);
+        let (mut playback, mut simulation) = (Playback::default(), Simulation::new(&scene).unwrap());
+        (0..5).for_each(|_| playback.step(&mut simulation));
+        playback.toggle(IntegratorKind::ImplicitEuler, &simulation);
+        let mut states = Vec::new();
+        for _ in 0..5 {
+            playback.step(&mut simulation);
+            let companion = playback.companions()[0].simulation.state().clone();
+            states.push([simulation.state().clone(), companion]);
+        }
+        (playback, simulation, states)
+    }
+
+    #[test]
+    fn everything_goes_back_to_the_same_moment() {
+        // The steps are too long for an explicit one.
+        for integrator in INTEGRATORS.iter().filter(|entry| !entry.is_explicit()) {
+            let (mut playback, mut simulation, states) = falling(integrator.kind);
+            for [own, other] in states.iter().rev() {
+                playback.show_moment(own.time(), &mut simulation);
+                assert!(simulation.state() == own, "{}: {}", integrator.id, own.time());
+                let companion = &playback.companions()[0];
+                assert!(!companion.is_absent && companion.simulation.state() == other, "{}", own.time());
+                let at_present = own.time() == states[4][0].time();
+                assert_eq!(playback.shown_time().is_none(), at_present);
+            }
+            // On from there both take the steps that they took.
+            playback.show_moment(states[2][0].time(), &mut simulation);
+            playback.step(&mut simulation);
+            let distance = |a: &State, b: &State| (a.displacement()[1] - b.displacement()[1]).norm();
+            assert!(distance(simulation.state(), &states[3][0]) < 1e-9, "{}", integrator.id);
+            assert!(distance(playback.companions()[0].simulation.state(), &states[3][1]) < 1e-9);
+            assert_eq!(playback.span().map(|span| span[1]), Some(simulation.state().time()), "the future is gone");
+            assert_eq!(playback.history.samples().back().map(|s| s.time), Some(simulation.state().time()));
+        }
+    }
+
+    #[test]
+    fn a_companion_is_absent_before_it_was_added() {
+        let (mut playback, mut simulation, _) = falling(IntegratorKind::TrBdf2);
+        playback.show_moment(0.02, &mut simulation);
+        assert!(playback.companions()[0].is_absent);
+        playback.step(&mut simulation);
+        let is_along = |playback: &Playback, simulation: &Simulation| {
+            let companion = &playback.companions()[0];
+            !companion.is_absent && companion.simulation.state().time() == simulation.state().time()
+        };
+        assert!(is_along(&playback, &simulation));
+        // Added in the past, it begins at the latest moment where that goes on.
+        playback.toggle(IntegratorKind::ImplicitEuler, &simulation);
+        playback.step(&mut simulation);
+        playback.show_moment(0.01, &mut simulation);
+        playback.toggle(IntegratorKind::ImplicitEuler, &simulation);
+        playback.show_moment(1.0, &mut simulation);
+        assert!(playback.companions()[0].is_absent && playback.shown_time().is_none());
+        playback.step(&mut simulation);
+        assert!(is_along(&playback, &simulation));
+    }
+}

@@ -1,0 +1,240 @@
+//! A copy of unsaved edits in the settings folder, which outlives a crash: the next window offers it.
+//!
+//! Every window locks a numbered place of its own, so that windows that are open at the same time leave each other's
+//! copies alone. A copy whose place nobody locks belongs to a window that has crashed.
+
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::app::session::document::{Document, write_without_sync};
+use crate::scene::{Scene, SceneError, Source};
+
+/// Number of windows that may be open or have crashed.
+const PLACES: usize = 100;
+/// Shortest time between two writes.
+const PAUSE: Duration = Duration::from_secs(1);
+/// Time after a failure before another attempt.
+const AFTER_FAILURE: Duration = Duration::from_secs(30);
+
+/// An edited scene, and the scene as it was opened or saved last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unsaved {
+    pub(crate) document: Document,
+    pub(crate) scene: Scene,
+}
+
+/// Why a copy cannot be read.
+#[derive(Debug, Error)]
+enum CopyError {
+    #[error(transparent)]
+    File(#[from] io::Error),
+    #[error(transparent)]
+    Toml(#[from] toml::de::Error),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+/// Form of a copy in its file.
+#[derive(Deserialize, Serialize)]
+struct Copy {
+    /// Built-in name or absolute path of the scene.
+    name: String,
+    assignments: Vec<String>,
+    /// Scene as it was opened or saved last, TOML.
+    original: String,
+    /// Scene with its edits, TOML.
+    scene: String,
+}
+
+/// Writes an edited scene to a file.
+///
+/// # Errors
+/// The system's; what was there is unchanged then.
+fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
+    let Source { name, assignments } = &document.source;
+    let name = if document.path().is_some() { std::path::absolute(name)? } else { name.clone() };
+    let copy = Copy {
+        name: name.to_string_lossy().into_owned(),
+        assignments: assignments.clone(),
+        original: document.original.to_toml().map_err(io::Error::other)?,
+        scene: scene.to_toml().map_err(io::Error::other)?,
+    };
+    write_without_sync(file, toml::to_string(&copy).map_err(io::Error::other)?.as_bytes())
+}
+
+impl Unsaved {
+    /// Reads edits from a file.
+    fn read(file: &Path) -> Result<Self, CopyError> {
+        let copy: Copy = toml::from_str(&std::fs::read_to_string(file)?)?;
+        let name = PathBuf::from(copy.name);
+        let folder = name.parent().unwrap_or(Path::new("")).to_owned();
+        let original = Scene::from_toml_in(&copy.original, &folder)?;
+        let scene = Scene::from_toml_in(&copy.scene, &folder)?;
+        let document = Document::new(Source { name, assignments: copy.assignments }, original);
+        Ok(Self { document, scene })
+    }
+}
+
+/// Place of this window's copy, and the copy that a crashed window has left.
+#[derive(Debug)]
+pub struct Recovery {
+    place: Place,
+    /// Edits that the file has.
+    written: Option<Unsaved>,
+    /// Time of the last write, or of the last attempt.
+    last: Option<Instant>,
+    left: Option<Place>,
+    /// `true` once the copy of the crashed window is not needed any more.
+    forgets_left: bool,
+}
+
+/// A numbered file, locked as long as this lives.
+#[derive(Debug)]
+struct Place {
+    file: PathBuf,
+    _lock: File,
+}
+
+impl Place {
+    /// Locks a place; `None` where another window has it.
+    fn lock(folder: &Path, number: usize) -> io::Result<Option<Self>> {
+        let lock = folder.join(format!("{number}.lock"));
+        let lock = OpenOptions::new().create(true).truncate(false).write(true).open(lock)?;
+        match lock.try_lock() {
+            Ok(()) => Ok(Some(Self { file: folder.join(format!("{number}.toml")), _lock: lock })),
+            Err(std::fs::TryLockError::WouldBlock) => Ok(None),
+            Err(std::fs::TryLockError::Error(error)) => Err(error),
+        }
+    }
+}
+
+impl Recovery {
+    /// Finds a place in this folder, which is made where there is none, and the edits that a crashed window has left there.
+    ///
+    /// # Errors
+    /// The system's; or all places are taken.
+    pub fn open(folder: &Path) -> io::Result<(Self, Option<Unsaved>)> {
+        std::fs::create_dir_all(folder)?;
+        let mut left = None;
+        for number in 0..PLACES {
+            let Some(place) = Place::lock(folder, number)? else { continue };
+            if !place.file.exists() {
+                let (left, edits) = left.unzip();
+                return Ok((Self { place, written: None, last: None, left, forgets_left: false }, edits));
+            }
+            if left.is_none() {
+                match Unsaved::read(&place.file) {
+                    Ok(edits) => left = Some((place, edits)),
+                    // It stays where it is, for who can mend it.
+                    Err(error) => log::warn!("{}: {error}", place.file.display()),
+                }
+            }
+        }
+        Err(io::Error::other(format!("{} has {PLACES} copies of unsaved scenes", folder.display())))
+    }
+
+    /// Writes the edits if the file has others, or removes the file where there are none. Returns when to ask again,
+    /// where it is too early to write.
+    ///
+    /// # Errors
+    /// The system's.
+    pub(crate) fn keep(&mut self, edits: Option<(&Document, &Scene)>) -> io::Result<Option<Instant>> {
+        if self.written.as_ref().map(|written| (&written.document, &written.scene)) != edits {
+            let due = self.last.map(|last| last + PAUSE).filter(|due| *due > Instant::now());
+            if due.is_some() && edits.is_some() {
+                return Ok(due);
+            }
+            // A failure is not repeated at once.
+            self.last = Some(Instant::now() + AFTER_FAILURE);
+            match edits {
+                Some((document, scene)) => write(document, scene, &self.place.file)?,
+                None => remove(&self.place.file)?,
+            }
+            self.last = Some(Instant::now());
+            self.written = edits.map(|(document, scene)| Unsaved { document: document.clone(), scene: scene.clone() });
+        }
+        if self.forgets_left
+            && let Some(place) = self.left.take()
+        {
+            remove(&place.file)?;
+        }
+        Ok(None)
+    }
+
+    /// Lets the next [`Self::keep`] remove the copy that a crashed window has left, once this window's own edits are written.
+    pub fn forget_left(&mut self) {
+        self.forgets_left = true;
+    }
+}
+
+/// Removes a file, if it is still there.
+fn remove(file: &Path) -> io::Result<()> {
+    match std::fs::remove_file(file) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene;
+
+    impl Unsaved {
+        fn parts(&self) -> Option<(&Document, &Scene)> {
+            Some((&self.document, &self.scene))
+        }
+    }
+
+    fn edits(name: &str, force: f64) -> Unsaved {
+        let source = Source { name: name.into(), assignments: Vec::new() };
+        let original = scene::open(&source).unwrap();
+        let mut scene = original.clone();
+        scene.set_force(0, [0.0, force]).unwrap();
+        Unsaved { document: Document::new(source, original), scene }
+    }
+
+    #[test]
+    fn a_crashed_windows_edits_are_offered_once_and_an_open_windows_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path().join("unsaved");
+        let (mut crashed, left) = Recovery::open(&folder).unwrap();
+        assert_eq!(left, None);
+        assert_eq!(crashed.keep(edits("article", -3.0).parts()).unwrap(), None);
+        let (mut other, left) = Recovery::open(&folder).unwrap();
+        assert_eq!(left, None, "the first window is still open");
+        other.keep(edits("cantilever", -2.0).parts()).unwrap();
+        other.keep(None).unwrap();
+        drop((crashed, other));
+        let (mut next, left) = Recovery::open(&folder).unwrap();
+        assert_eq!(left, Some(edits("article", -3.0)));
+        let (_, left) = Recovery::open(&folder).unwrap();
+        assert_eq!(left, None, "another window offers it");
+        next.forget_left();
+        next.keep(edits("article", -3.0).parts()).unwrap();
+        next.keep(None).unwrap();
+        drop(next);
+        let (_, left) = Recovery::open(&folder).unwrap();
+        assert_eq!(left, None);
+    }
+
+    #[test]
+    fn a_copy_is_not_written_at_every_frame_and_one_that_cannot_be_read_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut window, _) = Recovery::open(folder.path()).unwrap();
+        window.keep(edits("article", -3.0).parts()).unwrap();
+        assert!(window.keep(edits("article", -4.0).parts()).unwrap().is_some());
+        let file = window.place.file.clone();
+        assert_eq!(Unsaved::read(&file).unwrap(), edits("article", -3.0));
+        drop(window);
+        std::fs::write(&file, "name = 3").unwrap();
+        let (window, left) = Recovery::open(folder.path()).unwrap();
+        assert_eq!(left, None);
+        assert!(file.exists() && window.place.file != file);
+    }
+}

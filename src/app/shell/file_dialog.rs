@@ -1,0 +1,197 @@
+//! A dialog that asks for a scene file: a path to type, the files of its folder to click, and those used last.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Context, Key, Modal, RichText, ScrollArea, TextEdit};
+
+use crate::app::language::{fill, tr, translated};
+
+/// What the file is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    Open,
+    Save,
+}
+
+/// What was answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// No file.
+    Cancel,
+    /// This one.
+    File(PathBuf),
+}
+
+/// The dialog.
+#[derive(Debug)]
+pub(crate) struct FileDialog {
+    pub purpose: Purpose,
+    folder: PathBuf,
+    text: String,
+    folders: Vec<String>,
+    files: Vec<String>,
+    message: Option<String>,
+    /// A file that is there and that is to be written over when it is asked for once more.
+    replaced: Option<PathBuf>,
+    is_new: bool,
+}
+
+impl FileDialog {
+    /// Asks for a file, at first in the folder of `near`.
+    pub(crate) fn new(purpose: Purpose, near: Option<&Path>, name: &str) -> Self {
+        let folder = near.and_then(Path::parent).filter(|folder| folder.is_dir());
+        let folder = std::path::absolute(folder.unwrap_or(Path::new("."))).unwrap_or_default();
+        let mut dialog = Self {
+            purpose,
+            folder: PathBuf::new(),
+            text: name.to_owned(),
+            folders: Vec::new(),
+            files: Vec::new(),
+            message: None,
+            replaced: None,
+            is_new: true,
+        };
+        dialog.enter(folder);
+        dialog
+    }
+
+    /// Lists a folder.
+    fn enter(&mut self, folder: PathBuf) {
+        (self.folders, self.files) = (Vec::new(), Vec::new());
+        match std::fs::read_dir(&folder) {
+            Ok(entries) => {
+                for entry in entries.flatten() {
+                    let Ok(name) = entry.file_name().into_string() else { continue };
+                    let path = entry.path();
+                    if name.starts_with('.') {
+                        continue;
+                    }
+                    if path.is_dir() {
+                        self.folders.push(name);
+                    } else if path.extension().is_some_and(|e| e == "toml") {
+                        self.files.push(name);
+                    }
+                }
+                self.folders.sort();
+                self.files.sort();
+                self.message = None;
+                self.folder = folder;
+            }
+            Err(error) => self.message = Some(format!("{}: {error}", folder.display())),
+        }
+    }
+
+    /// Says that a file cannot be used; the dialog stays.
+    pub(crate) fn refuse(&mut self, message: String) {
+        self.message = Some(translated(&message));
+    }
+
+    /// Takes the typed path: a folder is entered, a file is the answer.
+    fn accept(&mut self) -> Option<Answer> {
+        let typed = self.text.trim();
+        if typed.is_empty() {
+            self.message = Some(tr("expected the name of a scene file").to_owned());
+            return None;
+        }
+        let mut path = self.folder.join(typed);
+        if path.is_dir() {
+            self.text.clear();
+            self.enter(path);
+            return None;
+        }
+        if self.purpose == Purpose::Save {
+            if path.extension().is_none() {
+                path.set_extension("toml");
+            }
+            if path.exists() && self.replaced.as_ref() != Some(&path) {
+                self.message = Some(fill!("%{file} exists: Replace writes over it", file = path.display()));
+                self.replaced = Some(path);
+                return None;
+            }
+        }
+        Some(Answer::File(path))
+    }
+
+    /// Shows it; returns the answer once there is one.
+    pub(crate) fn show(&mut self, ctx: &Context, recent: &[PathBuf]) -> Option<Answer> {
+        let (title, verb) = match self.purpose {
+            Purpose::Open => ("Open a scene", "Open"),
+            Purpose::Save => ("Save the scene", if self.replaced.is_some() { "Replace" } else { "Save" }),
+        };
+        let mut answer = None;
+        let mut chosen: Option<PathBuf> = None;
+        let mut entered: Option<PathBuf> = None;
+        let modal = Modal::new(egui::Id::unique("file dialog")).show(ctx, |ui| {
+            ui.set_width(ui.available_width().min(460.0));
+            ui.heading(tr(title));
+            ui.add_space(6.0);
+            ui.add(egui::Label::new(RichText::new(self.folder.display().to_string()).weak()).truncate());
+            let label = ui.label(tr("File"));
+            let edit = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY).hint_text("scene.toml");
+            let edit = ui.add(edit).labelled_by(label.id);
+            if std::mem::take(&mut self.is_new) {
+                edit.request_focus();
+            }
+            if edit.changed() {
+                self.replaced = None;
+            }
+            let entered_key = edit.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+            ui.add_space(4.0);
+            ScrollArea::vertical().max_height(220.0).auto_shrink([false, true]).show(ui, |ui| {
+                if let Some(above) = self.folder.parent()
+                    && ui.selectable_label(false, "../").clicked()
+                {
+                    entered = Some(above.to_owned());
+                }
+                for name in &self.folders {
+                    if ui.selectable_label(false, format!("{name}/")).clicked() {
+                        entered = Some(self.folder.join(name));
+                    }
+                }
+                for name in &self.files {
+                    let row = ui.selectable_label(*name == self.text, name);
+                    if row.clicked() {
+                        self.text.clone_from(name);
+                        self.replaced = None;
+                    }
+                    if row.double_clicked() {
+                        chosen = Some(self.folder.join(name));
+                    }
+                }
+                if self.purpose == Purpose::Open && !recent.is_empty() {
+                    ui.separator();
+                    ui.label(RichText::new(tr("Used last")).weak());
+                    for path in recent {
+                        if ui.selectable_label(false, path.display().to_string()).clicked() {
+                            chosen = Some(path.clone());
+                        }
+                    }
+                }
+            });
+            if let Some(message) = &self.message {
+                ui.add_space(4.0);
+                let color = ui.visuals().error_fg_color;
+                ui.add(egui::Label::new(RichText::new(message).color(color)).wrap());
+            }
+            ui.add_space(8.0);
+            ui.horizontal(|ui| {
+                if ui.button(tr(verb)).clicked() || entered_key {
+                    answer = self.accept();
+                }
+                if ui.button(tr("Cancel")).clicked() {
+                    answer = Some(Answer::Cancel);
+                }
+            });
+        });
+        if let Some(folder) = entered {
+            self.enter(folder);
+        }
+        if let (Some(path), Purpose::Open) = (chosen, self.purpose) {
+            answer = Some(Answer::File(path));
+        }
+        if modal.should_close() && answer.is_none() {
+            answer = Some(Answer::Cancel);
+        }
+        answer
+    }
+}

@@ -1,0 +1,212 @@
+//! The picker of scenes: a gallery of the built-in ones, each with its thumbnail, name and sentence.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+use std::sync::mpsc::TryRecvError;
+
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{
+    Align, ComboBox, Context, FontId, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextFormat, Ui,
+    WidgetInfo, vec2,
+};
+
+use self::thumbnail::Thumbnail;
+use self::workshop::Workshop;
+use crate::app::action::Action;
+use crate::app::language::tr;
+use crate::app::panel::PanelInput;
+use crate::app::task::thread::LISTEN;
+use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::scene::{Analysis, Scene, registry};
+
+mod thumbnail;
+mod workshop;
+
+/// Size of a thumbnail, and height of an entry around it, points.
+const THUMBNAIL: egui::Vec2 = vec2(112.0, 68.0);
+const HEIGHT: f32 = 80.0;
+/// An entry is no wider than this, points, and no narrower than that where there are two beside each other.
+const WIDEST: f32 = 420.0;
+const NARROWEST: f32 = 340.0;
+
+/// A built-in scene, as it is offered.
+struct Entry {
+    id: &'static str,
+    name: String,
+    about: String,
+    analysis: Analysis,
+}
+
+static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| {
+    let entry = |built_in: &registry::BuiltIn| {
+        let Scene { name, about, analysis, .. } = Scene::from_toml(built_in.toml).ok()?;
+        Some(Entry { id: built_in.id, name, about, analysis })
+    };
+    registry::BUILT_IN.iter().filter_map(entry).collect()
+});
+
+/// The groups of entries, with their headings.
+const GROUPS: [(Analysis, &str); 2] = [(Analysis::Dynamic, "In motion"), (Analysis::Static, "At rest")];
+
+/// The thumbnails that there are. They are made when the gallery is opened first.
+#[derive(Debug, Default)]
+pub(crate) struct Gallery {
+    thumbnails: BTreeMap<&'static str, Thumbnail>,
+    work: Work,
+    is_open: bool,
+}
+
+/// How far the thumbnails are.
+#[derive(Debug, Default)]
+enum Work {
+    #[default]
+    NotBegun,
+    Goes(Workshop),
+    Ended,
+}
+
+impl Gallery {
+    /// Takes the thumbnails that are ready; begins with them where nobody has.
+    fn listen(&mut self, ctx: &Context) {
+        if matches!(self.work, Work::NotBegun) {
+            // Without thumbnails there are names and sentences.
+            self.work = Workshop::start().map_or(Work::Ended, Work::Goes);
+        }
+        while let Work::Goes(workshop) = &self.work {
+            match workshop.hear() {
+                Ok((id, thumbnail)) => _ = self.thumbnails.insert(id, thumbnail),
+                Err(TryRecvError::Empty) => return ctx.request_repaint_after(LISTEN),
+                Err(TryRecvError::Disconnected) => self.work = Work::Ended,
+            }
+        }
+    }
+
+    /// The button with the scene's name, which opens the gallery.
+    pub(crate) fn show(&mut self, ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action>) {
+        let palette = Palette::new(ui.visuals());
+        let window = ui.ctx().content_rect().size();
+        let label = ui.label(RichText::new(tr("Scene")).color(palette.secondary));
+        let opened = ComboBox::from_id_salt("scene")
+            .selected_text(tr(&input.scene.name))
+            .width(if wide { 190.0 } else { 120.0 })
+            .height((window.y - 64.0).max(200.0))
+            .truncate()
+            .show_ui(ui, |ui| self.entries(ui, input, window.x, actions));
+        self.is_open = opened.inner.is_some();
+        opened.response.labelled_by(label.id).on_hover_text(tr(&input.scene.about));
+    }
+
+    fn entries(&mut self, ui: &mut Ui, input: &PanelInput<'_>, window: f32, actions: &mut Vec<Action>) {
+        /// What is beside the entries: margins and the scroll bar.
+        const BESIDE: f32 = 36.0;
+        const GAP: f32 = 6.0;
+        self.listen(ui.ctx());
+        let palette = Palette::new(ui.visuals());
+        let room = (window - BESIDE).max(160.0);
+        let columns = if room >= 2.0 * NARROWEST + GAP { 2 } else { 1 };
+        let width = ((room - GAP * (columns - 1) as f32) / columns as f32).min(if columns > 1 { WIDEST } else { room });
+        ui.set_width(width * columns as f32 + GAP * (columns - 1) as f32);
+        ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+        ui.horizontal(|ui| {
+            if ui
+                .button(tr("Open a file…"))
+                .on_hover_text(tr("A scene file, or one that was used last (Ctrl+O)"))
+                .clicked()
+            {
+                actions.push(Action::OpenFile);
+            }
+            ui.label(RichText::new(tr("or drop one on the window")).small().color(palette.secondary));
+        });
+        // Who opens it by a key goes on by keys.
+        let by_key = ui.input(|i| !i.pointer.any_down() && !i.pointer.any_released());
+        for (analysis, heading) in GROUPS {
+            ui.label(RichText::new(tr(heading)).small().color(palette.secondary));
+            let group: Vec<&Entry> = ENTRIES.iter().filter(|entry| entry.analysis == analysis).collect();
+            for row in group.chunks(columns) {
+                ui.horizontal(|ui| {
+                    for entry in row {
+                        let is_present = entry.id == input.scene_name;
+                        let response = self.entry(ui, &palette, entry, width, is_present);
+                        if is_present && !self.is_open {
+                            response.scroll_to_me(Some(Align::Center));
+                            if by_key {
+                                response.request_focus();
+                            }
+                        }
+                        if response.clicked() {
+                            actions.push(Action::Open(entry.id));
+                            // A key closes nothing by itself.
+                            ui.close();
+                        }
+                    }
+                });
+            }
+        }
+    }
+
+    fn entry(&self, ui: &mut Ui, palette: &Palette, entry: &Entry, width: f32, is_present: bool) -> Response {
+        const PADDING: f32 = 6.0;
+        const TEXT: f32 = 12.0;
+        let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::click());
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_present, entry.id));
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(tr(&entry.about)));
+        if response.gained_focus() {
+            response.scroll_to_me(None);
+        }
+        if !ui.is_rect_visible(rect) {
+            return response;
+        }
+        let fill = match (is_present, response.hovered() || response.has_focus()) {
+            (true, _) => palette.chosen,
+            (false, true) => palette.hovered,
+            (false, false) => palette.control,
+        };
+        let edge = if response.has_focus() { Stroke::new(1.5, palette.accent) } else { Stroke::NONE };
+        ui.painter().rect(rect, 5.0, fill, edge, StrokeKind::Inside);
+        let plate = Rect::from_min_size(rect.min + vec2(PADDING, PADDING), THUMBNAIL);
+        ui.painter().rect_filled(plate, 4.0, palette.canvas);
+        match self.thumbnails.get(entry.id) {
+            Some(thumbnail) => thumbnail.paint(&ui.painter_at(plate), plate, palette),
+            None => {
+                _ = ui.painter().hline(
+                    plate.center().x - 8.0..=plate.center().x + 8.0,
+                    plate.center().y,
+                    (2.0, palette.line),
+                )
+            }
+        }
+        let left = plate.right() + TEXT;
+        let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
+        // On what is chosen or under the pointer only the text's own colour has the contrast.
+        let quiet = if fill == palette.control { palette.secondary } else { palette.text };
+        let mut job = LayoutJob::default();
+        job.append(tr(&entry.name), 0.0, format(BODY, palette.text));
+        job.append(entry.id, 8.0, format(SMALL, quiet));
+        job.append("\n", 0.0, format(BODY, palette.text));
+        job.append(tr(&entry.about), 0.0, format(SMALL, quiet));
+        job.wrap = TextWrapping { max_width: rect.right() - PADDING - left, max_rows: 4, ..TextWrapping::default() };
+        let galley = ui.painter().layout_job(job);
+        let at = egui::pos2(left, rect.center().y - 0.5 * galley.size().y);
+        ui.painter().galley(at, galley, palette.text);
+        response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every scene gets its thumbnail, made by a thread; then nothing is waited for.
+    #[test]
+    fn thumbnails_come_in_beside_the_window() {
+        let ctx = Context::default();
+        let mut gallery = Gallery::default();
+        assert!(matches!(gallery.work, Work::NotBegun), "nothing is made before it is opened");
+        while !matches!(gallery.work, Work::Ended) {
+            gallery.listen(&ctx);
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        assert_eq!(gallery.thumbnails.len(), ENTRIES.len());
+        assert_eq!(ENTRIES.len(), registry::BUILT_IN.len());
+    }
+}

@@ -1,0 +1,165 @@
+//! A small picture of a scene: the body at rest as an outline, and where the scene takes it, coloured like the view.
+
+use egui::epaint::{Mesh, Vertex, WHITE_UV};
+use egui::{Color32, Painter, Pos2, Rect, Shape as Painted, Stroke, vec2};
+use nalgebra::Vector2;
+
+use crate::app::action::ViewOptions;
+use crate::app::viewport::body_mesh::Shape;
+use crate::app::widgets::palette::Palette;
+use crate::method::is_useful_start;
+use crate::render::display_geometry::Drawing;
+use crate::render::{Camera, Margins};
+use crate::scene::Scene;
+use crate::simulation::{Field, Simulation, Status};
+
+/// A motion is shown this long after its start, s.
+const MOMENT: f64 = 0.4;
+/// Most iterations or time steps of a small body; a large one has fewer.
+const MOST_STEPS: usize = 200;
+/// Unknowns times steps are at most about this many, but for the fewest steps.
+const WORK: usize = 400_000;
+const FEWEST_STEPS: usize = 8;
+
+/// What is drawn of a scene.
+#[derive(Debug)]
+pub(super) struct Thumbnail {
+    scene: Scene,
+    field: Field,
+    /// The field's values at the two ends of the colour map.
+    range: [f64; 2],
+    /// Where the drawn points are, m: at rest, and moved.
+    rest: Vec<Vector2<f64>>,
+    moved: Vec<Vector2<f64>>,
+    /// Lines around the body, through these points.
+    outline: Vec<Vec<u32>>,
+    triangles: Vec<[u32; 3]>,
+    /// At their corners.
+    values: Vec<[Option<f64>; 3]>,
+}
+
+impl Thumbnail {
+    /// Takes a scene as far as its picture needs, or until it is called off; `None` where it cannot be set up.
+    pub(super) fn of(scene: &Scene, is_called_off: impl Fn() -> bool) -> Option<Self> {
+        let mut simulation = Simulation::new(scene).ok()?;
+        simulation.keep_ledger(false);
+        let most = (WORK / simulation.system().dofs().max(1)).clamp(FEWEST_STEPS, MOST_STEPS);
+        for _ in 0..most {
+            let goes_on = *simulation.status() == Status::Running && simulation.state().time() < MOMENT;
+            if !goes_on || is_called_off() {
+                break;
+            }
+            simulation.step();
+        }
+        if !is_useful_start(simulation.system(), simulation.state()) {
+            simulation.reset();
+        }
+        let mesh = simulation.system().mesh();
+        let (drawing, view) = (Drawing::new(mesh), ViewOptions::default());
+        let (mut rest, mut shape) = (Vec::new(), Shape::default());
+        drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
+        shape.update(&simulation, &drawing, &view, None);
+        let moved = shape.points().to_vec();
+        let Shape { values, range, .. } = shape;
+        let Drawing { outline, triangles, .. } = drawing;
+        Some(Self { scene: scene.clone(), field: view.field, range, rest, moved, outline, triangles, values })
+    }
+
+    /// Paints it in the middle of a place, as large as that allows.
+    pub(super) fn paint(&self, painter: &Painter, place: Rect, palette: &Palette) {
+        const MARGIN: f64 = 7.0;
+        let infinity = Vector2::repeat(f64::INFINITY);
+        let points = || self.rest.iter().chain(&self.moved);
+        let (low, high) = points().fold((infinity, -infinity), |(low, high), p| (low.inf(p), high.sup(p)));
+        let size = [place.width(), place.height()].map(f64::from);
+        let camera = Camera::fit(low, high, size, Margins { sides: MARGIN, top: MARGIN, bottom: MARGIN });
+        let to_window = |p: &Vector2<f64>| {
+            let [x, y] = camera.to_view(*p).map(|v| v as f32);
+            place.center() + vec2(x, y)
+        };
+        let moved: Vec<Pos2> = self.moved.iter().map(to_window).collect();
+        let rest: Vec<Pos2> = self.rest.iter().map(to_window).collect();
+        painter.extend(self.lines(&rest, Stroke::new(1.0, palette.rest)));
+        painter.add(self.body(&moved, palette));
+        painter.extend(self.lines(&moved, Stroke::new(1.0, palette.solution(&self.scene))));
+    }
+
+    fn lines(&self, points: &[Pos2], stroke: Stroke) -> Vec<Painted> {
+        /// Points nearer to each other are one.
+        const NEAR: f32 = 0.7;
+        let line = |numbers: &Vec<u32>| {
+            let mut line: Vec<Pos2> = Vec::new();
+            for &at in numbers.iter().filter_map(|&p| points.get(p as usize)) {
+                if line.last().is_none_or(|last| last.distance(at) > NEAR) {
+                    line.push(at);
+                }
+            }
+            Painted::closed_line(line, stroke)
+        };
+        self.outline.iter().map(line).collect()
+    }
+
+    fn body(&self, points: &[Pos2], palette: &Palette) -> Mesh {
+        let (map, [low, high]) = (palette.map(self.field), self.range);
+        let color = |value: Option<f64>| {
+            value.map_or(palette.absent, |value| {
+                let [r, g, b] = map.color(((value - low) / (high - low)).clamp(0.0, 1.0));
+                Color32::from_rgb(r, g, b)
+            })
+        };
+        let mut mesh = Mesh::default();
+        for (corners, values) in self.triangles.iter().zip(&self.values) {
+            let first = mesh.vertices.len() as u32;
+            for (&corner, &value) in corners.iter().zip(values) {
+                let pos = points.get(corner as usize).copied().unwrap_or_default();
+                mesh.vertices.push(Vertex { pos, uv: WHITE_UV, color: color(value) });
+            }
+            mesh.add_triangle(first, first + 1, first + 2);
+        }
+        mesh
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Analysis, Source, open, registry};
+
+    fn of(id: &str) -> Thumbnail {
+        let scene = open(&Source { name: id.into(), assignments: Vec::new() }).unwrap();
+        Thumbnail::of(&scene, || false).unwrap()
+    }
+
+    /// Every scene has one, whose body is where the scene takes it: at the equilibrium, or away from the start.
+    #[test]
+    fn it_shows_what_the_scene_does() {
+        for built_in in registry::BUILT_IN {
+            let thumbnail = of(built_in.id);
+            let size = {
+                let (low, high) = thumbnail
+                    .rest
+                    .iter()
+                    .fold((thumbnail.rest[0], thumbnail.rest[0]), |(l, h), p| (l.inf(p), h.sup(p)));
+                (high - low).norm()
+            };
+            let way = thumbnail.rest.iter().zip(&thumbnail.moved).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max);
+            assert!(way > 0.01 * size && way < 3.0 * size, "{}: moved by {way} of {size} m", built_in.id);
+            assert!(thumbnail.range[0] < thumbnail.range[1] && !thumbnail.outline.is_empty(), "{}", built_in.id);
+            assert_eq!(thumbnail.triangles.len(), thumbnail.values.len());
+            if thumbnail.scene.analysis == Analysis::Static {
+                let mut solved = Simulation::new(&thumbnail.scene).unwrap();
+                solved.solve();
+                let furthest = solved.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+                assert!((way / furthest - 1.0).abs() < 1e-3, "{}: {way} is not {furthest}", built_in.id);
+            }
+        }
+    }
+
+    /// What has been called off is at rest.
+    #[test]
+    fn it_can_be_called_off() {
+        let scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();
+        let thumbnail = Thumbnail::of(&scene, || true).unwrap();
+        assert_eq!(thumbnail.rest, thumbnail.moved);
+    }
+}

@@ -1,0 +1,169 @@
+//! What the window remembers from one run to the next.
+
+use std::path::{Path, PathBuf};
+
+use etcetera::BaseStrategy as _;
+use serde::{Deserialize, Serialize};
+
+use crate::app::ThemeChoice;
+use crate::app::action::Drawer;
+use crate::app::language::Language;
+use crate::app::session::document::write_whole;
+use crate::simulation::Field;
+
+/// So many files are remembered.
+const MOST_RECENT: usize = 10;
+/// Sides of a window, points.
+const SIDES: std::ops::RangeInclusive<f32> = 200.0..=8192.0;
+
+/// How the window was left. What a file does not say, or says in a way that is not understood, is as at first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Light or dark; `None` is as the system has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub theme: Option<ThemeChoice>,
+    /// What the window speaks.
+    pub language: Language,
+    /// Whether the panel is shown.
+    pub panel: bool,
+    /// What is shown under the body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) drawer: Option<Drawer>,
+    /// The name of the field that colours the body.
+    color: String,
+    /// Size of the window, points.
+    size: [f32; 2],
+    /// Scene files that were opened or saved, the last one first.
+    recent: Vec<PathBuf>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            theme: None,
+            language: Language::default(),
+            panel: true,
+            drawer: None,
+            color: Field::default().name().to_owned(),
+            size: [1280.0, 800.0],
+            recent: Vec::new(),
+        }
+    }
+}
+
+impl Settings {
+    /// Where the settings of this user are; `None` where the system has no such place.
+    #[must_use]
+    pub fn file() -> Option<PathBuf> {
+        let folder = etcetera::choose_base_strategy().ok()?.config_dir();
+        Some(folder.join("warpbeam").join("settings.toml"))
+    }
+
+    /// Those in a file; those of the first run where there is none, or none that can be read.
+    #[must_use]
+    pub fn load(file: &Path) -> Self {
+        let text = match std::fs::read_to_string(file) {
+            Ok(text) => text,
+            Err(error) => {
+                if error.kind() != std::io::ErrorKind::NotFound {
+                    log::warn!("{}: {error}", file.display());
+                }
+                return Self::default();
+            }
+        };
+        toml::from_str(&text).unwrap_or_else(|error| {
+            log::warn!("{}: {}", file.display(), error.message());
+            Self::default()
+        })
+    }
+
+    /// Writes them to a file, whose folder is made where there is none.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn save(&self, file: &Path) -> std::io::Result<()> {
+        if let Some(folder) = file.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        let toml = toml::to_string(self).map_err(std::io::Error::other)?;
+        write_whole(file, toml.as_bytes())
+    }
+
+    /// Size of the window, points.
+    #[must_use]
+    pub fn size(&self) -> [f32; 2] {
+        let [width, height] = self.size;
+        if SIDES.contains(&width) && SIDES.contains(&height) { self.size } else { Self::default().size }
+    }
+
+    /// Remembers the size of the window, points.
+    pub fn set_size(&mut self, size: [f32; 2]) {
+        self.size = size;
+    }
+
+    /// The field that colours the body.
+    #[must_use]
+    pub fn color(&self) -> Field {
+        Field::ALL.into_iter().find(|field| field.name() == self.color).unwrap_or_default()
+    }
+
+    /// Remembers the field that colours the body.
+    pub fn set_color(&mut self, field: Field) {
+        field.name().clone_into(&mut self.color);
+    }
+
+    /// Scene files that were opened or saved, the last one first.
+    #[must_use]
+    pub fn recent(&self) -> &[PathBuf] {
+        &self.recent
+    }
+
+    /// Remembers a scene file.
+    pub fn add_recent(&mut self, path: &Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        // TOML has no place for a path that is no text.
+        if path.to_str().is_none() {
+            return;
+        }
+        self.recent.retain(|other| *other != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(MOST_RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_survive() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("new/settings.toml");
+        assert_eq!(Settings::load(&file), Settings::default());
+        let mut settings = Settings { theme: Some(ThemeChoice::Light), panel: false, ..Settings::default() };
+        settings.drawer = Some(Drawer::Motion);
+        settings.language = Language::Chinese;
+        settings.set_color(Field::RotationAngle);
+        settings.set_size([900.0, 700.0]);
+        (0..30).for_each(|i| settings.add_recent(Path::new(&format!("scene-{i}.toml"))));
+        settings.add_recent(Path::new("scene-25.toml"));
+        assert_eq!(settings.recent().len(), MOST_RECENT);
+        assert!(settings.recent()[0].ends_with("scene-25.toml") && settings.recent()[1].ends_with("scene-29.toml"));
+        settings.save(&file).unwrap();
+        assert_eq!(Settings::load(&file), settings);
+    }
+
+    #[test]
+    fn settings_that_make_no_sense_are_those_of_the_first_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("settings.toml");
+        for text in ["theme = 3", "not toml at all [", "size = [0.0, nan]", "color = \"smell\"\nsize = [1e9, 2.0]"] {
+            std::fs::write(&file, text).unwrap();
+            let settings = Settings::load(&file);
+            assert_eq!((settings.size(), settings.color()), ([1280.0, 800.0], Field::VonMises), "{text}");
+        }
+        std::fs::write(&file, "theme = \"light\"\nfrom_another_version = 1").unwrap();
+        assert_eq!(Settings::load(&file).theme, Some(ThemeChoice::Light));
+    }
+}

@@ -1,0 +1,97 @@
+//! Keys and what they do.
+
+use egui::{Context, Event, Key, Modifiers};
+
+use crate::app::action::{Action, Drawer, Toggle};
+use crate::app::mode::Mode;
+use crate::simulation::Field;
+
+/// A key and what it does.
+pub(crate) struct Shortcut {
+    modifiers: Modifiers,
+    key: Key,
+    pub does: &'static str,
+    act: fn() -> Action,
+}
+
+const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+const fn key(key: Key, does: &'static str, act: fn() -> Action) -> Shortcut {
+    with(Modifiers::NONE, key, does, act)
+}
+
+const fn with(modifiers: Modifiers, key: Key, does: &'static str, act: fn() -> Action) -> Shortcut {
+    Shortcut { modifiers, key, does, act }
+}
+
+impl Shortcut {
+    /// What is pressed, in words.
+    pub(crate) fn words(&self) -> String {
+        let command = if self.modifiers.command { "Ctrl+" } else { "" };
+        let shift = if self.modifiers.shift { "Shift+" } else { "" };
+        format!("{command}{shift}{}", self.key.name())
+    }
+}
+
+/// Every key, in the order of the help.
+pub(crate) const SHORTCUTS: &[Shortcut] = &[
+    key(Key::Space, "Run or pause", || Action::ToggleRun),
+    key(Key::N, "One iteration, or one time step", || Action::Step),
+    key(Key::Comma, "In motion: pause, and back by a picture", || Action::Back),
+    key(Key::Period, "In motion: pause, and on by a picture or a time step", || Action::Forward),
+    key(Key::R, "Reset to rest, or to the start of the motion", || Action::Reset),
+    key(Key::H, "In motion: reset to here from now on; again: to the start", || Action::Mark),
+    key(Key::F, "Fit the view", || Action::Fit),
+    key(Key::W, "Wireframe on or off", || Action::Toggle(Toggle::Wireframe)),
+    key(Key::O, "Rest outline on or off", || Action::Toggle(Toggle::RestOutline)),
+    key(Key::G, "Ghost of the linear solution on or off", || Action::Toggle(Toggle::Ghost)),
+    key(Key::X, "Outline of the exact solution on or off", || Action::Toggle(Toggle::Exact)),
+    key(Key::Num1, "Colour: von Mises (Cauchy)", || Action::Color(Field::VonMises)),
+    key(Key::Num2, "Colour: strain energy density", || Action::Color(Field::EnergyDensity)),
+    key(Key::Num3, "Colour: largest strain", || Action::Color(Field::LargestStrain)),
+    key(Key::Num4, "Colour: rotation angle", || Action::Color(Field::RotationAngle)),
+    key(Key::Num5, "Colour: mesh error", || Action::Color(Field::MeshError)),
+    key(Key::L, "Load curve on or off", || Action::Toggle(Toggle::Drawer(Drawer::Curve))),
+    key(Key::E, "Energy, tip and spectrum of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
+    key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
+    key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),
+    key(Key::K, "Compare: methods, elements and meshes beside each other, on or off", || {
+        Action::Toggle(Toggle::Mode(Mode::Compare))
+    }),
+    key(Key::P, "Panel on or off", || Action::Toggle(Toggle::Panel)),
+    key(Key::T, "Light or dark", || Action::ToggleTheme),
+    key(Key::S, "Save a screenshot (PNG) here", || Action::Screenshot),
+    key(Key::V, "Record the window as a GIF here; again: stop", || Action::Record),
+    with(Modifiers::SHIFT, Key::V, "Record the scene from its start as a GIF here; again: stop", || {
+        Action::RecordScene
+    }),
+    key(Key::C, "Copy the scene as TOML, with its command", || Action::Copy),
+    with(Modifiers::SHIFT, Key::C, "Copy the scene as a Rust program", || Action::CopyRust),
+    with(Modifiers::COMMAND, Key::O, "Open a scene file", || Action::OpenFile),
+    with(Modifiers::COMMAND, Key::S, "Save the scene", || Action::Save),
+    with(COMMAND_SHIFT, Key::S, "Save the scene to another file", || Action::SaveAs),
+    with(Modifiers::COMMAND, Key::Z, "Undo the last edit", || Action::Undo),
+    with(COMMAND_SHIFT, Key::Z, "Redo it", || Action::Redo),
+    with(Modifiers::COMMAND, Key::Y, "Redo it", || Action::Redo),
+    key(Key::Escape, "Close this list, cancel what is being solved, close the values of a point", || Action::Escape),
+    key(Key::F1, "This list", || Action::Toggle(Toggle::Help)),
+];
+
+/// What the keys of this frame ask for; none while text is edited. Space belongs to the control that has the focus.
+pub(crate) fn actions(ctx: &Context) -> Vec<Action> {
+    if ctx.text_edit_focused() {
+        return Vec::new();
+    }
+    let focused = ctx.memory(|memory| memory.focused().is_some());
+    ctx.input(|i| {
+        // The modifiers at the press: they may be up again before the frame that hears of it.
+        let is_pressed = |s: &&Shortcut| {
+            i.events.iter().any(|event| {
+                matches!(event, Event::Key { key, pressed: true, modifiers, .. }
+                    if *key == s.key && modifiers.matches_exact(s.modifiers))
+            })
+        };
+        let is_free = |s: &&Shortcut| !(focused && s.key == Key::Space);
+        SHORTCUTS.iter().filter(is_pressed).filter(is_free).map(|s| (s.act)()).collect()
+    })
+}

@@ -1,0 +1,291 @@
+//! The bar along the bottom: three numbers that say it all, the residual's way down, and the drawer with the plots.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use egui::{
+    Align, Color32, FontId, Galley, Layout, Painter, Pos2, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
+    vec2,
+};
+
+use crate::app::action::{Action, Drawer, Toggle, ViewOptions};
+use crate::app::diagnosis::{Errors, error_color, rho, rho_number};
+use crate::app::language::{fill, percent, tr, translated};
+use crate::app::panel::PanelInput;
+use crate::app::session::clock::fraction;
+use crate::app::shell::toolbar::{Icon, icon_button};
+use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
+use crate::simulation::Motion;
+use crate::study::Reference;
+use crate::words::{engineering, two_digits};
+
+/// In place of a number that is not known.
+pub(crate) const UNKNOWN: &str = "\u{2013}";
+
+/// Definition of the drift that the window shows.
+pub(crate) const DRIFT_TIP: &str = "Energy that the integrator has added, or with a minus lost, over the energy that was put in: by the \
+                                    start, loads and hands";
+
+/// Below this width, points, numbers stand without their gauges.
+const GAUGES: f32 = 820.0;
+
+/// A number, what it is called, and how much of it there is.
+struct Headline {
+    name: &'static str,
+    value: String,
+    /// More about it, after the number.
+    word: Cow<'static, str>,
+    tip: String,
+    color: Color32,
+    gauge: Gauge,
+}
+
+enum Gauge {
+    None,
+    /// So many of four blocks.
+    Blocks(u32),
+    /// A part of a whole, and the part at which there is a mark.
+    Bar(f64, f64),
+}
+
+/// Shows the bar.
+pub(crate) fn show(
+    ui: &mut Ui,
+    input: &PanelInput<'_>,
+    errors: &Errors,
+    view: &ViewOptions,
+    actions: &mut Vec<Action>,
+) {
+    let palette = Palette::new(ui.visuals());
+    let wide = ui.available_width() >= GAUGES;
+    ui.horizontal_centered(|ui| {
+        ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
+        let headlines = match input.simulation.motion() {
+            Some(motion) => of_motion(&palette, input, motion).into(),
+            None => of_solve(&palette, input, errors),
+        };
+        for headline in headlines {
+            number(ui, &palette, headline, wide);
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let drawer = Drawer::of(input.scene);
+            let open = view.plots().is_some();
+            let (word, tip) = drawer.words();
+            let (word, tip) = (tr(word), tr(tip));
+            let icon = if open { Icon::Close } else { Icon::Open };
+            if icon_button(ui, icon, word, Some(word), open).on_hover_text(tip).clicked() {
+                actions.push(Action::Toggle(Toggle::Drawer(drawer)));
+            }
+            if input.simulation.motion().is_none() && ui.available_width() > 160.0 {
+                sparkline(ui, &palette, input);
+            }
+        });
+    });
+}
+
+fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> Vec<Headline> {
+    let simulation = input.simulation;
+    let times = simulation.timings();
+    let seconds = (times.total() - times.certify).as_secs_f64();
+    let rho = rho(input);
+    let truth = truth_words(input.truth);
+    let level = |decades: f64| decades.floor().clamp(0.0, 4.0) as u32;
+    let error = errors.own.map_or(0.0, |error| error.max(1e-9).log10() + 2.0);
+    let sought = input.reference_progress.filter(|_| errors.own.is_none());
+    let mut headlines = vec![
+        Headline {
+            name: "ERROR",
+            value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
+            word: match errors.source {
+                Some(source) => tr(source.word()).into(),
+                None => sought.map_or(Cow::default(), |done| {
+                    let percent = format!("{:.0}", 100.0 * done);
+                    fill!("computing the reference: %{percent} %", percent = percent).into()
+                }),
+            },
+            tip: fill!(
+                "Distance of the first probe from %{truth}, over its displacement; and where most of it comes from",
+                truth = truth
+            ),
+            color: error_color(palette, errors.own),
+            gauge: Gauge::Blocks(level(error)),
+        },
+        Headline {
+            name: "TIME",
+            value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
+            word: Cow::default(),
+            tip: tr("Time of this solve, since the last change, without what is only looked at").to_owned(),
+            color: palette.text,
+            gauge: Gauge::Blocks(level((1e6 * seconds).max(1.0).log10())),
+        },
+    ];
+    // Linear theory iterates nothing.
+    if !simulation.is_linear() {
+        headlines.push(Headline {
+            name: "ρ",
+            value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
+            word: Cow::default(),
+            tip: tr(
+                "The factor by which each iteration of the warped method shrinks its error here; above 1 it grows, and \
+                 the iteration walks away",
+            )
+            .to_owned(),
+            color: match rho {
+                Some(rho) if rho > 1.0 => palette.warning,
+                Some(_) => palette.text,
+                None => palette.secondary,
+            },
+            gauge: Gauge::Bar(rho.map_or(0.0, |rho| 0.5 * rho), 0.5),
+        });
+    }
+    headlines
+}
+
+fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Headline; 3] {
+    let cost = input.timings.total().as_secs_f64();
+    let step = input.scene.dynamics.time_step;
+    let pace = &input.playback.pace;
+    let drift = motion.ledger().drift_of_input();
+    [
+        Headline {
+            name: "STEP",
+            value: if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() },
+            word: Cow::default(),
+            tip: fill!("What a time step costs; it simulates %{step}", step = engineering(step, "s")),
+            color: if cost > step { palette.error } else { palette.text },
+            gauge: Gauge::Bar(0.5 * cost / step, 0.5),
+        },
+        Headline {
+            name: "PACE",
+            value: pace.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {}", fraction(factor))),
+            word: if pace.lags() { tr("too slow").into() } else { Cow::default() },
+            tip: tr("Simulated seconds a second; a machine that cannot keep up slows the motion down").to_owned(),
+            color: if pace.lags() { palette.error } else { palette.text },
+            gauge: Gauge::None,
+        },
+        Headline {
+            name: "DRIFT",
+            value: percent(100.0 * drift),
+            word: Cow::default(),
+            tip: tr(DRIFT_TIP).to_owned(),
+            color: if drift.abs() > 0.05 { palette.warning } else { palette.text },
+            gauge: Gauge::None,
+        },
+    ]
+}
+
+/// What errors are measured against, in words.
+pub(crate) fn truth_words(truth: Option<&Reference>) -> String {
+    truth.map_or_else(|| tr("the reference, once that is known").to_owned(), |truth| translated(&truth.to_string()))
+}
+
+/// A name, its number and its gauge.
+fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Response {
+    const GAP: f32 = 6.0;
+    const BLOCK: egui::Vec2 = vec2(5.0, 13.0);
+    const BAR: egui::Vec2 = vec2(56.0, 6.0);
+    let Headline { name, value, word, tip, color, gauge } = headline;
+    let (name, word) = (tr(name), word.as_ref());
+    let painter = ui.painter();
+    let small = |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);
+    let [title, after] = [name, word].map(small);
+    let big = painter.layout_no_wrap(value.clone(), FontId::proportional(HEADLINE), color);
+    let gauge_width = match gauge {
+        _ if !wide => 0.0,
+        Gauge::None => 0.0,
+        Gauge::Blocks(_) => 4.0 * (BLOCK.x + 2.0) + GAP,
+        Gauge::Bar(..) => BAR.x + GAP,
+    };
+    let after_width = if word.is_empty() { 0.0 } else { after.size().x + GAP };
+    // As wide as most numbers are: what follows does not move with every digit.
+    let number_width = big.size().x.max(if wide { 62.0 } else { 0.0 });
+    let size = vec2(title.size().x + GAP + number_width + gauge_width + after_width, ui.spacing().interact_size.y);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let middle = rect.center().y;
+    let mut x = rect.left();
+    let mut put = |galley: Arc<Galley>, width: f32, bold: bool| {
+        let at = pos2(x, middle - 0.5 * galley.size().y);
+        if bold {
+            semibold(ui.painter(), at, &galley, color);
+        } else {
+            ui.painter().galley(at, galley, color);
+        }
+        x += width + GAP;
+    };
+    let title_width = title.size().x;
+    put(title, title_width, false);
+    put(big, number_width, true);
+    let (quiet, loud) = (palette.line, color);
+    match gauge {
+        Gauge::Blocks(full) if wide => {
+            for i in 0..4u8 {
+                let corner = pos2(x + f32::from(i) * (BLOCK.x + 2.0), middle - 0.5 * BLOCK.y);
+                let fill = if u32::from(i) < full { loud } else { quiet };
+                ui.painter().rect_filled(Rect::from_min_size(corner, BLOCK), 1.0, fill);
+            }
+        }
+        Gauge::Bar(part, mark) if wide => {
+            let bar = Rect::from_min_size(pos2(x, middle - 0.5 * BAR.y), BAR);
+            ui.painter().rect_filled(bar, 2.0, quiet);
+            let end = bar.left() + bar.width() * part.clamp(0.0, 1.0) as f32;
+            ui.painter().rect_filled(Rect::from_min_max(bar.min, pos2(end, bar.bottom())), 2.0, loud);
+            let at = bar.left() + bar.width() * mark as f32;
+            ui.painter().vline(at, bar.y_range().expand(4.0), Stroke::new(1.5, palette.secondary));
+        }
+        _ => {}
+    }
+    if !word.is_empty() {
+        let at = pos2(rect.right() - after.size().x, middle - 0.5 * after.size().y);
+        ui.painter().galley(at, after, palette.secondary);
+    }
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} {value} {word}").trim_end()));
+    response.on_hover_text(tip)
+}
+
+/// Paints text whose font has one weight as if it had another: drawn twice, a hair apart, it is semibold.
+pub(crate) fn semibold(painter: &Painter, at: Pos2, galley: &Arc<Galley>, color: Color32) {
+    for shift in [0.0, 0.45] {
+        painter.galley(at + vec2(shift, 0.0), galley.clone(), color);
+    }
+}
+
+/// How the residual has fallen, iteration by iteration, down to what is asked for.
+fn sparkline(ui: &mut Ui, palette: &Palette, input: &PanelInput<'_>) {
+    const NAME: f32 = 9.0;
+    let name = tr("residual").to_owned();
+    let name = ui.painter().layout_no_wrap(name, FontId::proportional(SMALL), palette.secondary);
+    let size = vec2(84.0 + NAME + name.size().x, 28.0);
+    let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
+    let at = pos2(whole.left(), whole.center().y - 0.5 * name.size().y);
+    let rect = Rect::from_min_max(pos2(whole.left() + name.size().x + NAME, whole.top()), whole.max);
+    ui.painter().galley(at, name, palette.secondary);
+    let asked = input.scene.solver.tolerance.max(1e-300).log10();
+    let decades = |residual: f64| residual.clamp(1e-300, 1e300).log10();
+    let top = input.residuals.iter().map(|&r| decades(r)).fold(0.0_f64, f64::max);
+    let lowest = input.residuals.iter().map(|&r| decades(r)).fold(asked, f64::min).max(asked - 4.0);
+    let y = |value: f64| {
+        rect.bottom() - 2.0 - (rect.height() - 4.0) * ((value - lowest) / (top - lowest)).clamp(0.0, 1.0) as f32
+    };
+    let goal = y(asked);
+    let mut x = rect.left();
+    while x < rect.right() {
+        ui.painter().hline(x..=(x + 3.0).min(rect.right()), goal, Stroke::new(1.0, palette.secondary));
+        x += 7.0;
+    }
+    let last = input.residuals.len().saturating_sub(1).max(1) as f32;
+    let points: Vec<_> = (0u16..)
+        .zip(input.residuals)
+        .map(|(i, &r)| pos2(rect.left() + rect.width() * f32::from(i) / last, y(decades(r))))
+        .collect();
+    // Joints of one thick line would stick out where it turns sharply.
+    for pair in points.windows(2) {
+        ui.painter().line(pair.to_vec(), Stroke::new(1.5, palette.method(input.scene.solver.method)));
+    }
+    let words = fill!(
+        "Residual %{residual} after %{n} iterations",
+        residual = format!("{:.1e}", input.simulation.residual()),
+        n = input.simulation.iterations()
+    );
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
+    response.on_hover_text(fill!("%{residual}; dashed: what is asked for", residual = words));
+}

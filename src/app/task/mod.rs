@@ -1,0 +1,5 @@
+//! Background work: a thread with progress and cancellation, values computed in one, and the solve of a large model.
+
+pub(crate) mod lazy;
+pub(crate) mod solve;
+pub(crate) mod thread;

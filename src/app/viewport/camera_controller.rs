@@ -1,0 +1,203 @@
+//! Where the view looks: at the whole body, to which it eases, or where somebody has moved it.
+
+use nalgebra::Vector2;
+
+use crate::render::{Camera, Margins};
+
+/// The lowest and the highest corner of a box, m.
+type Box2 = [Vector2<f64>; 2];
+
+/// In this time, s, the way that is left falls to 1/e.
+const EASE: f64 = 0.11;
+/// What is left of a way that nobody sees, points.
+const THERE: f64 = 0.3;
+/// The smallest and the largest magnification over that which shows the body at rest.
+const ZOOM: [f64; 2] = [0.02, 2e4];
+
+/// The camera of a view, and where it goes.
+#[derive(Clone, Debug)]
+pub(crate) struct Eye {
+    /// Where somebody has moved it; `None`: it shows the whole body.
+    own: Option<Camera>,
+    /// What the whole body is.
+    whole: Box2,
+    /// The body at rest.
+    rest: Box2,
+    /// What shows the whole body, as of the last [`Self::aim`].
+    fitted: Camera,
+    shown: Camera,
+    /// Whether it has looked at this body yet: it does not come from anywhere then.
+    is_new: bool,
+}
+
+impl Eye {
+    /// One that shows a body whose rest box is this.
+    pub(crate) fn new(rest: Box2) -> Self {
+        let camera = Camera { center: (rest[0] + rest[1]) * 0.5, scale: 1.0 };
+        Self { own: None, whole: rest, rest, fitted: camera, shown: camera, is_new: true }
+    }
+
+    /// What is seen now.
+    pub(crate) fn camera(&self) -> Camera {
+        self.shown
+    }
+
+    /// Another body, whose rest box is this. Somebody's own view of the one before is kept.
+    pub(crate) fn set_body(&mut self, rest: Box2) {
+        (self.rest, self.whole) = (rest, rest);
+    }
+
+    /// The whole body is so large now. Only for states that may be followed: converged ones, and motions.
+    pub(crate) fn follow(&mut self, whole: Box2) {
+        let sound = |p: &Vector2<f64>| p.x.is_finite() && p.y.is_finite();
+        if whole.iter().all(sound) {
+            self.whole = whole;
+        }
+    }
+
+    /// What it takes for the whole body.
+    pub(crate) fn whole(&self) -> Box2 {
+        self.whole
+    }
+
+    /// `true` while it shows the whole body, not a view that the user has chosen.
+    pub(crate) fn shows_whole(&self) -> bool {
+        self.own.is_none()
+    }
+
+    /// Back to the whole body.
+    pub(crate) fn fit(&mut self) {
+        self.own = None;
+    }
+
+    /// There, at once: what follows the pointer may not lag behind it.
+    pub(crate) fn look(&mut self, camera: Camera) {
+        self.own = Some(camera);
+        self.shown = camera;
+        self.is_new = false;
+    }
+
+    /// Magnifications that leave something to see, in a view of this size, points.
+    pub(crate) fn scales(&self, view: [f64; 2]) -> std::ops::RangeInclusive<f64> {
+        let home = Camera::fit(self.rest[0], self.rest[1], view, Margins::default()).scale;
+        ZOOM[0] * home..=ZOOM[1] * home
+    }
+
+    /// One frame, `dt` s after the last: goes towards `fitted`, which shows [`Self::whole`], or stays where it was moved
+    /// to. Without a `dt` it is there at once. Says whether it is on its way.
+    pub(crate) fn aim(&mut self, fitted: Camera, dt: Option<f64>) -> bool {
+        self.fitted = fitted;
+        let goal = self.own.unwrap_or(fitted);
+        let (Some(dt), false) = (dt, self.is_new) else {
+            self.shown = goal;
+            self.is_new = false;
+            return false;
+        };
+        let part = 1.0 - (-dt.max(0.0) / EASE).exp();
+        // A magnification goes by ratios.
+        let ratio = (goal.scale / self.shown.scale).powf(part);
+        self.shown.scale *= ratio;
+        self.shown.center += (goal.center - self.shown.center) * part;
+        let missing = (goal.center - self.shown.center).norm() * goal.scale.max(self.shown.scale);
+        let stretched = (goal.scale / self.shown.scale).ln().abs() * 1e3;
+        let there = missing < THERE && stretched < THERE;
+        if there || !(missing + stretched).is_finite() {
+            self.shown = goal;
+        }
+        !there
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REST: Box2 = [Vector2::new(0.0, -0.5), Vector2::new(10.0, 0.5)];
+    const VIEW: [f64; 2] = [800.0, 600.0];
+
+    fn fitted(eye: &Eye) -> Camera {
+        let [low, high] = eye.whole();
+        Camera::fit(low, high, VIEW, Margins::default())
+    }
+
+    #[test]
+    fn the_first_look_is_there_and_later_ones_ease_and_arrive() {
+        let mut eye = Eye::new(REST);
+        assert!(!eye.aim(fitted(&eye), Some(0.016)));
+        let first = eye.camera();
+        assert_eq!(first, fitted(&eye));
+        eye.follow([Vector2::new(0.0, -8.0), Vector2::new(10.0, 0.5)]);
+        let goal = fitted(&eye);
+        let way = |camera: Camera| (camera.center - goal.center).norm();
+        let mut last = way(first);
+        let mut frames = 0;
+        while eye.aim(goal, Some(0.016)) {
+            assert!(way(eye.camera()) < last, "it does not come nearer");
+            let scale = eye.camera().scale;
+            assert!(scale >= goal.scale.min(first.scale) && scale <= goal.scale.max(first.scale), "it overshoots");
+            last = way(eye.camera());
+            frames += 1;
+        }
+        assert_eq!(eye.camera(), goal);
+        assert!((10..200).contains(&frames), "{frames} frames");
+    }
+
+    /// Where it is after a while does not depend on how many frames that took.
+    #[test]
+    fn the_way_depends_on_the_time_and_not_on_the_frames() {
+        let after = |frames: u32| {
+            let mut eye = Eye::new(REST);
+            eye.aim(fitted(&eye), None);
+            eye.follow([Vector2::new(-50.0, -20.0), Vector2::new(60.0, 30.0)]);
+            for _ in 0..frames {
+                eye.aim(fitted(&eye), Some(0.12 / f64::from(frames)));
+            }
+            eye.camera()
+        };
+        let (one, many) = (after(1), after(40));
+        assert!((one.scale / many.scale - 1.0).abs() < 1e-9 && (one.center - many.center).norm() < 1e-9);
+    }
+
+    #[test]
+    fn without_time_it_is_there_at_once() {
+        let mut eye = Eye::new(REST);
+        eye.aim(fitted(&eye), None);
+        eye.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
+        assert!(!eye.aim(fitted(&eye), None));
+        assert_eq!(eye.camera(), fitted(&eye));
+    }
+
+    #[test]
+    fn a_moved_view_stays_until_it_is_fitted_again() {
+        let mut eye = Eye::new(REST);
+        eye.aim(fitted(&eye), None);
+        let own = Camera { center: Vector2::new(3.0, 1.0), scale: 200.0 };
+        eye.look(own);
+        eye.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
+        assert!(!eye.aim(fitted(&eye), Some(0.016)));
+        assert_eq!(eye.camera(), own);
+        eye.fit();
+        assert!(eye.aim(fitted(&eye), Some(0.016)));
+        assert_ne!(eye.camera(), own);
+    }
+
+    #[test]
+    fn zoom_is_bounded_by_the_size_of_the_body() {
+        let eye = Eye::new(REST);
+        let scales = eye.scales(VIEW);
+        let mut camera = fitted(&eye);
+        for _ in 0..1000 {
+            camera.zoom(1.5, [10.0, 10.0], scales.clone());
+        }
+        assert!(camera.scale <= *scales.end() && camera.scale.is_finite());
+        (0..1000).for_each(|_| camera.zoom(0.5, [10.0, 10.0], scales.clone()));
+        assert!(camera.scale * 10.0 >= 10.0, "the body of 10 m is {} points", camera.scale * 10.0);
+    }
+
+    #[test]
+    fn a_state_that_is_not_finite_is_not_followed() {
+        let mut eye = Eye::new(REST);
+        eye.follow([Vector2::new(f64::NAN, 0.0), Vector2::new(1.0, 1.0)]);
+        assert_eq!(eye.whole(), REST);
+    }
+}

@@ -1,0 +1,12 @@
+//! The view of the body: camera, drawn mesh, handles, overlays, and the pointer.
+
+pub(crate) mod arrow;
+pub(crate) mod body_mesh;
+pub(crate) mod camera_controller;
+pub(crate) mod crossing;
+pub(crate) mod handle;
+pub(crate) mod moment_arrow;
+pub(crate) mod overlay;
+pub(crate) mod pointer;
+pub(crate) mod probe;
+pub(crate) mod time_line;

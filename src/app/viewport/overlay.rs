@@ -1,0 +1,598 @@
+//! What is painted over the body: outlines, supports, the load's arrow, legend, scale, and words.
+
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
+use nalgebra::Vector2;
+
+use crate::app::action::ViewOptions;
+use crate::app::diagnosis::Errors;
+use crate::app::language::{percent, tr};
+use crate::app::session::playback::Playback;
+use crate::app::viewport::arrow::{self, Forces};
+use crate::app::viewport::handle::HotHandle;
+use crate::app::widgets::legend::Mark;
+use crate::app::widgets::load_scale::OpeningLoads;
+use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::assembly::{Hand, System};
+use crate::render::Camera;
+use crate::render::colormap::ColorMap;
+use crate::render::display_geometry::Drawing;
+use crate::scene::{Analysis, Load, MethodKind, Scene};
+use crate::simulation::SupportReaction;
+use crate::words::{engineering, prefix, round_down, three_digits, ticks};
+
+/// What is painted over the body.
+pub(crate) struct Overlay<'a> {
+    pub scene: &'a Scene,
+    pub system: &'a System,
+    pub drawing: &'a Drawing,
+    pub options: &'a ViewOptions,
+    pub camera: Camera,
+    /// Where the nodes are, m.
+    pub positions: &'a [Vector2<f64>],
+    /// Whether the elements are drawn elsewhere: nothing is painted where the body would be then.
+    pub apart: bool,
+    /// Displacement of the linear solution, m, where its outline is wanted.
+    pub ghost: Option<&'a [Vector2<f64>]>,
+    /// The true outline, m: closed lines.
+    pub exact: &'a [Vec<Vector2<f64>>],
+    /// How far off the body and the linear solution are.
+    pub errors: Errors,
+    /// Simulated time, s.
+    pub time: f64,
+    /// Direction of an arrow without force, degrees.
+    pub direction: f64,
+    /// Loads that the scene opens with.
+    pub opening: OpeningLoads,
+    /// The arrow whose tip the pointer is on, or has taken and dragged so far.
+    pub hot: Option<HotHandle>,
+    /// The hand that pulls, and its force, N.
+    pub hand: Option<(&'a Hand, Vector2<f64>)>,
+    /// The past of a motion, and the same motion under other integrators.
+    pub playback: &'a Playback,
+    /// The reactions of the supports, where one moves.
+    pub reactions: &'a [SupportReaction],
+    /// The field's values at the two ends of the colour map.
+    pub color_range: [f64; 2],
+    /// What is wrong with the state, in words.
+    pub warning: Option<&'a str>,
+}
+
+/// Metres to window positions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Projection {
+    pub camera: Camera,
+    pub rect: Rect,
+}
+
+impl Projection {
+    fn offset(&self, p: Vector2<f64>) -> [f64; 2] {
+        self.camera.to_view(p)
+    }
+
+    /// The window position of a point; far outside the view, somewhere outside the view.
+    pub(crate) fn point(&self, p: Vector2<f64>) -> Pos2 {
+        let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
+        self.rect.center() + vec2(x, y)
+    }
+
+    /// The part of a segment that is in or near the view: coordinates far beyond it have no digits left as f32.
+    fn segment(&self, a: Vector2<f64>, b: Vector2<f64>) -> Option<[Pos2; 2]> {
+        let half = [f64::from(self.rect.width()) * 0.5 + 16.0, f64::from(self.rect.height()) * 0.5 + 16.0];
+        let [from, to] = clip(self.offset(a), self.offset(b), half)?;
+        let place = |p: [f64; 2]| self.rect.center() + vec2(p[0] as f32, p[1] as f32);
+        Some([place(from), place(to)])
+    }
+}
+
+/// Liang and Barsky 1984: the part of a segment inside the box |x| ≤ half₀, |y| ≤ half₁.
+fn clip(a: [f64; 2], b: [f64; 2], half: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        for (p, q) in [(-d[axis], a[axis] + half[axis]), (d[axis], half[axis] - a[axis])] {
+            if p == 0.0 {
+                if q < 0.0 {
+                    return None;
+                }
+            } else if p < 0.0 {
+                enter = enter.max(q / p);
+            } else {
+                leave = leave.min(q / p);
+            }
+        }
+    }
+    let at = |t: f64| [a[0] + t * d[0], a[1] + t * d[1]];
+    (enter <= leave).then(|| [at(enter), at(leave)])
+}
+
+/// Paints everything.
+pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
+    if rect.width() < 8.0 || rect.height() < 8.0 {
+        return;
+    }
+    let palette = Palette::new(visuals);
+    // Under the arrows: their tips can be seen and taken wherever they are dragged.
+    let names = key(painter, rect, overlay, &palette, visuals);
+    let legend = legend(painter, rect, names, overlay, &palette, visuals);
+    let below = legend.filter(|_| has_legend_on_top(rect.height())).map_or(0.0, |frame| frame.bottom() - rect.top());
+    body_below(painter, rect, overlay, visuals, below);
+    scale_bar(painter, rect, &overlay.camera, &palette);
+    if let Some((hand, force)) = overlay.hand {
+        pull(painter, &Projection { camera: overlay.camera, rect }, overlay, hand, force, visuals);
+    }
+    if let Some(warning) = overlay.warning {
+        let at = rect.center_top() + vec2(0.0, 46.0);
+        boxed_text(painter, at, Align2::CENTER_TOP, warning, visuals, visuals.error_fg_color, rect.width() - 48.0);
+    }
+}
+
+/// Paints what belongs to the body: outlines, supports, loads.
+pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
+    body_below(painter, rect, overlay, visuals, 0.0);
+}
+
+/// The same under a colour bar that ends so far below the top, points: the arrow of a weight stands under that.
+fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, below: f32) {
+    let palette = Palette::new(visuals);
+    let Overlay { drawing, system, camera, .. } = *overlay;
+    let projection = Projection { camera, rect };
+    let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
+        for line in &drawing.outline {
+            // Pieces of less than this fade in the antialiasing; they are joined to the next.
+            const SHORTEST: f64 = 2.0;
+            let mut points = line.iter().map(|&p| drawing.point(p, place));
+            let Some(mut from) = points.next() else { continue };
+            let mut points = points.peekable();
+            while let Some(to) = points.next() {
+                let long = (to - from).norm() * projection.camera.scale >= SHORTEST;
+                if long || points.peek().is_none() {
+                    if let Some(segment) = projection.segment(from, to) {
+                        painter.line_segment(segment, stroke);
+                    }
+                    from = to;
+                }
+            }
+        }
+    };
+    let rest = |n: u32| system.mesh().nodes()[n as usize];
+    if overlay.options.rest_outline {
+        draw(&rest, Stroke::new(1.0, palette.rest));
+    }
+    if let Some(linear) = overlay.ghost {
+        draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.method(MethodKind::Linear)));
+    }
+    for companion in overlay.playback.companions().iter().filter(|companion| !companion.is_absent) {
+        let u = companion.simulation.displacement();
+        let color = palette.integrator(companion.integrator);
+        draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
+    }
+    if !overlay.apart {
+        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
+    }
+    for line in overlay.exact {
+        // On a ground of its own: over the body its colour alone would be lost.
+        dashed(painter, &projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
+        dashed(painter, &projection, line, Stroke::new(1.7, palette.exact));
+    }
+    if overlay.options.trail {
+        trails(painter, &projection, overlay, &palette);
+    }
+    if let Some(edge) = &overlay.options.edge {
+        let segments = system.mesh().edges().get(edge).into_iter().flatten();
+        for piece in segments.flat_map(|s| s.nodes().windows(2)) {
+            let ends = [piece[0], piece[1]].map(|n| overlay.positions[n as usize]);
+            if let Some(segment) = projection.segment(ends[0], ends[1]) {
+                painter.line_segment(segment, Stroke::new(9.0, palette.load.gamma_multiply(0.35)));
+                painter.line_segment(segment, Stroke::new(3.5, palette.load));
+            }
+        }
+    }
+    if !overlay.apart {
+        supports(painter, &projection, overlay, &palette);
+        loads(painter, &projection, overlay, &palette, visuals);
+        weights(painter, rect, below, overlay, &palette, visuals);
+        moved_supports(painter, &projection, overlay, &palette, visuals);
+    }
+}
+
+/// A dashed line through some points. Dashes go on around corners.
+fn dashed(painter: &Painter, projection: &Projection, line: &[Vector2<f64>], stroke: Stroke) {
+    const DASH: f32 = 6.0;
+    const PERIOD: f32 = 10.0;
+    let mut phase = 0.0_f32;
+    for ends in line.windows(2) {
+        let Some([from, to]) = projection.segment(ends[0], ends[1]) else { continue };
+        let length = (to - from).length();
+        let at = |s: f32| from + (to - from) * (s / length);
+        let mut s = -phase;
+        while s < length {
+            let (begin, end) = (s.max(0.0), (s + DASH).min(length));
+            if begin < end {
+                painter.line_segment([at(begin), at(end)], stroke);
+            }
+            s += PERIOD;
+        }
+        phase = (phase + length) % PERIOD;
+    }
+}
+
+/// Where the tip has been in the last seconds, fading.
+fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+    /// s.
+    const DURATION: f64 = 2.0;
+    const MOST_PIECES: usize = 400;
+    let playback = overlay.playback;
+    let companions = playback.companions().iter().filter(|companion| !companion.is_absent);
+    let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
+    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
+        let end = playback.shown_time().unwrap_or(f64::INFINITY);
+        let end = end.min(history.samples().back().map_or(0.0, |s| s.time));
+        let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(|s| s.position).collect();
+        let stride = points.len().div_ceil(MOST_PIECES).max(1);
+        let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
+        for (i, ends) in kept.windows(2).enumerate() {
+            if let Some(segment) = projection.segment(*ends[0], *ends[1]) {
+                let age = i as f32 / kept.len() as f32;
+                painter.line_segment(segment, Stroke::new(1.5, color.gamma_multiply(0.8 * (1.0 - age))));
+            }
+        }
+    }
+}
+
+/// The spring from the body to the pointer, with its force.
+fn pull(
+    painter: &Painter,
+    projection: &Projection,
+    overlay: &Overlay<'_>,
+    hand: &Hand,
+    force: Vector2<f64>,
+    visuals: &Visuals,
+) {
+    /// Points.
+    const COIL: f32 = 5.0;
+    const PITCH: f32 = 7.0;
+    let palette = Palette::new(visuals);
+    let mesh = overlay.system.mesh();
+    let weights = mesh.weights(hand.point()).unwrap_or_default();
+    let held: Vector2<f64> = weights.iter().map(|&(n, w)| overlay.positions[n as usize] * w).sum();
+    let [from, to] = [held, hand.target()].map(|p| projection.point(p));
+    painter.circle_filled(from, 4.5, palette.hand);
+    painter.circle_stroke(to, 7.0, Stroke::new(2.0, palette.hand));
+    let way = to - from;
+    let length = way.length();
+    let stroke = Stroke::new(1.8, palette.hand);
+    if length > 4.0 * PITCH {
+        // Straight ends and a zigzag between them.
+        let along = way / length;
+        let across = vec2(-along.y, along.x) * COIL;
+        let turns = (((length - 2.0 * PITCH) / PITCH).floor()).min(40.0) as u32;
+        let pitch = (length - 2.0 * PITCH) / turns as f32;
+        let mut points = vec![from, from + along * PITCH];
+        points.extend((0..turns).map(|i| {
+            let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+            from + along * (PITCH + pitch * (i as f32 + 0.5)) + across * side
+        }));
+        points.extend([to - along * PITCH, to]);
+        painter.add(egui::Shape::line(points, stroke));
+    } else {
+        painter.line_segment([from, to], stroke);
+    }
+    let label = engineering(three_digits(force.norm()), "N");
+    boxed_text(painter, to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, visuals, palette.hand, 200.0);
+}
+
+/// Fixed edges: hatched where both directions are fixed, rollers where one is. Fixed nodes apart from them: a triangle, on a
+/// line where one direction is fixed.
+fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+    const HATCH: f32 = 7.0;
+    const ROLLER: f32 = 3.5;
+    let (positions, pattern) = (overlay.positions, overlay.system.pattern());
+    let stroke = Stroke::new(1.5, palette.support);
+    let mut drawn = vec![false; positions.len()];
+    for side in &overlay.drawing.boundary {
+        let both = [0, 1].map(|axis| side.ends().iter().all(|&end| pattern.fixed(end)[axis]));
+        if both == [false, false] {
+            continue;
+        }
+        let [p, q] = side.ends().map(|n| projection.point(positions[n as usize]));
+        // The outline runs counter-clockwise in the plane, so the outside is on its right; the window's y points down.
+        let along = (q - p).normalized();
+        let outward = vec2(-along.y, along.x);
+        if !along.is_finite() || along == Vec2::ZERO {
+            continue;
+        }
+        side.nodes().iter().for_each(|&n| drawn[n as usize] = true);
+        if both == [true, true] {
+            painter.line_segment([p, q], Stroke::new(2.5, palette.support));
+            let strokes = ((q - p).length() / HATCH).ceil().clamp(1.0, 500.0);
+            for i in 0..strokes as u32 {
+                let foot = p + (q - p) * (i as f32 + 0.5) / strokes;
+                painter.line_segment([foot, foot + (outward + along * 0.8) * HATCH], stroke);
+            }
+        } else {
+            for end in [p, q] {
+                painter.circle_stroke(end + outward * (ROLLER + 1.5), ROLLER, stroke);
+            }
+            painter.line_segment([p, q].map(|e| e + outward * (2.0 * ROLLER + 3.0)), stroke);
+        }
+    }
+    for (n, drawn) in (0..).zip(drawn) {
+        let fixed = pattern.fixed(n);
+        if drawn || fixed == [false, false] {
+            continue;
+        }
+        // A roller stands on the line that it moves along.
+        let away = if fixed == [true, false] { vec2(-1.0, 0.0) } else { vec2(0.0, 1.0) };
+        let (p, across) = (projection.point(positions[n as usize]), 7.0 * away.rot90());
+        let foot = p + 11.0 * away;
+        let triangle = vec![p, foot - across, foot + across];
+        painter.add(egui::Shape::convex_polygon(triangle, palette.support.gamma_multiply(0.6), stroke));
+        if fixed != [true, true] {
+            let line = foot + 4.0 * away;
+            painter.line_segment([line - 1.3 * across, line + 1.3 * across], stroke);
+        }
+    }
+}
+
+fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+    let Overlay { scene, system, positions, time, .. } = *overlay;
+    let forces = Forces { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
+    let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
+    for arrow in forces.arrows(projection) {
+        arrow.paint(painter, palette.load, visuals, is_hot(arrow.load));
+    }
+    for turn in forces.turns(projection) {
+        turn.paint(painter, palette.load, visuals, is_hot(turn.load));
+    }
+    if let Some((taken, drag)) = overlay.hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
+        taken.paint(painter, drag, palette.load);
+    }
+}
+
+/// The arrows of weights, in a corner under a colour bar that ends so far below the top, points.
+fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+    /// Length of the arrow, which tells its direction only, points.
+    const WEIGHT: f32 = 58.0;
+    for load in overlay.scene.loads.iter().filter(|load| arrow::is_seen(load, overlay.time)) {
+        let Load::Gravity { acceleration: [x, y], .. } = load else { continue };
+        let direction = vec2(*x as f32, -*y as f32).normalized();
+        if direction == Vec2::ZERO || !direction.is_finite() {
+            continue;
+        }
+        // One that points up begins where one that points down ends.
+        let top = if below > 0.0 { below + 8.0 } else { 30.0 };
+        let way = direction * WEIGHT;
+        let from = rect.right_top() + vec2(-64.0, top + (-way.y).max(0.0));
+        let tip = arrow::paint_arrow(painter, from, way, palette.load);
+        let label = engineering(x.hypot(*y), "m/s²");
+        boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
+    }
+}
+
+/// The force of every support that moves, as an arrow to where it pushes or from where it pulls.
+fn moved_supports(
+    painter: &Painter,
+    projection: &Projection,
+    overlay: &Overlay<'_>,
+    palette: &Palette,
+    visuals: &Visuals,
+) {
+    /// Length of the arrow of a reaction, which tells its direction only, points.
+    const REACTION: f32 = 58.0;
+    for (support, reaction) in overlay.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
+        let direction = vec2(reaction.force.x as f32, -reaction.force.y as f32).normalized();
+        if direction == Vec2::ZERO || !direction.is_finite() {
+            continue;
+        }
+        let middle = projection.point(reaction.middle);
+        // It pushes the way it has gone: from outside. Else it holds back.
+        let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
+        let from = if pushes { middle - direction * REACTION } else { middle };
+        let tip = arrow::paint_arrow(painter, from, direction * REACTION, palette.support);
+        let tail = if pushes { from } else { tip };
+        let (anchor, away) = match (pushes, direction.y > 0.0) {
+            (true, true) | (false, false) => (Align2::CENTER_BOTTOM, -6.0),
+            (true, false) | (false, true) => (Align2::CENTER_TOP, 6.0),
+        };
+        let label = engineering(reaction.force.norm(), "N");
+        boxed_text(painter, tail + vec2(0.0, away), anchor, &label, visuals, palette.support, 200.0);
+    }
+}
+
+/// Text on a box of the background's colour, moved into the view where it would leave it.
+pub(crate) fn boxed_text(
+    painter: &Painter,
+    at: Pos2,
+    anchor: Align2,
+    text: &str,
+    visuals: &Visuals,
+    color: Color32,
+    width: f32,
+) {
+    let galley = painter.layout(text.to_owned(), FontId::proportional(BODY), color, width.max(40.0));
+    let view = painter.clip_rect().shrink(8.0);
+    let wanted = anchor.anchor_size(at, galley.size());
+    let corner = wanted.min.clamp(view.min, (view.max - galley.size()).max(view.min));
+    let rect = Rect::from_min_size(corner, galley.size());
+    painter.rect_filled(rect.expand(4.0), 4.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    painter.galley(rect.min, galley, color);
+}
+
+/// Room that the colour bar takes at the bottom or the top of the view, points.
+pub(crate) const LEGEND_HEIGHT: f32 = 66.0;
+
+/// Room that it takes on the right of the view, points.
+pub(crate) const LEGEND_WIDTH: f32 = 300.0;
+
+/// Least size of a view with a colour bar, points.
+const LEGEND_VIEW: Vec2 = vec2(420.0, 120.0);
+
+/// `true` if a view has a colour bar at its bottom.
+pub(crate) fn has_legend_below(view: Vec2) -> bool {
+    view.x >= LEGEND_VIEW.x && view.y >= LEGEND_VIEW.y && !has_legend_on_top(view.y)
+}
+
+/// Whether a view is so low, points, that the colour bar is at its top: at the bottom it would be in the arrows' way.
+pub(crate) fn has_legend_on_top(height: f32) -> bool {
+    height < 400.0
+}
+
+/// Paints the colour bar with its title and round values in a corner on the right and returns where; `names` are the
+/// solutions' names.
+fn legend(
+    painter: &Painter,
+    rect: Rect,
+    names: Rect,
+    overlay: &Overlay<'_>,
+    palette: &Palette,
+    visuals: &Visuals,
+) -> Option<Rect> {
+    const MOST_TICKS: u32 = 5;
+    if rect.width() < LEGEND_VIEW.x || rect.height() < LEGEND_VIEW.y {
+        return None;
+    }
+    // A low view of little width has the body beside it.
+    let is_small = has_legend_on_top(rect.height()) && rect.width() < 700.0;
+    let size = vec2(if is_small { 170.0 } else { 240.0 }, 10.0);
+    let field = overlay.options.field;
+    let [low, high] = overlay.color_range;
+    let font = FontId::proportional(SMALL);
+    let (power, symbol) = prefix(&[low, high], field.unit());
+    let unit = if field.unit().is_empty() { String::new() } else { format!(", {symbol}{}", field.unit()) };
+    let raw = if overlay.options.raw && !field.is_of_elements() { tr(", raw") } else { "" };
+    let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
+    let title = painter.layout_no_wrap(format!("{}{unit}{raw}{range}", tr(field.name())), font.clone(), palette.text);
+    // Beside the solutions' names, or under them where there is no room.
+    let left = rect.right() - (size.x + 46.0);
+    let top = if names.right() > left { names.bottom() - rect.top() + 6.0 } else { 12.0 };
+    let corner = if has_legend_on_top(rect.height()) {
+        rect.right_top() + vec2(-(size.x + 32.0), top)
+    } else {
+        rect.right_bottom() - vec2(size.x + 32.0, LEGEND_HEIGHT - 6.0)
+    };
+    let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(size.x + 34.0, 56.0));
+    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    painter.galley(corner, title, palette.text);
+    let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), size);
+    color_bar(painter, bar, palette.map(field));
+    for value in ticks(low, high, MOST_TICKS) {
+        let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
+        painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
+        let words = engineering(value / 10f64.powi(power), "");
+        painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, words, font.clone(), palette.text);
+    }
+    Some(frame)
+}
+
+/// The colours of a map, from the lowest to the highest.
+pub(crate) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
+    const STRIPS: u32 = 128;
+    let mut mesh = egui::Mesh::default();
+    for i in 0..STRIPS {
+        let at = |i: u32| bar.left() + bar.width() * i as f32 / STRIPS as f32;
+        let [r, g, b] = map.color((f64::from(i) + 0.5) / f64::from(STRIPS));
+        let strip = Rect::from_min_max(pos2(at(i), bar.top()), pos2(at(i + 1), bar.bottom()));
+        mesh.add_colored_rect(strip, Color32::from_rgb(r, g, b));
+    }
+    painter.add(mesh);
+}
+
+/// Paints which line is what, and how far off each is; returns where.
+fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Rect {
+    const GAP: f32 = 16.0;
+    const ROW: f32 = 20.0;
+    let with_error = |word: &str, error: Option<f64>| match error {
+        Some(error) => format!("{word}  {}", percent(error)),
+        None => word.to_owned(),
+    };
+    let own = match overlay.scene.analysis {
+        Analysis::Static => with_error(tr(overlay.scene.solver.method.id()), overlay.errors.own),
+        Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
+    };
+    let mut lines = vec![(palette.solution(overlay.scene), Mark::Line, own)];
+    for companion in overlay.playback.companions() {
+        lines.push((palette.integrator(companion.integrator), Mark::Line, tr(companion.integrator.id()).to_owned()));
+    }
+    if overlay.ghost.is_some() {
+        let words = with_error(tr(MethodKind::Linear.id()), overlay.errors.linear);
+        lines.push((palette.method(MethodKind::Linear), Mark::Line, words));
+    }
+    if !overlay.exact.is_empty() {
+        lines.push((palette.exact, Mark::Dashes, tr("exact").to_owned()));
+    }
+    if overlay.options.rest_outline {
+        lines.push((palette.rest, Mark::Outline, tr("rest").to_owned()));
+    }
+    let font = FontId::proportional(BODY);
+    // In rows: a narrow view has several.
+    let most = (rect.width() - 32.0).max(1.0);
+    let (mut at, mut widest) = (vec2(0.0, 0.0), 0.0_f32);
+    let placed: Vec<_> = lines
+        .into_iter()
+        .map(|(color, mark, words)| {
+            let galley = painter.layout_no_wrap(words, font.clone(), palette.text);
+            let width = Mark::WIDTH + 6.0 + galley.size().x;
+            if at.x > 0.0 && at.x + width > most {
+                at = vec2(0.0, at.y + ROW);
+            }
+            let place = at;
+            at.x += width + GAP;
+            widest = widest.max(place.x + width);
+            (color, mark, galley, place)
+        })
+        .collect();
+    let corner = rect.left_top() + vec2(16.0, 12.0);
+    let frame = Rect::from_min_size(corner, vec2(widest, at.y + ROW));
+    let frame = frame.expand2(vec2(8.0, 4.0));
+    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    for (color, mark, galley, place) in placed {
+        let left = corner + place + vec2(0.0, 0.5 * ROW);
+        mark.paint(painter, left, color);
+        painter.galley(left + vec2(Mark::WIDTH + 6.0, -0.5 * galley.size().y), galley, palette.text);
+    }
+    frame
+}
+
+/// Space between the left side of the view and the scale bar, points.
+const SCALE_BAR_LEFT: f32 = 18.0;
+
+/// Length of the scale bar, m and points.
+fn scale(camera: &Camera) -> (f64, f32) {
+    let length = round_down(110.0 / camera.scale);
+    (length, (length * camera.scale) as f32)
+}
+
+/// Space that the scale bar takes on the left of the view, points.
+pub(crate) fn scale_bar_width(camera: &Camera) -> f32 {
+    SCALE_BAR_LEFT + scale(camera).1
+}
+
+/// A bar of a round length.
+pub(crate) fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
+    if rect.width() < 220.0 || rect.height() < 80.0 {
+        return;
+    }
+    let (length, bar) = scale(camera);
+    let left = rect.left_bottom() + vec2(SCALE_BAR_LEFT, -20.0);
+    let stroke = Stroke::new(1.5, palette.text);
+    painter.line_segment([left, left + vec2(bar, 0.0)], stroke);
+    for x in [0.0, bar] {
+        painter.line_segment([left + vec2(x, -4.0), left + vec2(x, 4.0)], stroke);
+    }
+    let middle = left + vec2(bar * 0.5, -6.0);
+    painter.text(middle, Align2::CENTER_BOTTOM, engineering(length, "m"), FontId::proportional(SMALL), palette.text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_are_clipped_to_the_box() {
+        assert_eq!(clip([-20.0, 0.0], [20.0, 0.0], [10.0, 5.0]), Some([[-10.0, 0.0], [10.0, 0.0]]));
+        assert_eq!(clip([0.0, 0.0], [1.0, 1.0], [10.0, 5.0]), Some([[0.0, 0.0], [1.0, 1.0]]));
+        assert_eq!(clip([-20.0, 6.0], [20.0, 6.0], [10.0, 5.0]), None);
+        let [a, b] = clip([0.0, 0.0], [1e12, 1e12], [10.0, 5.0]).unwrap();
+        assert_eq!((a, b[0].round(), b[1].round()), ([0.0, 0.0], 5.0, 5.0));
+    }
+}

@@ -1,0 +1,277 @@
+//! The pointer over the view. A press takes one thing: the tip of an arrow sets its load, the body is pulled, empty
+//! space moves the view. The wheel zooms to the pointer.
+
+use std::ops::RangeInclusive;
+
+use egui::{CursorIcon, Modifiers, Pos2, Response, Ui, Vec2};
+use nalgebra::Vector2;
+
+use crate::app::session::playback::Playback;
+use crate::app::viewport::handle::{self, Grip, Handle, HotHandle, Pull};
+use crate::mesh::{MaterialPoint, Mesh, Segment};
+use crate::render::Camera;
+use crate::simulation::Simulation;
+
+/// What the pointer has done to the view.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Look {
+    /// Nothing.
+    #[default]
+    Same,
+    /// Somewhere else.
+    At(Camera),
+    /// Back to the whole body.
+    Fit,
+}
+
+/// What a press has taken, until it is let go.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Held {
+    /// There is no press, or it was elsewhere.
+    #[default]
+    Nothing,
+    /// The tip of an arrow.
+    Tip(Grip),
+    /// The body, at a point.
+    Body(MaterialPoint),
+    /// The view, at a point of a body that cannot be pulled.
+    Point(MaterialPoint),
+    /// Empty space.
+    Space,
+}
+
+/// What the pointer is on, or has taken.
+#[derive(Debug, Default)]
+pub(crate) struct Pointer {
+    held: Held,
+    /// The arrow under a pointer that is not pressed.
+    over_tip: Option<Handle>,
+    /// The material point under a pointer that is not pressed.
+    over_body: Option<MaterialPoint>,
+    /// Where the pointer is.
+    at: Option<Pos2>,
+    /// `true` if the wheel was last turned over the view. Scrolling that is left from elsewhere does not zoom it.
+    scrolls: bool,
+}
+
+/// What the pointer asks for in one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Wish {
+    pub look: Look,
+    /// A load by its number, and what it is to be.
+    pub load: Option<(usize, Pull)>,
+    /// A load by its number, that is to be as in the scene's file again.
+    pub restore: Option<usize>,
+    /// A click on the body, or `None` in it for one beside the body.
+    pub clicked: Option<Option<MaterialPoint>>,
+}
+
+/// So near to a thin body, points, counts as on it.
+const NEAR: f64 = 8.0;
+
+/// The body under the pointer.
+pub(crate) enum Body<'a> {
+    /// None that could be reached.
+    None,
+    /// One that says its values and cannot be pulled.
+    Seen,
+    /// One that can be pulled.
+    InHand(&'a mut Simulation, &'a mut Playback),
+}
+
+/// What a hand needs to find what it reaches for.
+pub(crate) struct Reach<'a> {
+    pub camera: Camera,
+    /// The body; `None` where its elements are drawn elsewhere: there is nothing to reach then.
+    pub mesh: Option<&'a Mesh>,
+    /// Where the nodes are, m.
+    pub positions: &'a [Vector2<f64>],
+    pub outline: &'a [Segment],
+    /// The tips of arrows.
+    pub handles: &'a [Handle],
+    /// Magnifications that the wheel may reach.
+    pub scales: RangeInclusive<f64>,
+}
+
+impl Reach<'_> {
+    /// The place in the plane under a place in the view, m.
+    fn place(&self, response: &Response, at: Pos2) -> Vector2<f64> {
+        let at = at - response.rect.center();
+        self.camera.to_world([f64::from(at.x), f64::from(at.y)])
+    }
+
+    fn point(&self, place: Vector2<f64>) -> Option<MaterialPoint> {
+        self.mesh?.pick(self.positions, self.outline, place, NEAR / self.camera.scale)
+    }
+}
+
+impl Pointer {
+    /// The arrow whose tip it is on, or has taken.
+    pub(crate) fn hot_handle(&self) -> Option<HotHandle> {
+        if let Held::Tip(grip) = self.held {
+            return Some(HotHandle { handle: grip.handle, dragged: grip.drag() });
+        }
+        self.over_tip.map(|handle| HotHandle { handle, dragged: None })
+    }
+
+    /// The material point it is over, and where it is, while nothing is pressed.
+    pub(crate) fn over_body(&self) -> Option<(MaterialPoint, Pos2)> {
+        self.over_body.zip(self.at)
+    }
+
+    /// Whether it has taken something of the body or its loads: a view that moved then would move the place under it.
+    pub(crate) fn holds(&self) -> bool {
+        matches!(self.held, Held::Tip(..) | Held::Body(_))
+    }
+
+    /// Follows the pointer over the view that `response` belongs to.
+    pub(crate) fn follow(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, mut body: Body<'_>) -> Wish {
+        let (pressed, origin, down, at, let_go_at, fingers, keys) = ui.input(|i| {
+            let pointer = &i.pointer;
+            let fingers = i.multi_touch().map(|touch| touch.translation_delta);
+            let (pressed, down) = (pointer.primary_pressed(), pointer.primary_down());
+            let let_go_at = i.events.iter().rev().find_map(|event| match event {
+                egui::Event::PointerButton { pos, button: egui::PointerButton::Primary, pressed: false, .. } => {
+                    Some(*pos)
+                }
+                _ => None,
+            });
+            (pressed, pointer.press_origin(), down, pointer.interact_pos(), let_go_at, fingers, i.modifiers)
+        });
+        self.at = at;
+        let mut wish = Wish::default();
+        // A quick click is pressed and released within one frame. Two fingers move the view: what the first has taken is
+        // let go.
+        let is_here = response.is_pointer_button_down_on() || response.clicked();
+        if pressed && is_here && fingers.is_none() {
+            // Since the press the pointer may have moved on.
+            let at = origin.or(at);
+            self.held = at.map_or(Held::Nothing, |at| Self::take(response, reach, &mut body, at));
+        }
+        // After it was let go the pointer may have moved on, too.
+        if let Some(at) = let_go_at.or(at) {
+            self.drag(response, reach, &mut body, (at, keys), &mut wish);
+        }
+        if response.double_clicked() {
+            match self.held {
+                Held::Tip(grip) => wish.restore = Some(grip.handle.load()),
+                Held::Body(_) | Held::Point(_) | Held::Space => wish.look = Look::Fit,
+                Held::Nothing => {}
+            }
+        } else if response.clicked() {
+            match self.held {
+                Held::Body(point) | Held::Point(point) => wish.clicked = Some(Some(point)),
+                Held::Space => wish.clicked = Some(None),
+                Held::Tip(..) | Held::Nothing => {}
+            }
+        }
+        if !down || fingers.is_some() {
+            if let (Held::Body(_), Body::InHand(simulation, playback)) = (self.held, &mut body) {
+                simulation.release();
+                playback.release();
+            }
+            self.held = Held::Nothing;
+        }
+        self.hover(ui, response, reach, &body, down);
+        if wish.look == Look::Same {
+            wish.look = self.look(ui, response, reach, fingers);
+        }
+        wish
+    }
+
+    /// What a press here takes: a tip before the body that it may lie over.
+    fn take(response: &Response, reach: &Reach<'_>, body: &mut Body<'_>, at: Pos2) -> Held {
+        if let Some(handle) = handle::at(reach.handles, at) {
+            return Held::Tip(Grip::new(*handle, at));
+        }
+        let reached = reach.point(reach.place(response, at)).filter(|_| !matches!(body, Body::None));
+        let Some(point) = reached else { return Held::Space };
+        let Body::InHand(simulation, playback) = body else { return Held::Point(point) };
+        if !simulation.grab(point) {
+            return Held::Space;
+        }
+        playback.grab(point);
+        Held::Body(point)
+    }
+
+    /// Moves what is held to where the pointer is.
+    fn drag(
+        &mut self,
+        response: &Response,
+        reach: &Reach<'_>,
+        body: &mut Body<'_>,
+        (at, keys): (Pos2, Modifiers),
+        wish: &mut Wish,
+    ) {
+        match &mut self.held {
+            Held::Tip(grip) => {
+                grip.follow(at, keys.alt || keys.ctrl);
+                wish.load = grip.pull(keys.shift).map(|pull| (grip.handle.load(), pull));
+            }
+            Held::Body(_) => {
+                let Body::InHand(simulation, playback) = body else { return };
+                let place = reach.place(response, at);
+                if simulation.hand().is_some_and(|(hand, _)| hand.target() != place) {
+                    // A pointer has a finite place.
+                    let _ = simulation.pull_to(place);
+                    playback.pull_to(place);
+                }
+            }
+            Held::Point(_) | Held::Space | Held::Nothing => {}
+        }
+    }
+
+    /// Finds what is under the pointer, and says so with the cursor.
+    fn hover(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, body: &Body<'_>, down: bool) {
+        (self.over_tip, self.over_body) = (None, None);
+        let cursor = match self.held {
+            Held::Tip(..) => Some(CursorIcon::Move),
+            Held::Body(_) => Some(CursorIcon::Grabbing),
+            Held::Point(_) | Held::Space => Some(CursorIcon::AllScroll),
+            Held::Nothing => response.hover_pos().filter(|_| !down).map(|at| {
+                self.over_tip = handle::at(reach.handles, at).copied();
+                if self.over_tip.is_some() {
+                    return CursorIcon::Move;
+                }
+                self.over_body = reach.point(reach.place(response, at));
+                match (self.over_body, body) {
+                    (Some(_), Body::InHand(..)) => CursorIcon::Grab,
+                    (Some(_), Body::None) => CursorIcon::Crosshair,
+                    _ => CursorIcon::Default,
+                }
+            }),
+        };
+        if let Some(cursor) = cursor {
+            ui.set_cursor_icon(cursor);
+        }
+    }
+
+    /// Moves and zooms the view.
+    fn look(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, fingers: Option<Vec2>) -> Look {
+        let mut camera = reach.camera;
+        let mut look = Look::Same;
+        // Two fingers move the view together, wherever they are.
+        let drag = fingers.unwrap_or_else(|| response.drag_delta());
+        if drag != Vec2::ZERO && !self.holds() {
+            camera.pan([f64::from(drag.x), f64::from(drag.y)]);
+            look = Look::At(camera);
+        }
+        let turned = ui.input(|i| {
+            i.events.iter().any(|event| matches!(event, egui::Event::MouseWheel { .. } | egui::Event::Zoom(_)))
+        });
+        if turned {
+            self.scrolls = response.hover_pos().is_some();
+        }
+        if let Some(pointer) = response.hover_pos().filter(|_| self.scrolls || fingers.is_some()) {
+            let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+            let factor = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
+            // A pointer that only rests over the view must not stop it from following the body.
+            if factor != 1.0 {
+                let at = pointer - response.rect.center();
+                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)], reach.scales.clone());
+                look = Look::At(camera);
+            }
+        }
+        look
+    }
+}

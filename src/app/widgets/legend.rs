@@ -1,0 +1,33 @@
+//! The marks of a legend: how each line over the body is drawn.
+
+use egui::{Color32, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};
+
+/// How a solution is drawn.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Mark {
+    Line,
+    Dashes,
+    Outline,
+}
+
+impl Mark {
+    /// How wide every mark is, points.
+    pub(crate) const WIDTH: f32 = 18.0;
+
+    /// Paints it to the right of a point.
+    pub(crate) fn paint(self, painter: &Painter, left: Pos2, color: Color32) {
+        let stroke = Stroke::new(2.5, color);
+        match self {
+            Self::Line => _ = painter.line_segment([left, left + vec2(Self::WIDTH, 0.0)], stroke),
+            Self::Dashes => {
+                for x in [0.0, 7.0, 14.0] {
+                    painter.line_segment([left + vec2(x, 0.0), left + vec2((x + 4.5).min(Self::WIDTH), 0.0)], stroke);
+                }
+            }
+            Self::Outline => {
+                let swatch = Rect::from_min_max(left - vec2(0.0, 4.0), left + vec2(Self::WIDTH, 4.0));
+                painter.rect_stroke(swatch, 0.0, Stroke::new(1.0, color), StrokeKind::Inside);
+            }
+        }
+    }
+}

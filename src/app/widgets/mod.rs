@@ -1,0 +1,6 @@
+//! Pieces of user interface that know nothing of the model: colours, number fields, buttons, text.
+
+pub(crate) mod legend;
+pub(crate) mod load_scale;
+pub(crate) mod number_field;
+pub(crate) mod palette;

@@ -1,0 +1,284 @@
+//! A row of the panel: label, slider, number. Values out of range are refused with a message under the row.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+
+use egui::{Align, DragValue, Id, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
+use thiserror::Error;
+
+use crate::app::language::{fill, tr, translated};
+use crate::app::widgets::load_scale::LoadScale;
+use crate::scene::OutOfRange;
+use crate::scene::limits::Limit;
+use crate::scene::units::{self, UnitError};
+use crate::words::{editable, number, three_digits};
+
+/// Messages next to fields, by the field's label, in English.
+pub(crate) type Messages = BTreeMap<&'static str, String>;
+
+/// A number to show and edit.
+pub(crate) struct NumberField {
+    /// What it is called; unique in the panel.
+    pub label: &'static str,
+    /// What it does.
+    pub tooltip: &'static str,
+    /// What is accepted.
+    pub limit: Limit,
+    /// What the slider spans. Typed values may lie outside, within the limit.
+    pub slider: RangeInclusive<f64>,
+    /// Relation between its values and places on the slider.
+    pub scale: SliderScale,
+    /// Whole numbers only.
+    pub whole: bool,
+}
+
+/// Relation between the values of a slider and the places on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SliderScale {
+    /// Proportional.
+    Linear,
+    /// Logarithmic from this smallest positive value on, and to the other side of zero.
+    Logarithmic(f64),
+    /// Proportional around this value, which is in the middle third, and logarithmic far beyond it: [`LoadScale`].
+    Around(f64),
+}
+
+/// Why a typed number is refused.
+#[derive(Debug, Error)]
+enum FieldError {
+    #[error("expected a whole number, got {0}")]
+    NotWhole(String),
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+}
+
+const VALUE_WIDTH: f32 = 104.0;
+
+impl NumberField {
+    /// Shows the row; returns a new value that is within the limit, once there is one.
+    pub(crate) fn show(&self, ui: &mut Ui, messages: &mut Messages, value: f64) -> Option<f64> {
+        self.show_beside(ui, messages, value, None)
+    }
+
+    /// [`Self::show`] of a value that had an original: a double click, or Delete on the slider, brings that back.
+    pub(crate) fn show_beside(
+        &self,
+        ui: &mut Ui,
+        messages: &mut Messages,
+        value: f64,
+        original: Option<f64>,
+    ) -> Option<f64> {
+        let mut edited = None;
+        let mut is_reset = false;
+        let tip = self.tip(original);
+        let refused = RefCell::new(None);
+        let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
+        // egui reads what was typed once more in the frame after Escape.
+        let escape_id = Id::unique((self.label, "escape"));
+        let has_escaped = ui.data_mut(|data| data.remove_temp::<bool>(escape_id)).is_some();
+        let label = ui
+            .horizontal(|ui| {
+                let label = ui.label(tr(self.label)).on_hover_text(tr(self.tooltip));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let mut typed = value;
+                    let drag = DragValue::new(&mut typed)
+                        .speed(if self.whole { 0.1 } else { 0.005 * value.abs().max(*self.slider.end() * 1e-3) })
+                        .update_while_editing(false)
+                        .custom_formatter(|v, _| editable(v, unit))
+                        .custom_parser(|text| {
+                            // Left as it was: all the digits that are not shown stay.
+                            if has_escaped || text.trim() == shown {
+                                return Some(value);
+                            }
+                            self.read(text).map_err(|reason| refused.replace(Some(reason))).ok()
+                        });
+                    let size = egui::vec2(VALUE_WIDTH, ui.spacing().interact_size.y);
+                    let response = ui.add_sized(size, drag).labelled_by(label.id);
+                    if response.changed() {
+                        edited = Some(if response.dragged() { three_digits(typed) } else { typed });
+                    }
+                    if ui.input(|i| i.key_pressed(Key::Escape)) {
+                        ui.data_mut(|data| data.insert_temp(escape_id, true));
+                        messages.remove(self.label);
+                    } else if refused.borrow().is_some() && ui.input(|i| i.key_pressed(Key::Enter)) {
+                        // What was typed stays to be mended, and the next keys belong to it.
+                        ui.memory_mut(|memory| memory.request_focus(response.id));
+                    }
+                    if response.double_clicked() && original.is_some() {
+                        is_reset = true;
+                        // The first click has begun to edit the text.
+                        ui.memory_mut(|memory| memory.surrender_focus(response.id));
+                    }
+                    quiet_tip(response, &tip);
+                });
+                label
+            })
+            .inner;
+        ui.spacing_mut().slider_width = ui.available_width();
+        let (response, slid) = self.show_slider(ui, value);
+        let response = response.labelled_by(label.id);
+        if response.has_focus() && !response.dragged() {
+            edited = self.stepped(ui, value).or(edited);
+        } else if response.changed() {
+            edited = Some(if self.whole { slid.round() } else { three_digits(slid) });
+        }
+        is_reset |= is_reset_by(ui, &response);
+        quiet_tip(response, &tip);
+        if let (true, Some(original)) = (is_reset, original) {
+            refused.replace(None);
+            edited = Some(original);
+        }
+        let accepted = match (refused.into_inner(), edited) {
+            (Some(reason), _) => {
+                messages.insert(self.label, reason);
+                None
+            }
+            (None, Some(new)) => match self.check(new) {
+                Ok(()) => {
+                    messages.remove(self.label);
+                    Some(new)
+                }
+                Err(error) => {
+                    messages.insert(self.label, error.to_string());
+                    None
+                }
+            },
+            (None, None) => None,
+        };
+        show_message(ui, messages, self.label);
+        accepted.filter(|&new| new != value)
+    }
+
+    /// Shows the slider; returns the value that it is moved to.
+    fn show_slider(&self, ui: &mut Ui, value: f64) -> (Response, f64) {
+        let mut slid = value;
+        let shown = |ui: &mut Ui, slider: Slider<'_>| ui.add(slider.clamping(SliderClamping::Never).show_value(false));
+        let (low, high) = (*self.slider.start(), *self.slider.end());
+        let response = match self.scale {
+            SliderScale::Linear => shown(ui, Slider::new(&mut slid, low..=high)),
+            SliderScale::Logarithmic(smallest) => {
+                shown(ui, Slider::new(&mut slid, low..=high).logarithmic(true).smallest_positive(smallest))
+            }
+            SliderScale::Around(usual) => {
+                let (start, scale) = match low < 0.0 {
+                    true => (-1.0, LoadScale::two_sided_slider(usual, high)),
+                    false => (0.0, LoadScale::slider(usual, high)),
+                };
+                let mut place = scale.length(value.abs()).copysign(value);
+                let response = shown(ui, Slider::new(&mut place, start..=1.0));
+                // Readers of the window name its value, not the place.
+                ui.ctx().accesskit_node_builder(response.id, |node| {
+                    node.set_numeric_value(value);
+                    node.set_min_numeric_value(low);
+                    node.set_max_numeric_value(high);
+                });
+                if response.changed() {
+                    slid = scale.load(place.abs()).copysign(place).clamp(low.min(value), high.max(value));
+                }
+                response
+            }
+        };
+        (response, slid)
+    }
+
+    /// What it does, and how to have the original back.
+    fn tip(&self, original: Option<f64>) -> String {
+        let tip = tr(self.tooltip);
+        original.map_or_else(
+            || tip.to_owned(),
+            |original| {
+                let value = editable(original, self.limit.unit);
+                let back = fill!("Double click, or Delete on the slider: %{value}, as in the scene.", value = value);
+                format!("{tip}\n{back}")
+            },
+        )
+    }
+
+    /// What the arrow keys make of a value: one per cent of it, of a straight scale a 360th, and whole numbers one by one.
+    fn stepped(&self, ui: &Ui, value: f64) -> Option<f64> {
+        let pressed = |key| ui.input(|i| i.num_presses(key)) as f64;
+        let steps = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
+        if steps == 0.0 {
+            return None;
+        }
+        let (low, high) = (*self.slider.start(), *self.slider.end());
+        let step = match self.scale {
+            _ if self.whole => 1.0,
+            SliderScale::Logarithmic(smallest) => (0.01 * value.abs()).max(smallest),
+            SliderScale::Around(usual) => (0.01 * value.abs()).max(0.001 * usual),
+            SliderScale::Linear => (high - low) / 360.0,
+        };
+        let stepped = (value + steps * step).clamp(low.min(value), high.max(value));
+        Some(if self.whole { stepped } else { three_digits(stepped) })
+    }
+
+    /// The number that a text says, or why it is refused.
+    fn read(&self, text: &str) -> Result<f64, String> {
+        match parse(text, self.limit.unit) {
+            Ok(number) if number.is_finite() => self.check(number).map(|()| number).map_err(|error| error.to_string()),
+            Ok(_) | Err(UnitError::NoNumber { .. }) => Err(self.expected(text)),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    fn expected(&self, text: &str) -> String {
+        self.limit.expected(&format!("\u{201c}{}\u{201d}", text.trim())).to_string()
+    }
+
+    fn check(&self, value: f64) -> Result<(), FieldError> {
+        if self.whole && value.fract() != 0.0 {
+            return Err(FieldError::NotWhole(number(value)));
+        }
+        Ok(self.limit.check(value)?)
+    }
+}
+
+/// The message of a field, if it has one.
+pub(crate) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
+    if let Some(message) = messages.get(label) {
+        let color = ui.visuals().error_fg_color;
+        ui.add(egui::Label::new(egui::RichText::new(translated(message)).color(color).small()).wrap());
+    }
+}
+
+/// Whether a slider was clicked twice, or has the focus of a key that deletes.
+fn is_reset_by(ui: &Ui, slider: &Response) -> bool {
+    // A slider senses drags only: a click is a drag that has gone nowhere.
+    let clicked_twice = slider.drag_stopped() && ui.input(|i| i.pointer.button_double_clicked(PointerButton::Primary));
+    let deletes = || ui.input(|i| i.key_pressed(Key::Delete) || i.key_pressed(Key::Backspace));
+    clicked_twice || slider.has_focus() && deletes()
+}
+
+/// A tooltip that stays away from what is dragged: it would cover the row below.
+fn quiet_tip(response: Response, tip: &str) {
+    if !response.dragged() && !response.has_focus() {
+        response.on_hover_text(tip);
+    }
+}
+
+/// A typed number, in this unit where it has none: `2.5`, `1e4`, `12 kN`, `30,000`, and `3k` for 3 kN.
+fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
+    // A prefix alone is that of the field's unit.
+    units::parse(text, unit).or_else(|error| units::parse(&format!("{}{unit}", text.trim()), unit).map_err(|_| error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn typed_numbers_take_units_and_prefixes() {
+        for (text, value) in
+            [("2.5", 2.5), ("1e4", 1e4), ("12 kN", 12e3), ("12kN", 12e3), ("7 N", 7.0), ("3k", 3e3), ("30,000", 3e4)]
+        {
+            assert_eq!(parse(text, "N"), Ok(value), "{text}");
+        }
+        assert_eq!((parse("3 mm", "m"), parse("7.8 g/cm³", "kg/m³")), (Ok(0.003), Ok(7800.0)));
+        assert_eq!((parse("2 m", "m"), parse("45 °", "°"), parse("45°", "°")), (Ok(2.0), Ok(45.0), Ok(45.0)));
+        assert!(matches!(parse("12 kN", "Pa"), Err(UnitError::WrongDimension { .. })));
+        assert!(matches!(parse("0,5", "N"), Err(UnitError::Ambiguous { .. })));
+        assert!(matches!(parse("two", "N"), Err(UnitError::NoNumber { .. })));
+        assert!(parse("", "N").is_err());
+    }
+}

@@ -1,0 +1,307 @@
+//! The window's colours and sizes of type, all of them, for both themes. Tests compute the contrasts that WCAG 2.1 asks for.
+
+use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
+use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
+
+use crate::render::colormap::ColorMap;
+use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene};
+use crate::simulation::Field;
+
+/// Size of text that is read, points.
+pub(crate) const BODY: f32 = 14.0;
+/// Size of the smallest text, points.
+pub(crate) const SMALL: f32 = 12.0;
+/// Size of the headline numbers, points.
+pub(crate) const HEADLINE: f32 = 18.0;
+
+/// The colours of a theme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Palette {
+    dark: bool,
+    /// Behind the body.
+    pub canvas: Color32,
+    /// Behind panels.
+    pub panel: Color32,
+    /// Of buttons, and of what is under the pointer.
+    pub control: Color32,
+    pub hovered: Color32,
+    /// Lines between things.
+    pub line: Color32,
+    pub text: Color32,
+    pub secondary: Color32,
+    /// What is chosen, and what has the keyboard's focus.
+    pub accent: Color32,
+    /// Behind what is chosen.
+    pub chosen: Color32,
+    pub good: Color32,
+    pub warning: Color32,
+    pub error: Color32,
+    /// Behind words of an error.
+    pub error_chip: Color32,
+    /// Outlines: of the exact solution, and of the body at rest.
+    pub exact: Color32,
+    pub rest: Color32,
+    pub support: Color32,
+    pub load: Color32,
+    pub hand: Color32,
+    /// Bodies without a value.
+    pub absent: Color32,
+    /// Element sides, over the colours of the body; straight alpha.
+    pub wire: [u8; 4],
+}
+
+const fn rgb(hex: u32) -> Color32 {
+    Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+}
+
+const DARK: Palette = Palette {
+    dark: true,
+    canvas: rgb(0x1E2228),
+    panel: rgb(0x262B33),
+    control: rgb(0x363D48),
+    hovered: rgb(0x454E5C),
+    line: rgb(0x3A414C),
+    text: rgb(0xE6E9EF),
+    secondary: rgb(0xA9B1BD),
+    accent: rgb(0x6CB6FF),
+    chosen: rgb(0x2F4A6B),
+    good: rgb(0x7CDB9A),
+    warning: rgb(0xF2C14E),
+    error: rgb(0xFF8A80),
+    error_chip: rgb(0x44282C),
+    exact: rgb(0x4FD1C5),
+    rest: rgb(0x6E7784),
+    support: rgb(0xB4BBC6),
+    load: rgb(0xFF6B61),
+    hand: rgb(0x78DC82),
+    absent: rgb(0x7C8088),
+    wire: [12, 20, 32, 120],
+};
+
+const LIGHT: Palette = Palette {
+    dark: false,
+    canvas: rgb(0xF6F7F9),
+    panel: rgb(0xEAEDF1),
+    control: rgb(0xD8DDE4),
+    hovered: rgb(0xC8CFD9),
+    line: rgb(0xC9CFD8),
+    text: rgb(0x1C2128),
+    secondary: rgb(0x4A5360),
+    accent: rgb(0x0B5CAD),
+    chosen: rgb(0xBFDAF5),
+    good: rgb(0x0B6B35),
+    warning: rgb(0x7A5000),
+    error: rgb(0xA31B1B),
+    error_chip: rgb(0xFBE3E1),
+    exact: rgb(0x007D73),
+    rest: rgb(0x7E8793),
+    support: rgb(0x464E5A),
+    load: rgb(0xC0242B),
+    hand: rgb(0x0A7828),
+    absent: rgb(0x7C8088),
+    wire: [255, 255, 255, 110],
+};
+
+impl Palette {
+    /// That of a theme.
+    pub(crate) fn of(theme: Theme) -> Self {
+        if theme == Theme::Dark { DARK } else { LIGHT }
+    }
+
+    /// That of what is drawn with these visuals.
+    pub(crate) fn new(visuals: &Visuals) -> Self {
+        if visuals.dark_mode { DARK } else { LIGHT }
+    }
+
+    /// The one colour of a method: body, legend, plots.
+    pub(crate) fn method(&self, method: MethodKind) -> Color32 {
+        let [r, g, b] = method.entry().color(self.dark);
+        Color32::from_rgb(r, g, b)
+    }
+
+    /// The one colour of an integrator.
+    pub(crate) fn integrator(&self, integrator: IntegratorKind) -> Color32 {
+        let [r, g, b] = integrator.entry().color(self.dark);
+        Color32::from_rgb(r, g, b)
+    }
+
+    /// The colour of what solves a scene: its method, or its integrator.
+    pub(crate) fn solution(&self, scene: &Scene) -> Color32 {
+        match scene.analysis {
+            Analysis::Static => self.method(scene.solver.method),
+            Analysis::Dynamic => self.integrator(scene.dynamics.integrator),
+        }
+    }
+
+    /// Colours of the kinds of energy: kinetic, elastic, potential, dissipated, lost, put in.
+    pub(crate) fn energies(&self) -> [Color32; 6] {
+        if self.dark {
+            [0x6EAAFF, 0xFFB450, 0x78D282, 0xAAAAB4, 0xFF7878, 0xC896FF].map(rgb)
+        } else {
+            [0x145AC8, 0x9A5000, 0x147832, 0x62626C, 0xC81E28, 0x7832BE].map(rgb)
+        }
+    }
+
+    /// The map of a field's values: one with a sign has zero in the middle.
+    pub(crate) fn map(&self, field: Field) -> ColorMap {
+        match (has_sign(field), self.dark) {
+            (false, true) => ColorMap::SequentialOnDark,
+            (false, false) => ColorMap::SequentialOnLight,
+            (true, true) => ColorMap::DivergingOnDark,
+            (true, false) => ColorMap::DivergingOnLight,
+        }
+    }
+
+    fn visuals(&self) -> Visuals {
+        let mut visuals = if self.dark { Visuals::dark() } else { Visuals::light() };
+        let round = CornerRadius::same(5);
+        visuals.panel_fill = self.panel;
+        visuals.window_fill = self.panel;
+        visuals.window_stroke = Stroke::new(1.0, self.line);
+        visuals.extreme_bg_color = self.canvas;
+        visuals.faint_bg_color = self.canvas;
+        visuals.weak_text_color = Some(self.secondary);
+        visuals.warn_fg_color = self.warning;
+        visuals.error_fg_color = self.error;
+        visuals.hyperlink_color = self.accent;
+        visuals.selection.bg_fill = self.chosen;
+        visuals.selection.stroke = Stroke::new(1.0, self.text);
+        visuals.slider_trailing_fill = true;
+        let widgets = &mut visuals.widgets;
+        for (widget, fill, edge) in [
+            (&mut widgets.noninteractive, self.panel, self.line),
+            (&mut widgets.inactive, self.control, Color32::TRANSPARENT),
+            (&mut widgets.hovered, self.hovered, Color32::TRANSPARENT),
+            (&mut widgets.active, self.hovered, self.accent),
+            (&mut widgets.open, self.hovered, Color32::TRANSPARENT),
+        ] {
+            widget.bg_fill = fill;
+            widget.weak_bg_fill = fill;
+            widget.bg_stroke = Stroke::new(if edge == Color32::TRANSPARENT { 0.0 } else { 1.0 }, edge);
+            widget.fg_stroke = Stroke::new(1.0, self.text);
+            widget.corner_radius = round;
+            widget.expansion = 0.0;
+        }
+        visuals
+    }
+}
+
+/// Whether a field's values have a sign that matters: its colours have zero in the middle.
+pub(crate) fn has_sign(field: Field) -> bool {
+    field == Field::RotationAngle
+}
+
+/// Gives egui the colours and sizes of both themes, once.
+pub(crate) fn install(ctx: &egui::Context) {
+    let installed = egui::Id::unique("palette");
+    if ctx.data(|data| data.get_temp::<bool>(installed)).is_some() {
+        return;
+    }
+    ctx.data_mut(|data| data.insert_temp(installed, true));
+    add_font(ctx);
+    for theme in [Theme::Dark, Theme::Light] {
+        ctx.style_mut_of(theme, |style| {
+            style.visuals = Palette::of(theme).visuals();
+            let sizes = [
+                (TextStyle::Body, BODY, FontFamily::Proportional),
+                (TextStyle::Button, BODY, FontFamily::Proportional),
+                (TextStyle::Monospace, 13.0, FontFamily::Monospace),
+                (TextStyle::Small, SMALL, FontFamily::Proportional),
+                (TextStyle::Heading, HEADLINE, FontFamily::Proportional),
+            ];
+            for (text, size, family) in sizes {
+                style.text_styles.insert(text, FontId::new(size, family));
+            }
+            style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+            style.spacing.button_padding = egui::vec2(8.0, 3.0);
+            style.spacing.interact_size.y = 24.0;
+            style.spacing.slider_rail_height = 5.0;
+            // A long list takes the height that it asks for.
+            style.spacing.default_area_size.y = 4000.0;
+        });
+    }
+}
+
+/// The letters of all languages of the window that egui's own fonts do not have.
+fn add_font(ctx: &egui::Context) {
+    let data = egui::FontData::from_static(crate::picture::CHINESE_FONT);
+    let place = |family| InsertFontFamily { family, priority: FontPriority::Lowest };
+    let families = vec![place(FontFamily::Proportional), place(FontFamily::Monospace)];
+    ctx.add_font(FontInsert::new("Noto Sans SC", data, families));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::INTEGRATORS;
+    use crate::method::METHODS;
+
+    /// WCAG 2.1's relative luminance.
+    fn luminance(color: Color32) -> f64 {
+        let linear = [color.r(), color.g(), color.b()].map(|c| {
+            let c = f64::from(c) / 255.0;
+            if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+        });
+        0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    }
+
+    /// WCAG 2.1's contrast ratio.
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn contrast_is_that_of_wcag() {
+        assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
+        assert!((contrast(rgb(0x777777), Color32::WHITE) - 4.478).abs() < 1e-3);
+    }
+
+    /// Text 4.5:1 on every ground it stands on.
+    #[test]
+    fn text_can_be_read() {
+        for p in [DARK, LIGHT] {
+            for (name, text) in [("text", p.text), ("secondary", p.secondary)] {
+                for ground in [p.canvas, p.panel, p.control] {
+                    assert!(contrast(text, ground) >= 4.5, "{name} on {ground:?}: {}", contrast(text, ground));
+                }
+            }
+            for ground in [p.hovered, p.chosen, p.error_chip] {
+                assert!(contrast(p.text, ground) >= 4.5, "text on {ground:?}: {}", contrast(p.text, ground));
+            }
+            for (name, color) in [
+                ("good", p.good),
+                ("warning", p.warning),
+                ("error", p.error),
+                ("accent", p.accent),
+                ("load", p.load),
+                ("hand", p.hand),
+            ] {
+                for ground in [p.canvas, p.panel] {
+                    assert!(contrast(color, ground) >= 4.5, "{name} on {ground:?}: {}", contrast(color, ground));
+                }
+            }
+            assert!(contrast(p.error, p.error_chip) >= 4.5);
+        }
+    }
+
+    /// 3:1 for what is no text: every colour of every map, and every line.
+    #[test]
+    fn the_body_and_its_lines_stand_out_from_the_canvas() {
+        for p in [DARK, LIGHT] {
+            for field in Field::ALL {
+                for i in 0..=255 {
+                    let [r, g, b] = p.map(field).color(f64::from(i) / 255.0);
+                    let ratio = contrast(Color32::from_rgb(r, g, b), p.canvas);
+                    assert!(ratio >= 3.0, "{field:?} at {i}/255 on {:?}: {ratio}", p.canvas);
+                }
+            }
+            let methods = METHODS.iter().map(|m| p.method(m.kind));
+            let integrators = INTEGRATORS.iter().map(|i| p.integrator(i.kind));
+            let lines = [p.exact, p.rest, p.support, p.absent];
+            for color in methods.chain(integrators).chain(lines).chain(p.energies()) {
+                assert!(contrast(color, p.canvas) >= 3.0, "{color:?}: {}", contrast(color, p.canvas));
+            }
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The system's clipboard. egui-winit's own would bring the formats of images along; text is all that is copied here.
+
+use egui::{OutputCommand, PlatformOutput};
+use winit::event::{ElementState, KeyEvent, WindowEvent};
+use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
+
+/// The system's clipboard.
+pub(crate) struct Clipboard {
+    /// `None` where there is none: copies stay in the window.
+    system: Option<arboard::Clipboard>,
+    modifiers: ModifiersState,
+}
+
+impl Clipboard {
+    /// Connects to the clipboard.
+    pub(crate) fn open() -> Self {
+        let system = arboard::Clipboard::new().inspect_err(|error| log::warn!("no clipboard: {error}")).ok();
+        Self { system, modifiers: ModifiersState::empty() }
+    }
+
+    /// Brings what another program has copied, before egui-winit meets the key that pastes.
+    pub(crate) fn before(&mut self, event: &WindowEvent, input: &mut egui_winit::State) {
+        match event {
+            WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),
+            // What the clipboard holds may be an image, or nothing.
+            WindowEvent::KeyboardInput { event: key, .. } if !self.modifiers.is_empty() && may_paste(key) => {
+                if let Some(Ok(text)) = self.system.as_mut().map(arboard::Clipboard::get_text) {
+                    input.set_clipboard_text(text);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Hands on to other programs what has been copied in a frame.
+    pub(crate) fn after(&mut self, output: &PlatformOutput) {
+        let Some(system) = &mut self.system else { return };
+        for command in &output.commands {
+            if let OutputCommand::CopyText(text) = command
+                && let Err(error) = system.set_text(text.clone())
+            {
+                log::warn!("not copied: {error}");
+            }
+        }
+    }
+}
+
+/// Whether a key pastes where a modifier is held: V of any layout, Insert, or a key made for it.
+fn may_paste(key: &KeyEvent) -> bool {
+    let named = matches!(key.logical_key, Key::Named(NamedKey::Insert | NamedKey::Paste));
+    let letter = matches!(&key.logical_key, Key::Character(text) if text.eq_ignore_ascii_case("v"));
+    key.state == ElementState::Pressed && (named || letter || key.physical_key == PhysicalKey::Code(KeyCode::KeyV))
+}

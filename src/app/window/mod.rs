@@ -1,0 +1,533 @@
+//! The window: winit events in, frames out. At rest nothing is drawn.
+
+mod clicks;
+mod clipboard;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::ViewportId;
+use egui_wgpu::ScreenDescriptor;
+use thiserror::Error;
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::window::{Window, WindowId};
+
+use crate::app::language::{fill, translated};
+use crate::app::offscreen::painter::Stage;
+use crate::app::offscreen::record::{LiveRecording, pointer};
+use crate::app::offscreen::recorder::RecorderError;
+use crate::app::offscreen::shot::picture;
+use crate::app::session::recovery::Recovery;
+use crate::app::shell::lab::{Lab, Request};
+use crate::app::shell::settings::Settings;
+use crate::app::size::{MOST_ALONE, unknowns};
+use crate::app::task::thread::LISTEN;
+use crate::app::window::clipboard::Clipboard;
+use crate::app::{AppError, NoName, free_name};
+use crate::render::{Gpu, RenderError};
+use crate::scene::{Scene, Source, registry};
+use crate::simulation::Simulation;
+
+/// A connection to a display.
+pub struct Display(EventLoop<()>);
+
+/// Why there is no display.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum NoDisplay {
+    /// No variable names one.
+    #[error("there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)")]
+    NotSet,
+    /// It does not answer.
+    #[error(transparent)]
+    Refused(#[from] winit::error::EventLoopError),
+    /// A library that is loaded by name is missing.
+    #[error("an X11 library is missing; scripts/setup installs libxkbcommon-x11-0, libxcursor1 and libxi6")]
+    LibraryMissing,
+}
+
+impl Display {
+    /// Connects to the display.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn open() -> Result<Self, NoDisplay> {
+        #[cfg(all(unix, not(target_os = "macos")))]
+        if ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"].iter().all(|name| std::env::var_os(name).is_none()) {
+            return Err(NoDisplay::NotSet);
+        }
+        // winit panics where an X library it loads by name is missing; that is no reason to die without a word.
+        let hook = std::panic::take_hook();
+        std::panic::set_hook(Box::new(|_| {}));
+        let opened = std::panic::catch_unwind(EventLoop::new);
+        std::panic::set_hook(hook);
+        match opened {
+            Ok(event_loop) => Ok(Self(event_loop?)),
+            Err(_) => Err(NoDisplay::LibraryMissing),
+        }
+    }
+}
+
+/// Whether a scene is so large that the window does not wait for its mesh.
+#[must_use]
+pub fn opens_beside(scene: &Scene) -> bool {
+    unknowns(scene) > MOST_ALONE
+}
+
+/// Opens the window and returns when it is closed. Without a simulation the scene is meshed beside the window, which shows
+/// another one meanwhile: see [`opens_beside`].
+///
+/// # Errors
+/// [`AppError`]: no adapter, or no window.
+pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Simulation>) -> Result<(), AppError> {
+    let first_picture = source.name.to_str() == Some(registry::DEFAULT);
+    let file = Settings::file();
+    let settings = file.as_deref().map(Settings::load).unwrap_or_default();
+    let ctx = egui::Context::default();
+    let lab = match simulation {
+        Some(simulation) => Some(Lab::new(source, scene, simulation)),
+        None => Lab::opening(source, scene),
+    };
+    let Some(mut lab) = lab else {
+        return Err(AppError::Window("the scene to begin with is missing".to_owned()));
+    };
+    lab.set_settings(&ctx, settings.clone());
+    lab.set_easing(true);
+    let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
+    let recovery = folder.and_then(|folder| match Recovery::open(&folder) {
+        Ok((recovery, left)) => {
+            left.into_iter().for_each(|left| lab.offer(left));
+            Some(recovery)
+        }
+        Err(error) => {
+            log::warn!("{}: {error}", folder.display());
+            None
+        }
+    });
+    if first_picture {
+        lab.introduce();
+    }
+    let mut app = App {
+        lab,
+        ctx,
+        settings,
+        settings_file: file,
+        recovery,
+        open: None,
+        recording: None,
+        start: Instant::now(),
+        later: Vec::new(),
+        wake: None,
+        error: None,
+    };
+    display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
+    if let Some(words) = app.recording.as_ref().and_then(LiveRecording::wait) {
+        // The window that would show it is closed.
+        eprintln!("warpbeam: {words}");
+    }
+    app.keep_settings();
+    app.error.map_or(Ok(()), Err)
+}
+
+struct App {
+    lab: Lab,
+    ctx: egui::Context,
+    /// As they are in their file.
+    settings: Settings,
+    settings_file: Option<PathBuf>,
+    /// Keeps a copy of unsaved edits; `None` where the system has no place for it.
+    recovery: Option<Recovery>,
+    open: Option<OpenWindow>,
+    /// Recording of the window.
+    recording: Option<LiveRecording>,
+    /// When the window began.
+    start: Instant,
+    /// Events that wait for the next frame.
+    later: Vec<egui::Event>,
+    /// When egui wants its next frame without an event.
+    wake: Option<Instant>,
+    error: Option<AppError>,
+}
+
+/// A window with what draws into it. Dropped in this order: the surface before its window.
+struct OpenWindow {
+    surface: wgpu::Surface<'static>,
+    configuration: wgpu::SurfaceConfiguration,
+    stage: Stage,
+    input: egui_winit::State,
+    clipboard: Clipboard,
+    gpu: Gpu,
+    instance: wgpu::Instance,
+    window: Arc<Window>,
+    hidden: bool,
+    /// Frames in a row for which the surface gave no texture.
+    failures: u32,
+}
+
+/// Frames without a texture after which the window is given up.
+const MAX_FAILURES: u32 = 10;
+
+impl OpenWindow {
+    fn new(event_loop: &ActiveEventLoop, lab: &Lab, ctx: &egui::Context, size: [f32; 2]) -> Result<Self, AppError> {
+        let attributes = Window::default_attributes()
+            .with_title(lab.title())
+            .with_inner_size(first_size(event_loop, size))
+            .with_min_inner_size(SMALLEST);
+        let window = Arc::new(event_loop.create_window(attributes).map_err(|e| AppError::Window(e.to_string()))?);
+        let (instance, surface, gpu) = Gpu::first_of_backends(|backends| {
+            let display = Box::new(event_loop.owned_display_handle());
+            let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
+            descriptor.backends = backends;
+            let instance = wgpu::Instance::new(descriptor);
+            let surface = instance.create_surface(window.clone()).map_err(|e| RenderError::NoAdapter {
+                tried: format!("{backends:?}: no surface for the window: {e}"),
+            })?;
+            let gpu = Gpu::request(&instance, Some(&surface))?;
+            Ok((instance, surface, gpu))
+        })?;
+        let capabilities = surface.get_capabilities(&gpu.adapter);
+        let format = egui_wgpu::preferred_framebuffer_format(&capabilities.formats)
+            .map_err(|e| RenderError::NoAdapter { tried: format!("{}: {e}", gpu.describe()) })?;
+        let size = window.inner_size();
+        let mut configuration = surface
+            .get_default_config(&gpu.adapter, size.width.max(1), size.height.max(1))
+            .ok_or_else(|| RenderError::NoAdapter { tried: format!("{}: cannot show this window", gpu.describe()) })?;
+        configuration.format = format;
+        configuration.present_mode = wgpu::PresentMode::AutoVsync;
+        surface.configure(&gpu.device, &configuration);
+        let input = egui_winit::State::new(
+            ctx.clone(),
+            ViewportId::ROOT,
+            &window,
+            Some(window.scale_factor() as f32),
+            window.theme(),
+            Some(gpu.max_side() as usize),
+        );
+        let stage = Stage::new(&gpu, format);
+        let clipboard = Clipboard::open();
+        Ok(Self { surface, configuration, stage, input, clipboard, gpu, instance, window, hidden: false, failures: 0 })
+    }
+
+    fn resize(&mut self, width: u32, height: u32) {
+        // A minimised window has no size on some systems; there is nothing to configure then.
+        self.hidden = width == 0 || height == 0;
+        if !self.hidden {
+            self.configuration.width = width.min(self.gpu.max_side());
+            self.configuration.height = height.min(self.gpu.max_side());
+            self.surface.configure(&self.gpu.device, &self.configuration);
+        }
+    }
+
+    /// The texture of the next frame; `None` where there is none this time.
+    fn acquire(&mut self) -> Result<Option<wgpu::SurfaceTexture>, AppError> {
+        use wgpu::CurrentSurfaceTexture as Current;
+        let reason = match self.surface.get_current_texture() {
+            Current::Success(texture) | Current::Suboptimal(texture) => {
+                self.failures = 0;
+                return Ok(Some(texture));
+            }
+            Current::Occluded => return Ok(None),
+            Current::Timeout => "the display did not answer in time",
+            Current::Outdated => {
+                self.surface.configure(&self.gpu.device, &self.configuration);
+                "the surface stays out of date"
+            }
+            Current::Lost => {
+                self.surface = self
+                    .instance
+                    .create_surface(self.window.clone())
+                    .map_err(|e| AppError::Window(format!("the surface was lost: {e}")))?;
+                self.surface.configure(&self.gpu.device, &self.configuration);
+                "the surface was lost"
+            }
+            Current::Validation => "the surface is not valid",
+        };
+        self.failures += 1;
+        if self.failures >= MAX_FAILURES {
+            return Err(AppError::Window(reason.to_owned()));
+        }
+        self.window.request_redraw();
+        Ok(None)
+    }
+
+    fn screen(&self, pixels_per_point: f32) -> ScreenDescriptor {
+        ScreenDescriptor { size_in_pixels: [self.configuration.width, self.configuration.height], pixels_per_point }
+    }
+}
+
+/// The smallest window, points: everything in it can still be reached.
+const SMALLEST: LogicalSize<f64> = LogicalSize::new(480.0, 360.0);
+
+/// The size of a new window: as wanted, points, and never more than nine tenths of the screen.
+fn first_size(event_loop: &ActiveEventLoop, wanted: [f32; 2]) -> LogicalSize<f64> {
+    const SHARE: f64 = 0.9;
+    let wanted = LogicalSize::new(f64::from(wanted[0]), f64::from(wanted[1]));
+    let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
+    monitor.filter(|m| m.size().width > 0 && m.size().height > 0).map_or(wanted, |monitor| {
+        let screen = monitor.size().to_logical::<f64>(monitor.scale_factor());
+        LogicalSize::new(wanted.width.min(SHARE * screen.width), wanted.height.min(SHARE * screen.height))
+    })
+}
+
+impl App {
+    /// One frame: an iteration, the panel, the picture. Returns when egui wants the next without being asked.
+    fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<(), AppError> {
+        let Some(open) = &mut self.open else {
+            return Ok(());
+        };
+        if open.hidden {
+            return Ok(());
+        }
+        let Some(texture) = open.acquire()? else {
+            return Ok(());
+        };
+        self.lab.advance(self.start.elapsed().as_secs_f64());
+        let mut input = open.input.take_egui_input(&open.window);
+        let mut events = std::mem::take(&mut self.later);
+        events.append(&mut input.events);
+        self.later = clicks::after_first(&mut events);
+        input.events = events;
+        let mut requests = Vec::new();
+        let now = self.start.elapsed().as_secs_f64();
+        let (mut mark, mut hand) = (Vec::new(), None);
+        let mut output = self.ctx.run_ui(input, |ui| {
+            requests.extend(self.lab.ui(ui));
+            if let Some(recording) = &self.recording {
+                mark = recording.mark(ui.ctx(), self.lab.view_rect(), now);
+                hand = pointer(ui.ctx());
+                ui.ctx().request_repaint_after(LISTEN);
+            }
+        });
+        open.clipboard.after(&output.platform_output);
+        open.input.handle_platform_output_with_event_loop(
+            &open.window,
+            event_loop,
+            std::mem::take(&mut output.platform_output),
+        );
+        let mut primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        open.stage.set_textures(&open.gpu, &mut output.textures_delta);
+        let whole = self.ctx.content_rect();
+        let over = |shapes: Vec<egui::Shape>| {
+            let clipped = shapes.into_iter().map(|shape| egui::epaint::ClippedShape {
+                clip_rect: whole,
+                shape,
+                transform_after_tessellation: egui::emath::TSTransform::IDENTITY,
+            });
+            self.ctx.tessellate(clipped.collect(), output.pixels_per_point)
+        };
+        let screen = open.screen(output.pixels_per_point);
+        if let Some(recording) = &mut self.recording {
+            recording.hand_on(&open.gpu);
+            if let Some(number) = recording.due(now) {
+                let own = primitives.len();
+                primitives.extend(over(hand.into_iter().collect()));
+                let drawn = (&self.lab, primitives.as_slice());
+                recording.take(&open.gpu, &mut open.stage, drawn, &screen, (number, now));
+                primitives.truncate(own);
+            }
+            primitives.extend(over(mark));
+        }
+        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        open.stage.paint(&open.gpu, &view, &screen, &primitives, &self.lab);
+        open.window.pre_present_notify();
+        open.gpu.queue.present(texture);
+        open.stage.free_textures(&mut output.textures_delta);
+        open.window.set_title(&self.lab.title());
+
+        let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
+        let delay = delay.min(self.keep_unsaved());
+        self.schedule(if self.later.is_empty() { delay } else { Duration::ZERO });
+        for request in requests {
+            match request {
+                Request::Screenshot => self.screenshot(screen.pixels_per_point),
+                Request::ForgetCopy => self.recovery.iter_mut().for_each(Recovery::forget_left),
+                Request::Record => self.record(now),
+                Request::Close => self.close(event_loop),
+            }
+        }
+        if let Some(words) = self.recording.as_ref().and_then(LiveRecording::listen) {
+            self.recording = None;
+            self.say(words);
+        }
+        Ok(())
+    }
+
+    /// Keeps a copy of unsaved edits; returns when to ask again.
+    fn keep_unsaved(&mut self) -> Duration {
+        let Some(recovery) = &mut self.recovery else { return Duration::MAX };
+        match recovery.keep(self.lab.unsaved()) {
+            Ok(due) => due.map_or(Duration::MAX, |due| due.saturating_duration_since(Instant::now())),
+            Err(error) => {
+                log::warn!("no copy of unsaved changes was kept: {error}");
+                Duration::MAX
+            }
+        }
+    }
+
+    /// Closes the window. Edits that are not saved by now are not wanted.
+    fn close(&mut self, event_loop: &ActiveEventLoop) {
+        if let Some(recovery) = &mut self.recovery
+            && let Err(error) = recovery.keep(None)
+        {
+            log::warn!("the copy of unsaved changes is still there: {error}");
+        }
+        self.quit(event_loop, None);
+    }
+
+    /// Starts to record the window, or ends the recording.
+    fn record(&mut self, now: f64) {
+        let Some(open) = &self.open else { return };
+        if let Some(recording) = &mut self.recording {
+            recording.stop(&open.gpu, now);
+            return open.window.request_redraw();
+        }
+        let size = [open.configuration.width, open.configuration.height];
+        let format = open.configuration.format;
+        let started = free_name("gif")
+            .map_err(RecorderError::from)
+            .and_then(|path| Ok(LiveRecording::start(&open.gpu, format, size, &path, self.lab.language())?));
+        match started {
+            Ok(recording) => {
+                self.recording = Some(recording);
+                open.window.request_redraw();
+            }
+            Err(reason) => self.say(fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
+        }
+    }
+
+    /// Shows a message.
+    fn say(&mut self, message: String) {
+        self.lab.say(&self.ctx, message);
+        if let Some(open) = &self.open {
+            open.window.request_redraw();
+        }
+    }
+
+    fn schedule(&mut self, delay: Duration) {
+        self.wake = None;
+        if delay.is_zero() {
+            if let Some(open) = &self.open {
+                open.window.request_redraw();
+            }
+        } else {
+            // Very long delays overflow, and mean never.
+            self.wake = Instant::now().checked_add(delay);
+        }
+    }
+
+    fn screenshot(&mut self, pixels_per_point: f32) {
+        let Some(open) = &self.open else { return };
+        let size = [open.configuration.width, open.configuration.height];
+        let saved = free_name("png").map_err(ScreenshotError::from).and_then(|path| {
+            let picture = picture(&open.gpu, &mut self.lab, size, pixels_per_point, self.ctx.theme())?;
+            picture.write_png(&path).map_err(RenderError::from)?;
+            Ok(path)
+        });
+        let message = match saved {
+            Ok(path) => fill!("Saved %{file}", file = path.display()),
+            Err(reason) => fill!("No screenshot: %{reason}", reason = reason),
+        };
+        self.lab.say(&self.ctx, message);
+        open.window.request_redraw();
+    }
+
+    /// Writes the settings to their file, if they have changed.
+    fn keep_settings(&mut self) {
+        let settings = self.lab.settings(&self.ctx);
+        if let (Some(file), true) = (&self.settings_file, settings != self.settings) {
+            match settings.save(file) {
+                Ok(()) => self.settings = settings,
+                Err(error) => log::warn!("{}: {error}", file.display()),
+            }
+        }
+    }
+
+    fn quit(&mut self, event_loop: &ActiveEventLoop, error: Option<AppError>) {
+        self.error = self.error.take().or(error);
+        if let (Some(recording), Some(open)) = (&mut self.recording, &self.open) {
+            recording.stop(&open.gpu, self.start.elapsed().as_secs_f64());
+        }
+        // The surface goes while the display connection still stands.
+        self.open = None;
+        event_loop.exit();
+    }
+}
+
+/// Why there is no screenshot.
+#[derive(Debug, Error)]
+enum ScreenshotError {
+    #[error(transparent)]
+    NoName(#[from] NoName),
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+impl ApplicationHandler for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        match OpenWindow::new(event_loop, &self.lab, &self.ctx, self.settings.size()) {
+            Ok(open) => {
+                self.lab.set_adapter(open.gpu.describe());
+                open.window.request_redraw();
+                self.open = Some(open);
+            }
+            Err(error) => self.quit(event_loop, Some(error)),
+        }
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &self.open) {
+            self.wake = None;
+            open.window.request_redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        open.clipboard.before(&event, &mut open.input);
+        let wants = open.input.on_window_event(&open.window, &event);
+        match event {
+            WindowEvent::CloseRequested => {
+                if self.lab.request_close(&self.ctx) {
+                    return self.close(event_loop);
+                }
+                // The question is to be seen.
+                open.window.set_minimized(false);
+                open.window.request_redraw();
+            }
+            WindowEvent::Destroyed => return self.quit(event_loop, None),
+            WindowEvent::Resized(size) => {
+                open.resize(size.width, size.height);
+                let points = size.to_logical::<f32>(open.window.scale_factor());
+                self.lab.set_window_size([points.width, points.height]);
+                open.window.request_redraw();
+            }
+            WindowEvent::Occluded(occluded) => {
+                open.hidden = occluded;
+                if !occluded {
+                    open.window.request_redraw();
+                }
+            }
+            WindowEvent::RedrawRequested => {
+                if let Err(error) = self.frame(event_loop) {
+                    self.quit(event_loop, Some(error));
+                }
+                return;
+            }
+            _ => {}
+        }
+        if wants.repaint {
+            open.window.request_redraw();
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        event_loop.set_control_flow(self.wake.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+    }
+}
