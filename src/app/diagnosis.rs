@@ -1,12 +1,17 @@
 //! What the lab makes of a result: its error and where that comes from, its status in words, and what would mend it.
 
 use crate::app::language::{count, fill, percent, sentence, tr, translated};
-use crate::app::panel::PanelInput;
+use crate::app::readout::Readout;
 use crate::app::widgets::palette::Palette;
 use crate::method::{floor_words, rho_words};
 use crate::scene::{ElementKind, MethodKind, Scene, limits};
 use crate::simulation::{Simulation, Status, probe_results};
+use crate::study::Reference;
 use crate::words::{self, engineering, number, two_digits};
+
+/// Definition of the drift that the window shows.
+pub(crate) const DRIFT_TIP: &str = "Energy that the integrator has added, or with a minus lost, over the energy that was put in: by the \
+                                    start, loads and hands";
 
 /// Where most of an error comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +41,7 @@ pub(crate) struct Errors {
 
 /// Compares the state, and linear theory's, with the truth; nothing while something moves: a picture of one instant has no
 /// error of another.
-pub(crate) fn errors(input: &PanelInput<'_>) -> Errors {
+pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     let simulation = input.simulation;
     let at_rest = simulation.is_at_rest() && simulation.hand().is_none();
     let Some(reference) = input.truth.filter(|_| at_rest) else { return Errors::default() };
@@ -71,7 +76,7 @@ pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color3
 }
 
 /// Whether the picture is of another load than the one that is set: an edit while paused.
-pub(crate) fn is_stale(input: &PanelInput<'_>) -> bool {
+pub(crate) fn is_stale(input: &Readout<'_>) -> bool {
     let simulation = input.simulation;
     !input.running
         && simulation.motion().is_none()
@@ -109,7 +114,7 @@ pub(crate) fn status_words(simulation: &Simulation, running: bool, shows_converg
 }
 
 /// The status in a line: `Converged · stable · 21 iterations`; and whether it is a bad one.
-pub(crate) fn summary(input: &PanelInput<'_>) -> (String, bool) {
+pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     let simulation = input.simulation;
     let (mut words, bad) = status_words(simulation, input.running, input.shows_converged);
     if bad {
@@ -147,12 +152,12 @@ pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
 }
 
 /// ρ of the warped iteration: at the equilibrium where that is known, else where the body is.
-pub(crate) fn rho(input: &PanelInput<'_>) -> Option<f64> {
+pub(crate) fn rho(input: &Readout<'_>) -> Option<f64> {
     input.equilibrium_rho.or_else(|| input.simulation.certificate()?.fixed_point_rho)
 }
 
 /// Why the status is what it is, sentence by sentence.
-pub(crate) fn explanation(input: &PanelInput<'_>) -> Vec<String> {
+pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
     if input.quality.is_inside_out(simulation) {
@@ -227,7 +232,7 @@ pub(crate) struct Remedy {
 }
 
 /// What would help most, if something is wrong that an edit can mend.
-pub(crate) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> {
+pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     /// Errors above this, percent, ask for a remedy.
     const LARGE: f64 = 5.0;
     let (simulation, scene) = (input.simulation, input.scene);
@@ -276,4 +281,9 @@ pub(crate) fn remedy(input: &PanelInput<'_>, errors: &Errors) -> Option<Remedy> 
 /// ρ as it is shown: two digits, three above one tenth.
 pub(crate) fn rho_number(rho: f64) -> String {
     engineering(two_digits(rho), "")
+}
+
+/// Returns the name of the reference solution, or a text that says that it is not known yet.
+pub(crate) fn truth_words(truth: Option<&Reference>) -> String {
+    truth.map_or_else(|| tr("the reference, once that is known").to_owned(), |truth| translated(&truth.to_string()))
 }

@@ -1,12 +1,12 @@
-//! The one way a lab gets onto a texture: the body's pass, then egui over it. Window and shot both draw through here.
+//! The one way a frame gets onto a texture: the pass of the bodies, then egui over it. Window, shots and recordings draw
+//! through here.
 
 use egui::{ClippedPrimitive, TexturesDelta};
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 
-use crate::app::shell::lab::Lab;
-use crate::render::{BodyRenderer, Gpu, Viewport};
+use crate::render::{BodyRenderer, Gpu, View};
 
-/// Draws labs with one device into targets of one format.
+/// Draws frames with one device into targets of one format.
 pub(crate) struct Stage {
     egui: egui_wgpu::Renderer,
     body: BodyRenderer,
@@ -35,19 +35,18 @@ impl Stage {
         }
     }
 
-    /// Draws the lab, laid out by the last [`Lab::ui`] and tessellated into `primitives`.
+    /// Draws the bodies in their views, and over them the user interface, tessellated into `primitives`.
     pub(crate) fn paint(
         &mut self,
         gpu: &Gpu,
         target: &wgpu::TextureView,
         screen: &ScreenDescriptor,
         primitives: &[ClippedPrimitive],
-        lab: &Lab,
+        views: &[View<'_>],
     ) {
         let ScreenDescriptor { size_in_pixels, pixels_per_point } = *screen;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let views = lab.views(pixels_per_point);
-        self.body.draw(gpu, &mut encoder, (target, size_in_pixels), &views, f64::from(pixels_per_point));
+        self.body.draw(gpu, &mut encoder, (target, size_in_pixels), views, f64::from(pixels_per_point));
         let callbacks = self.egui.update_buffers(&gpu.device, &gpu.queue, &mut encoder, primitives, screen);
         let mut pass = encoder
             .begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -65,11 +64,4 @@ impl Stage {
         drop(pass);
         gpu.queue.submit(callbacks.into_iter().chain([encoder.finish()]));
     }
-}
-
-/// The pixels of a place in the window, with so many of them a point.
-pub(crate) fn viewport(place: egui::Rect, pixels_per_point: f32) -> Viewport {
-    let place = place * pixels_per_point;
-    let [corner, end] = [place.min, place.max].map(|p| [p.x, p.y].map(|v| v.round().max(0.0) as u32));
-    Viewport { corner, size: [0, 1].map(|axis| end[axis].saturating_sub(corner[axis])) }
 }

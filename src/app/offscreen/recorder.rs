@@ -30,9 +30,9 @@ type Said = (f32, String);
 pub(crate) struct Recorder {
     job: Job<Said, String>,
     /// Fraction that is done, 0 to 1.
-    pub fraction: f32,
-    /// What is done now.
-    pub words: String,
+    fraction: f32,
+    /// Description of the present phase.
+    words: String,
 }
 
 impl Recorder {
@@ -49,6 +49,12 @@ impl Recorder {
         let path = free_name("gif")?;
         let job = Job::start("record", move |line| work(&source, scene, (theme, language), &path, line))?;
         Ok(Self { job, fraction: 0.0, words: String::new() })
+    }
+
+    /// Returns the text that shows the progress.
+    pub(crate) fn progress(&self) -> String {
+        let percent = format!("{:.0}", 100.0 * self.fraction);
+        fill!("%{doing}: %{percent} % (Shift+V stops it)", doing = self.words, percent = percent)
     }
 
     /// Ends it with what it has.

@@ -222,7 +222,13 @@ impl<'a> Canvas<'a> {
             }
         };
         times.tessellate = lap();
-        stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), screen, &primitives, lab);
+        stage.paint(
+            gpu,
+            &target.create_view(&wgpu::TextureViewDescriptor::default()),
+            screen,
+            &primitives,
+            &lab.views(screen.pixels_per_point),
+        );
         for mut textures in unused {
             stage.free_textures(&mut textures);
         }

@@ -4,8 +4,9 @@ use egui::Ui;
 
 use crate::app::action::MOST_ITERATIONS;
 use crate::app::language::{count, fill, joined, tr};
-use crate::app::panel::{Action, PanelInput, PanelState, number_row};
-use crate::app::shell::toolbar::option_button;
+use crate::app::panel::{Action, PanelState, number_row};
+use crate::app::readout::Readout;
+use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
 use crate::scene::{Analysis, Beam, Material, Plane, Scene, limits};
 use crate::words::{engineering, number, three_digits};
@@ -62,7 +63,7 @@ impl CellsThatFollow {
 }
 
 /// Length and height of the beam.
-pub(super) fn size(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+pub(super) fn size(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let (Some(beam), Some(original)) = (&input.scene.beam, &input.original.beam) else { return };
     let sides = [
         (
@@ -102,7 +103,7 @@ pub(super) fn size(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, 
 }
 
 /// The mesh in a few words: `5 × 1, 24 unknowns`.
-pub(super) fn mesh_summary(input: &PanelInput<'_>) -> String {
+pub(super) fn mesh_summary(input: &Readout<'_>) -> String {
     let cells = input
         .scene
         .beam
@@ -115,7 +116,7 @@ pub(super) fn mesh_summary(input: &PanelInput<'_>) -> String {
     joined([cells, count(input.simulation.system().dofs() as u64, "unknown")])
 }
 
-pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+pub(super) fn material(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
@@ -196,7 +197,7 @@ pub(super) fn material(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelSta
     show_message(ui, &state.messages, "Plane");
 }
 
-pub(super) fn mesh(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+pub(super) fn mesh(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     for (axis, label, tooltip, most) in [
         (0, "Cells along", "Cells along the beam; each is two triangles or a quadrilateral.", 400.0),

@@ -3,10 +3,11 @@
 use egui::{Align, Button, ComboBox, Layout, Role, Ui, WidgetInfo, vec2};
 
 use crate::app::language::{count, fill, joined, tr};
-use crate::app::panel::{Action, PanelInput, PanelState, ViewOptions};
-use crate::app::shell::toolbar::option_button;
+use crate::app::panel::{Action, PanelState, ViewOptions};
+use crate::app::readout::Readout;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::moment_arrow::moment_range;
+use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::show_message;
 use crate::assembly::{Edge, System};
@@ -143,7 +144,7 @@ pub(super) fn summary(scene: &Scene) -> String {
 /// Shows the places of loads and supports.
 pub(super) fn show(
     ui: &mut Ui,
-    input: &PanelInput<'_>,
+    input: &Readout<'_>,
     state: &mut PanelState,
     view: &mut ViewOptions,
     actions: &mut Vec<Action>,
@@ -231,7 +232,7 @@ fn refixed(before: &Support, fix: &[Axis]) -> Support {
 }
 
 /// Buttons that add something: the name of each, its tooltip, and the scene with it.
-type Addition = (&'static str, &'static str, fn(&PanelInput<'_>) -> Box<Scene>);
+type Addition = (&'static str, &'static str, fn(&Readout<'_>) -> Box<Scene>);
 const ADDITIONS: [Addition; 3] = [
     ("Force", "Another force, down, at a place without one", with_another_force),
     ("Moment", "Another moment, on an edge without one", with_another_moment),
@@ -239,14 +240,14 @@ const ADDITIONS: [Addition; 3] = [
 ];
 
 /// Edges that can carry a load, then points of the beam.
-fn free_places(input: &PanelInput<'_>) -> impl Iterator<Item = Place> {
+fn free_places(input: &Readout<'_>) -> impl Iterator<Item = Place> {
     let system = input.simulation.system();
     let usual = USUAL.into_iter().filter(|name| system.edges().iter().any(|e| e.name() == *name && is_free(system, e)));
     let others = system.edges().iter().filter(|edge| is_free(system, edge)).map(Edge::name);
     usual.chain(others).map(Place::from).chain(points(input.scene).map(|(_, place)| place))
 }
 
-fn with_another_force(input: &PanelInput<'_>) -> Box<Scene> {
+fn with_another_force(input: &Readout<'_>) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let is_taken = |place: &Place| scene.loads.iter().any(|load| place_of(load).as_ref() == Some(place));
     if let Some(place) = free_places(input).find(|place| !is_taken(place)) {
@@ -256,7 +257,7 @@ fn with_another_force(input: &PanelInput<'_>) -> Box<Scene> {
     scene
 }
 
-fn with_another_moment(input: &PanelInput<'_>) -> Box<Scene> {
+fn with_another_moment(input: &Readout<'_>) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let system = input.simulation.system();
     let is_taken = |name: &str| scene.loads.iter().any(|l| matches!(l, Load::Moment { edge, .. } if edge == name));
@@ -269,7 +270,7 @@ fn with_another_moment(input: &PanelInput<'_>) -> Box<Scene> {
     scene
 }
 
-fn with_another_support(input: &PanelInput<'_>) -> Box<Scene> {
+fn with_another_support(input: &Readout<'_>) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let is_taken = |place: &Place| scene.supports.iter().any(|support| support.place == *place);
     let edges = input.simulation.system().edges().iter().map(|edge| Place::from(edge.name()));

@@ -3,7 +3,8 @@
 use egui::{ComboBox, Ui};
 
 use crate::app::language::{fill, joined, tr};
-use crate::app::panel::{Action, PanelInput, PanelState, edges};
+use crate::app::panel::{Action, PanelState, edges};
+use crate::app::readout::Readout;
 use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::load_scale::OpeningLoads;
@@ -52,7 +53,7 @@ pub(super) fn summary(scene: &Scene) -> String {
 }
 
 /// Force and its direction.
-pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     choose(ui, scene, state);
     let chosen = chosen_force(scene, state);
@@ -90,12 +91,7 @@ pub(super) fn force(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState,
 }
 
 /// Gravity, and the moment on the right edge, or on whichever edge has one.
-pub(super) fn gravity_and_moment(
-    ui: &mut Ui,
-    input: &PanelInput<'_>,
-    state: &mut PanelState,
-    actions: &mut Vec<Action>,
-) {
+pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
     let direction = direction.or(state.gravity_direction).unwrap_or(DOWN);
@@ -152,7 +148,7 @@ fn shown_degrees(degrees: f64) -> f64 {
 }
 
 /// The scene with the chosen force replaced, or with a first one on an edge that can carry it.
-fn with_force(input: &PanelInput<'_>, state: &PanelState, new: [f64; 2]) -> Box<Scene> {
+fn with_force(input: &Readout<'_>, state: &PanelState, new: [f64; 2]) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let chosen = chosen_force(&scene, state).map(|(i, _)| i);
     match chosen.and_then(|i| scene.loads.get_mut(i)) {

@@ -1,24 +1,21 @@
 //! The panel: parameters in, actions out. It never touches the simulation. Four controls are open; the rest is folded
 //! behind headers that say what is in them.
 
+use crate::app::readout::Readout;
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::scroll_area::ScrollBarVisibility;
 use egui::{Align2, ComboBox, FontId, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
 
-use crate::app::action::{Action, ViewOptions};
+use crate::app::action::Action;
 use crate::app::diagnosis::Errors;
-use crate::app::language::{Language, spaced, tr};
-use crate::app::session::playback::Playback;
-use crate::app::session::quality::Quality;
-use crate::app::shell::toolbar::choice;
+use crate::app::language::{spaced, tr};
+use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::DOWN;
+use crate::app::widgets::buttons::choice;
 use crate::app::widgets::number_field::{Messages, NumberField, show_message};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::method::METHODS;
 use crate::scene::{Analysis, Scene};
-use crate::simulation::Simulation;
-use crate::study::{PathSummary, Reference};
-use crate::timings::Timings;
 
 mod body;
 mod edges;
@@ -27,49 +24,6 @@ mod motion;
 mod result;
 mod supports;
 mod view;
-
-pub(super) use view::range_of;
-
-/// What toolbar, panel and headlines show.
-#[derive(Clone, Copy)]
-pub(super) struct PanelInput<'a> {
-    pub scene: &'a Scene,
-    /// The scene as it was opened or saved last.
-    pub original: &'a Scene,
-    pub scene_name: &'a str,
-    pub simulation: &'a Simulation,
-    /// The same scene under linear theory.
-    pub linear: Option<&'a Simulation>,
-    pub running: bool,
-    /// Whether what is shown has come to its end.
-    pub ended: bool,
-    pub playback: &'a Playback,
-    /// The lowest natural frequency of a body in motion, Hz, once it is known.
-    pub frequency: Option<f64>,
-    /// Iterations a displayed frame.
-    pub iterations: u32,
-    /// Time of the last iterations made for one displayed frame.
-    pub timings: &'a Timings,
-    /// The residual after every iteration since the last change.
-    pub residuals: &'a [f64],
-    pub can_undo: bool,
-    pub can_redo: bool,
-    /// What errors are measured against, once it is known.
-    pub truth: Option<&'a Reference>,
-    /// Where the body jumps on its way from rest, once it is known.
-    pub jump: Option<&'a PathSummary>,
-    /// ρ of the warped iteration at the equilibrium, where it has been looked for, whatever the body's state.
-    pub equilibrium_rho: Option<f64>,
-    /// Fraction of the reference solution's search that is done, while it is being computed.
-    pub reference_progress: Option<f64>,
-    /// `true` where the last equilibrium is drawn instead of a state that diverges.
-    pub shows_converged: bool,
-    /// How far the result is to be trusted.
-    pub quality: &'a Quality,
-    pub adapter: &'a str,
-    /// What the window speaks.
-    pub language: Language,
-}
 
 /// What the panel remembers from frame to frame.
 #[derive(Debug, Default)]
@@ -114,7 +68,7 @@ impl PanelState {
 /// Shows the panel's contents.
 pub(super) fn show(
     ui: &mut Ui,
-    input: &PanelInput<'_>,
+    input: &Readout<'_>,
     errors: &Errors,
     state: &mut PanelState,
     view: &mut ViewOptions,
@@ -203,7 +157,7 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
 /// A row that edits a number of the scene.
 fn number_row(
     ui: &mut Ui,
-    input: &PanelInput<'_>,
+    input: &Readout<'_>,
     state: &mut PanelState,
     actions: &mut Vec<Action>,
     (field, get): (NumberField, fn(&Scene) -> f64),
@@ -250,7 +204,7 @@ fn picker<'a>(
     picked
 }
 
-fn method(ui: &mut Ui, input: &PanelInput<'_>, state: &PanelState, actions: &mut Vec<Action>) {
+fn method(ui: &mut Ui, input: &Readout<'_>, state: &PanelState, actions: &mut Vec<Action>) {
     let chosen = input.scene.solver.method.entry();
     let entries = METHODS.iter().map(|entry| (entry.id, entry.about));
     let picked = picker(ui, "Method", (chosen.id, chosen.about), entries);
@@ -262,7 +216,7 @@ fn method(ui: &mut Ui, input: &PanelInput<'_>, state: &PanelState, actions: &mut
     show_message(ui, &state.messages, "Method");
 }
 
-fn element(ui: &mut Ui, input: &PanelInput<'_>, state: &PanelState, actions: &mut Vec<Action>) {
+fn element(ui: &mut Ui, input: &Readout<'_>, state: &PanelState, actions: &mut Vec<Action>) {
     let chosen = input.scene.element().entry();
     let entries = input.scene.elements().map(|element| (element.id(), element.entry().about));
     let picked = picker(ui, "Element", (chosen.id, chosen.about), entries);

@@ -3,9 +3,10 @@
 use egui::Ui;
 
 use crate::app::language::{fill, joined, tr};
-use crate::app::panel::{Action, PanelInput, PanelState, number_row, picker};
+use crate::app::panel::{Action, PanelState, number_row, picker};
+use crate::app::readout::Readout;
 use crate::app::session::clock::{fraction, speed_of_period};
-use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
 use crate::dynamics::INTEGRATORS;
 use crate::scene::{Scene, limits};
@@ -15,12 +16,12 @@ use crate::words::{engineering, three_digits};
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
 
 /// Integrator and time step in a few words.
-pub(super) fn summary(input: &PanelInput<'_>) -> String {
+pub(super) fn summary(input: &Readout<'_>) -> String {
     let settings = &input.scene.dynamics;
     joined([tr(settings.integrator.id()), &engineering(settings.time_step, "s")])
 }
 
-pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let settings = &input.scene.dynamics;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;

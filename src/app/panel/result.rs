@@ -2,12 +2,15 @@
 
 use egui::{Grid, RichText, Ui};
 
+use crate::app::diagnosis::DRIFT_TIP;
+use crate::app::diagnosis::truth_words;
 use crate::app::diagnosis::{Errors, rho, stability};
 use crate::app::language::{count, fill, joined, percent, sentence, tr, translated};
-use crate::app::panel::{PanelInput, supports};
+use crate::app::panel::supports;
+use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
-use crate::app::shell::status_bar::{DRIFT_TIP, UNKNOWN, truth_words};
 use crate::app::widgets::palette::Palette;
+use crate::app::widgets::text::UNKNOWN;
 use crate::method::rho_words;
 use crate::simulation::{Motion, Simulation, Status, energy};
 use crate::study::Reference;
@@ -17,12 +20,12 @@ use crate::words::{engineering, engineering_pair, three_digits};
 const NAME_WIDTH: f32 = 84.0;
 
 /// What is behind the fold, in a few words.
-pub(super) fn summary(input: &PanelInput<'_>) -> String {
+pub(super) fn summary(input: &Readout<'_>) -> String {
     let moves = input.simulation.motion().is_some();
     tr(if moves { "energy, steps, times" } else { "certificate, reactions, times" }).to_owned()
 }
 
-pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, errors: &Errors) {
+pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
     let simulation = input.simulation;
     let secondary = Palette::new(ui.visuals()).secondary;
     ui.spacing_mut().item_spacing.y = 3.0;
@@ -46,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, input: &PanelInput<'_>, errors: &Errors) {
     ui.add(egui::Label::new(RichText::new(input.adapter).small().color(secondary)).wrap());
 }
 
-fn search_rows(row: &mut Row<'_>, input: &PanelInput<'_>, errors: &Errors) {
+fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
     let simulation = input.simulation;
     row(
         "Iterations",
@@ -111,7 +114,7 @@ fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
 }
 
 /// What the mesh does wrong, and how far the material is strained.
-fn quality_rows(row: &mut Row<'_>, input: &PanelInput<'_>) {
+fn quality_rows(row: &mut Row<'_>, input: &Readout<'_>) {
     let known = *input.simulation.status() == Status::Converged;
     let quality = input.quality;
     let error = quality.mesh_error_percent.filter(|_| known);
@@ -130,13 +133,13 @@ fn quality_rows(row: &mut Row<'_>, input: &PanelInput<'_>) {
     row("Strain", words, &tip);
 }
 
-fn frame_row(row: &mut Row<'_>, input: &PanelInput<'_>, what: &str) {
+fn frame_row(row: &mut Row<'_>, input: &Readout<'_>, what: &str) {
     let unknowns = count(input.simulation.system().dofs() as u64, "unknown");
     row("Frame", joined([time(input.timings.total()), unknowns]), what);
 }
 
 /// Time, pace, steps and energy of a motion.
-fn motion_rows(row: &mut Row<'_>, input: &PanelInput<'_>, motion: &Motion) {
+fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
     let pace = &input.playback.pace;
     let factor = match pace.factor() {
@@ -175,7 +178,7 @@ fn motion_rows(row: &mut Row<'_>, input: &PanelInput<'_>, motion: &Motion) {
 }
 
 /// Where the time of a frame went.
-fn stages(ui: &mut Ui, input: &PanelInput<'_>) {
+fn stages(ui: &mut Ui, input: &Readout<'_>) {
     let times = input.timings;
     let secondary = Palette::new(ui.visuals()).secondary;
     let stages = [

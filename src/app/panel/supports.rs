@@ -3,7 +3,8 @@
 use egui::{ComboBox, Id, Ui};
 
 use crate::app::language::{fill, joined, tr};
-use crate::app::panel::{Action, PanelInput, PanelState};
+use crate::app::panel::{Action, PanelState};
+use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
@@ -11,7 +12,7 @@ use crate::simulation::Simulation;
 use crate::words::{editable, engineering, engineering_pair};
 
 /// Number of the support that the sliders move; `None` where none of this scene has been moved.
-pub(super) fn chosen(ui: &Ui, input: &PanelInput<'_>) -> Option<usize> {
+pub(super) fn chosen(ui: &Ui, input: &Readout<'_>) -> Option<usize> {
     if input.scene.analysis == Analysis::Dynamic {
         return None;
     }
@@ -35,13 +36,7 @@ pub(super) fn summary(scene: &Scene, number: usize) -> String {
 }
 
 /// The sliders of a support: its displacement where it is fixed, and its turn where it is an edge.
-pub(super) fn show(
-    ui: &mut Ui,
-    input: &PanelInput<'_>,
-    number: usize,
-    state: &mut PanelState,
-    actions: &mut Vec<Action>,
-) {
+pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     let Some(support) = scene.supports.get(number) else { return };
     let original = input.original.supports.get(number);

@@ -1,5 +1,6 @@
 //! The lab: a scene, its simulation, and how it is looked at. Window, shot and tests show it through [`Lab::ui`].
 
+use crate::app::widgets::text::boxed_text;
 use std::path::Path;
 use std::time::Duration;
 
@@ -7,18 +8,16 @@ use egui::{CentralPanel, Color32, Panel, Rect, Sense, Ui};
 use nalgebra::Vector2;
 
 use crate::app::ThemeChoice;
-use crate::app::action::{Action, Drawer, MOST_ITERATIONS, Toggle, ViewOptions};
+use crate::app::action::{Action, MOST_ITERATIONS};
 use crate::app::diagnosis::{self, Errors};
 use crate::app::language::{self, Language, fill, spaced, tr, translated};
-use crate::app::mode::Mode;
 use crate::app::modes::budget::{Budget, question};
 use crate::app::modes::compare::{Compare, CompareInput, MotionCompare, MotionPane, Pane, PaneInput, PaneSetting};
 use crate::app::modes::explore::load_curve::Curve;
 use crate::app::modes::explore::{figure, load_curve, motion_plot};
 use crate::app::modes::learn::{self, Learn, Shown, Start};
-use crate::app::offscreen::painter::viewport;
-use crate::app::offscreen::recorder::Recorder;
-use crate::app::panel::{self, PanelInput, PanelState};
+use crate::app::panel::{self, PanelState};
+use crate::app::readout::Readout;
 use crate::app::session::document::Document;
 use crate::app::session::playback::Playback;
 use crate::app::session::quality::Quality;
@@ -32,13 +31,19 @@ use crate::app::shell::{help, shortcuts, status_bar, toolbar};
 use crate::app::task::lazy::{Finder, Watch};
 use crate::app::task::solve::{Start as Beginning, note_residual, solve_linear};
 use crate::app::task::thread::LISTEN;
+use crate::app::view_options::Drawer;
+use crate::app::view_options::Mode;
+use crate::app::view_options::Toggle;
+use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::{Forces, vector};
 use crate::app::viewport::body_mesh::Shape;
 use crate::app::viewport::camera_controller::Eye;
 use crate::app::viewport::crossing::passes_through_itself;
 use crate::app::viewport::handle::{Handle, Pull};
-use crate::app::viewport::overlay::{self, Overlay, Projection};
+use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{Body, Look, Pointer, Reach, Wish};
+use crate::app::viewport::projection::Projection;
+use crate::app::viewport::projection::viewport;
 use crate::app::viewport::{probe, time_line};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{self, Palette};
@@ -96,6 +101,8 @@ pub enum Request {
     ForgetCopy,
     /// Record the window, or end the recording.
     Record,
+    /// Record the scene from its start, or end that recording.
+    RecordScene,
 }
 
 /// Everything the window shows.
@@ -158,7 +165,8 @@ pub struct Lab {
     swept: Option<[Vector2<f64>; 2]>,
     /// Checks of the outline for crossings.
     crossing: Crossing,
-    recorder: Option<Recorder>,
+    /// Progress of the scene's recording, while it is made.
+    recording: Option<String>,
     gallery: Gallery,
     quality: Quality,
     /// Iterations a displayed frame.
@@ -236,7 +244,7 @@ impl Lab {
             shows_converged: false,
             swept: None,
             crossing: Crossing::default(),
-            recorder: None,
+            recording: None,
             gallery: Gallery::default(),
             quality: Quality::default(),
             iterations: 1,
@@ -692,8 +700,8 @@ impl Lab {
     }
 
     /// What toolbar, panel and headlines show.
-    fn input(&self) -> PanelInput<'_> {
-        PanelInput {
+    fn input(&self) -> Readout<'_> {
+        Readout {
             truth: self.truth.get(),
             jump: self.jump.get(),
             equilibrium_rho: self.learn.as_ref().and_then(|learn| learn.rho()),
@@ -760,15 +768,21 @@ impl Lab {
         if !self.has_dialog() && !was_typing {
             actions.extend(shortcuts::actions(ui.ctx()));
         }
-        (self.view.mode.entry().show)(self, ui, &mut actions);
+        match self.view.mode {
+            Mode::Explore => self.plots(ui, &mut actions),
+            Mode::Learn => self.learn(ui, &mut actions),
+            Mode::Compare => self.comparison_bars(ui, &mut actions),
+            Mode::Budget => self.budget(ui, &mut actions),
+        }
         let mut requests = Vec::new();
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
         let mut actions = Vec::new();
-        CentralPanel::default()
-            .frame(egui::Frame::NONE)
-            .show(ui, |ui| (self.view.mode.entry().view)(self, ui, &mut actions, &mut requests));
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| match self.view.mode {
+            Mode::Compare => self.comparison(ui, &mut actions, &mut requests),
+            _ => self.body_view(ui, &mut actions, &mut requests),
+        });
         if self.view.bars && self.view.narrow && self.view.sheet && self.view_rect.width() >= 160.0 {
             self.sheet(ui, &mut actions);
         }
@@ -887,7 +901,7 @@ impl Lab {
     }
 
     /// The plots under the body, where they are open.
-    pub(crate) fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let Some(drawer) = self.view.drawer else { return };
         drawer_panel(ui).show(ui, |ui| match drawer {
             Drawer::Curve => {
@@ -902,12 +916,12 @@ impl Lab {
     }
 
     /// Error against time, under the body.
-    pub(crate) fn budget(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    fn budget(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         drawer_panel(ui).show(ui, |ui| self.budget.show(ui, &self.scene, actions));
     }
 
     /// The presets over the panes that are compared, and the load curve under them.
-    pub(crate) fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         if self.moves() {
             let (motions, input) = self.compared_motions();
             return motions.bars(ui, &input);
@@ -917,7 +931,7 @@ impl Lab {
     }
 
     /// The panes that are compared, in the place of the body.
-    pub(crate) fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+    fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let rect = ui.available_rect_before_wrap();
         self.view_rect = rect;
         let wish = if self.moves() {
@@ -972,7 +986,7 @@ impl Lab {
     }
 
     /// The cards, under the body.
-    pub(crate) fn learn(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    fn learn(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         // What cards remember is apart from what they show.
         let Some(mut learn) = self.learn.take() else { return };
         let shown = Shown { input: self.input(), study: self.budget.study(), progress: self.budget.progress() };
@@ -1014,7 +1028,7 @@ impl Lab {
                 let (settings, gallery) = (std::mem::take(&mut self.settings), std::mem::take(&mut self.gallery));
                 *self = *before;
                 (self.card, self.settings, self.gallery) = (card, settings, gallery);
-                self.view.mode = if (mode.entry().serves)(&self.scene) { mode } else { Mode::Explore };
+                self.view.mode = mode;
                 // Plots that were asked for from a card are shown.
                 self.view.drawer = drawer.map(|_| Drawer::of(&self.scene)).or(self.view.drawer);
             }
@@ -1078,7 +1092,7 @@ impl Lab {
         }
     }
 
-    pub(crate) fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         // What is pressed is what was seen: the last picture.
         let projection = Projection { camera: self.camera(), rect: self.view_rect };
@@ -1631,9 +1645,6 @@ impl Lab {
                 self.compare.fit();
                 self.motions.fit();
             }
-            Action::Toggle(Toggle::Mode(mode)) if !(mode.entry().serves)(&self.scene) => {
-                self.say(ctx, tr(mode.entry().unless).to_owned());
-            }
             // The other kind has nothing to plot.
             Action::Toggle(Toggle::Drawer(drawer)) if drawer != Drawer::of(&self.scene) => {}
             Action::Toggle(what) => {
@@ -1665,7 +1676,7 @@ impl Lab {
             }
             Action::Screenshot => requests.push(Request::Screenshot),
             Action::Record => requests.push(Request::Record),
-            Action::RecordScene => self.record(ctx),
+            Action::RecordScene => requests.push(Request::RecordScene),
             Action::Copy => self.copy(ctx),
             Action::CopyRust => self.copy_rust(ctx),
             Action::Measure(true) => {
@@ -1674,10 +1685,10 @@ impl Lab {
                 self.budget.measure(&self.scene, extent);
             }
             Action::Measure(false) => self.budget.cancel(),
-            Action::Apply(measured) => {
+            Action::Apply(scene, iterations) => {
                 let before = self.snapshot();
-                self.edit(ctx, measured.apply(&self.scene));
-                self.iterations = measured.iterations().unwrap_or(1).clamp(1, MOST_ITERATIONS);
+                self.edit(ctx, *scene);
+                self.iterations = iterations.clamp(1, MOST_ITERATIONS);
                 self.remember(before, None);
             }
         }
@@ -1771,9 +1782,6 @@ impl Lab {
         }
         self.curve.forget();
         self.jump.forget();
-        if !(self.view.mode.entry().serves)(scene) {
-            self.view.mode = Mode::Explore;
-        }
         self.view.drawer = self.view.drawer.map(|_| Drawer::of(scene));
     }
 
@@ -1937,31 +1945,23 @@ impl Lab {
         self.say(ctx, tr("Scene copied as a Rust program").to_owned());
     }
 
-    /// Records the scene beside the window, or ends the recording that is made.
-    fn record(&mut self, ctx: &egui::Context) {
-        if let Some(recorder) = &self.recorder {
-            return recorder.stop();
-        }
-        let theme = if ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
-        match Recorder::start(self.document.source.clone(), self.scene.clone(), theme, self.settings.language) {
-            Ok(recorder) => self.recorder = Some(recorder),
-            Err(reason) => self.say(ctx, fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
-        }
-    }
-
-    /// Shows how far the recording is.
-    fn paint_recording(&mut self, ui: &Ui, painter: &egui::Painter, rect: Rect) {
-        let Some(recorder) = &mut self.recorder else { return };
-        if let Some(words) = recorder.listen() {
-            self.recorder = None;
-            return self.say(ui.ctx(), words);
-        }
-        let percent = format!("{:.0}", 100.0 * recorder.fraction);
-        let words = fill!("%{doing}: %{percent} % (Shift+V stops it)", doing = recorder.words, percent = percent);
+    /// Paints the progress of the scene's recording.
+    fn paint_recording(&self, ui: &Ui, painter: &egui::Painter, rect: Rect) {
+        let Some(progress) = &self.recording else { return };
         let place = rect.center_bottom() - egui::vec2(0.0, 48.0);
         let color = ui.visuals().strong_text_color();
-        overlay::boxed_text(painter, place, egui::Align2::CENTER_BOTTOM, &words, ui.visuals(), color, 400.0);
+        boxed_text(painter, place, egui::Align2::CENTER_BOTTOM, progress, ui.visuals(), color, 400.0);
         ui.ctx().request_repaint_after(LISTEN);
+    }
+
+    /// Shows the progress of the scene's recording; `None` once it has ended.
+    pub(crate) fn show_recording(&mut self, progress: Option<String>) {
+        self.recording = progress;
+    }
+
+    /// Place that the scene comes from.
+    pub(crate) fn source(&self) -> &Source {
+        &self.document.source
     }
 
     /// Shows a message for a while.
@@ -1978,7 +1978,7 @@ impl Lab {
             self.toast = None;
             return;
         }
-        overlay::boxed_text(
+        boxed_text(
             painter,
             rect.center_bottom() - egui::vec2(0.0, 24.0),
             egui::Align2::CENTER_BOTTOM,

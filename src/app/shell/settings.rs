@@ -6,9 +6,9 @@ use etcetera::BaseStrategy as _;
 use serde::{Deserialize, Serialize};
 
 use crate::app::ThemeChoice;
-use crate::app::action::Drawer;
 use crate::app::language::Language;
 use crate::app::session::document::write_whole;
+use crate::app::view_options::Drawer;
 use crate::simulation::Field;
 
 /// So many files are remembered.

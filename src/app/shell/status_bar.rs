@@ -1,30 +1,25 @@
 //! The bar along the bottom: three numbers that say it all, the residual's way down, and the drawer with the plots.
 
+use crate::app::diagnosis::{DRIFT_TIP, truth_words};
+use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use egui::{
-    Align, Color32, FontId, Galley, Layout, Painter, Pos2, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
-    vec2,
-};
+use egui::{Align, Color32, FontId, Galley, Layout, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use crate::app::action::{Action, Drawer, Toggle, ViewOptions};
+use crate::app::action::Action;
 use crate::app::diagnosis::{Errors, error_color, rho, rho_number};
-use crate::app::language::{fill, percent, tr, translated};
-use crate::app::panel::PanelInput;
+use crate::app::language::{fill, percent, tr};
+use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
-use crate::app::shell::toolbar::{Icon, icon_button};
+use crate::app::view_options::Drawer;
+use crate::app::view_options::Toggle;
+use crate::app::view_options::ViewOptions;
+use crate::app::widgets::buttons::Icon;
+use crate::app::widgets::buttons::icon_button;
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
 use crate::simulation::Motion;
-use crate::study::Reference;
 use crate::words::{engineering, two_digits};
-
-/// In place of a number that is not known.
-pub(crate) const UNKNOWN: &str = "\u{2013}";
-
-/// Definition of the drift that the window shows.
-pub(crate) const DRIFT_TIP: &str = "Energy that the integrator has added, or with a minus lost, over the energy that was put in: by the \
-                                    start, loads and hands";
 
 /// Below this width, points, numbers stand without their gauges.
 const GAUGES: f32 = 820.0;
@@ -49,13 +44,7 @@ enum Gauge {
 }
 
 /// Shows the bar.
-pub(crate) fn show(
-    ui: &mut Ui,
-    input: &PanelInput<'_>,
-    errors: &Errors,
-    view: &ViewOptions,
-    actions: &mut Vec<Action>,
-) {
+pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &ViewOptions, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     let wide = ui.available_width() >= GAUGES;
     ui.horizontal_centered(|ui| {
@@ -83,7 +72,7 @@ pub(crate) fn show(
     });
 }
 
-fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> Vec<Headline> {
+fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Headline> {
     let simulation = input.simulation;
     let times = simulation.timings();
     let seconds = (times.total() - times.certify).as_secs_f64();
@@ -141,7 +130,7 @@ fn of_solve(palette: &Palette, input: &PanelInput<'_>, errors: &Errors) -> Vec<H
     headlines
 }
 
-fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Headline; 3] {
+fn of_motion(palette: &Palette, input: &Readout<'_>, motion: &Motion) -> [Headline; 3] {
     let cost = input.timings.total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
     let pace = &input.playback.pace;
@@ -172,11 +161,6 @@ fn of_motion(palette: &Palette, input: &PanelInput<'_>, motion: &Motion) -> [Hea
             gauge: Gauge::None,
         },
     ]
-}
-
-/// What errors are measured against, in words.
-pub(crate) fn truth_words(truth: Option<&Reference>) -> String {
-    truth.map_or_else(|| tr("the reference, once that is known").to_owned(), |truth| translated(&truth.to_string()))
 }
 
 /// A name, its number and its gauge.
@@ -242,15 +226,8 @@ fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Res
     response.on_hover_text(tip)
 }
 
-/// Paints text whose font has one weight as if it had another: drawn twice, a hair apart, it is semibold.
-pub(crate) fn semibold(painter: &Painter, at: Pos2, galley: &Arc<Galley>, color: Color32) {
-    for shift in [0.0, 0.45] {
-        painter.galley(at + vec2(shift, 0.0), galley.clone(), color);
-    }
-}
-
 /// How the residual has fallen, iteration by iteration, down to what is asked for.
-fn sparkline(ui: &mut Ui, palette: &Palette, input: &PanelInput<'_>) {
+fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
     const NAME: f32 = 9.0;
     let name = tr("residual").to_owned();
     let name = ui.painter().layout_no_wrap(name, FontId::proportional(SMALL), palette.secondary);

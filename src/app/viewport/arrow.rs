@@ -3,8 +3,9 @@
 use egui::{Align, Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 use nalgebra::Vector2;
 
-use crate::app::viewport::overlay::{Projection, boxed_text};
+use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
+use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
 use crate::mesh::Mesh;
 use crate::scene::{Load, Material, Place, Scene};

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use egui::{Color32, Visuals};
 use nalgebra::Vector2;
 
-use crate::app::action::ViewOptions;
-use crate::app::panel;
+use crate::app::view_options::ViewOptions;
+use crate::app::viewport::color_range::range_of;
 use crate::app::widgets::palette::{self, Palette};
 use crate::assembly::System;
 use crate::mesh::{MaterialPoint, Mesh};
@@ -154,7 +154,7 @@ impl Shape {
             }
             self.stamp = stamp();
         }
-        let [mut low, mut high] = panel::range_of(&self.known);
+        let [mut low, mut high] = range_of(&self.known);
         if palette::has_sign(view.field) {
             let reach = high.abs().max(low.abs());
             (low, high) = (-reach, reach);

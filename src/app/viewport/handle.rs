@@ -4,7 +4,7 @@ use egui::{Color32, Painter, Pos2, Vec2};
 
 use crate::app::viewport::arrow::{Arrow, Forces, NEAR, is_seen, load_point};
 use crate::app::viewport::moment_arrow::{Turn, moment_range};
-use crate::app::viewport::overlay::Projection;
+use crate::app::viewport::projection::Projection;
 use crate::scene::{Load, Place};
 
 /// The end of a load's arrow.

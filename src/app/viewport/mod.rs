@@ -3,10 +3,12 @@
 pub(crate) mod arrow;
 pub(crate) mod body_mesh;
 pub(crate) mod camera_controller;
+pub(crate) mod color_range;
 pub(crate) mod crossing;
 pub(crate) mod handle;
 pub(crate) mod moment_arrow;
 pub(crate) mod overlay;
 pub(crate) mod pointer;
 pub(crate) mod probe;
+pub(crate) mod projection;
 pub(crate) mod time_line;

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 
 use crate::app::viewport::arrow::{LEAST_SPAN, NEAR, power_of_ten_above};
-use crate::app::viewport::overlay::boxed_text;
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
+use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
 use crate::scene::Material;
 use crate::words::{engineering, round_down, three_digits};

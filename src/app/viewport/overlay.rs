@@ -1,12 +1,14 @@
 //! What is painted over the body: outlines, supports, the load's arrow, legend, scale, and words.
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
+use crate::app::viewport::projection::Projection;
+use crate::app::widgets::text::boxed_text;
+use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
-use crate::app::action::ViewOptions;
 use crate::app::diagnosis::Errors;
 use crate::app::language::{percent, tr};
 use crate::app::session::playback::Playback;
+use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::{self, Forces};
 use crate::app::viewport::handle::HotHandle;
 use crate::app::widgets::legend::Mark;
@@ -55,54 +57,6 @@ pub(crate) struct Overlay<'a> {
     pub color_range: [f64; 2],
     /// What is wrong with the state, in words.
     pub warning: Option<&'a str>,
-}
-
-/// Metres to window positions.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Projection {
-    pub camera: Camera,
-    pub rect: Rect,
-}
-
-impl Projection {
-    fn offset(&self, p: Vector2<f64>) -> [f64; 2] {
-        self.camera.to_view(p)
-    }
-
-    /// The window position of a point; far outside the view, somewhere outside the view.
-    pub(crate) fn point(&self, p: Vector2<f64>) -> Pos2 {
-        let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
-        self.rect.center() + vec2(x, y)
-    }
-
-    /// The part of a segment that is in or near the view: coordinates far beyond it have no digits left as f32.
-    fn segment(&self, a: Vector2<f64>, b: Vector2<f64>) -> Option<[Pos2; 2]> {
-        let half = [f64::from(self.rect.width()) * 0.5 + 16.0, f64::from(self.rect.height()) * 0.5 + 16.0];
-        let [from, to] = clip(self.offset(a), self.offset(b), half)?;
-        let place = |p: [f64; 2]| self.rect.center() + vec2(p[0] as f32, p[1] as f32);
-        Some([place(from), place(to)])
-    }
-}
-
-/// Liang and Barsky 1984: the part of a segment inside the box |x| ≤ half₀, |y| ≤ half₁.
-fn clip(a: [f64; 2], b: [f64; 2], half: [f64; 2]) -> Option<[[f64; 2]; 2]> {
-    let d = [b[0] - a[0], b[1] - a[1]];
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    for axis in 0..2 {
-        for (p, q) in [(-d[axis], a[axis] + half[axis]), (d[axis], half[axis] - a[axis])] {
-            if p == 0.0 {
-                if q < 0.0 {
-                    return None;
-                }
-            } else if p < 0.0 {
-                enter = enter.max(q / p);
-            } else {
-                leave = leave.min(q / p);
-            }
-        }
-    }
-    let at = |t: f64| [a[0] + t * d[0], a[1] + t * d[1]];
-    (enter <= leave).then(|| [at(enter), at(leave)])
 }
 
 /// Paints everything.
@@ -399,25 +353,6 @@ fn moved_supports(
     }
 }
 
-/// Text on a box of the background's colour, moved into the view where it would leave it.
-pub(crate) fn boxed_text(
-    painter: &Painter,
-    at: Pos2,
-    anchor: Align2,
-    text: &str,
-    visuals: &Visuals,
-    color: Color32,
-    width: f32,
-) {
-    let galley = painter.layout(text.to_owned(), FontId::proportional(BODY), color, width.max(40.0));
-    let view = painter.clip_rect().shrink(8.0);
-    let wanted = anchor.anchor_size(at, galley.size());
-    let corner = wanted.min.clamp(view.min, (view.max - galley.size()).max(view.min));
-    let rect = Rect::from_min_size(corner, galley.size());
-    painter.rect_filled(rect.expand(4.0), 4.0, visuals.extreme_bg_color.gamma_multiply(0.85));
-    painter.galley(rect.min, galley, color);
-}
-
 /// Room that the colour bar takes at the bottom or the top of the view, points.
 pub(crate) const LEGEND_HEIGHT: f32 = 66.0;
 
@@ -581,18 +516,4 @@ pub(crate) fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette:
     }
     let middle = left + vec2(bar * 0.5, -6.0);
     painter.text(middle, Align2::CENTER_BOTTOM, engineering(length, "m"), FontId::proportional(SMALL), palette.text);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn segments_are_clipped_to_the_box() {
-        assert_eq!(clip([-20.0, 0.0], [20.0, 0.0], [10.0, 5.0]), Some([[-10.0, 0.0], [10.0, 0.0]]));
-        assert_eq!(clip([0.0, 0.0], [1.0, 1.0], [10.0, 5.0]), Some([[0.0, 0.0], [1.0, 1.0]]));
-        assert_eq!(clip([-20.0, 6.0], [20.0, 6.0], [10.0, 5.0]), None);
-        let [a, b] = clip([0.0, 0.0], [1e12, 1e12], [10.0, 5.0]).unwrap();
-        assert_eq!((a, b[0].round(), b[1].round()), ([0.0, 0.0], 5.0, 5.0));
-    }
 }

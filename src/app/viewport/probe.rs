@@ -4,7 +4,7 @@ use egui::{Align2, Area, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichT
 use nalgebra::{Matrix2, Vector2};
 
 use crate::app::language::{fill, tr};
-use crate::app::viewport::overlay::boxed_text;
+use crate::app::widgets::text::boxed_text;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::simulation::{Field, PointState, PointValues};
 use crate::words::{engineering, engineering_pair, three_digits};

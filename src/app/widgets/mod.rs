@@ -1,6 +1,9 @@
 //! Pieces of user interface that know nothing of the model: colours, number fields, buttons, text.
 
+pub(crate) mod buttons;
 pub(crate) mod legend;
 pub(crate) mod load_scale;
 pub(crate) mod number_field;
 pub(crate) mod palette;
+pub(crate) mod plot;
+pub(crate) mod text;

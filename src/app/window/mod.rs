@@ -19,7 +19,7 @@ use winit::window::{Window, WindowId};
 use crate::app::language::{fill, translated};
 use crate::app::offscreen::painter::Stage;
 use crate::app::offscreen::record::{LiveRecording, pointer};
-use crate::app::offscreen::recorder::RecorderError;
+use crate::app::offscreen::recorder::{Recorder, RecorderError};
 use crate::app::offscreen::shot::picture;
 use crate::app::session::recovery::Recovery;
 use crate::app::shell::lab::{Lab, Request};
@@ -27,7 +27,7 @@ use crate::app::shell::settings::Settings;
 use crate::app::size::{MOST_ALONE, unknowns};
 use crate::app::task::thread::LISTEN;
 use crate::app::window::clipboard::Clipboard;
-use crate::app::{AppError, NoName, free_name};
+use crate::app::{AppError, NoName, ThemeChoice, free_name};
 use crate::render::{Gpu, RenderError};
 use crate::scene::{Scene, Source, registry};
 use crate::simulation::Simulation;
@@ -119,6 +119,7 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
         recovery,
         open: None,
         recording: None,
+        scene_recording: None,
         start: Instant::now(),
         later: Vec::new(),
         wake: None,
@@ -144,6 +145,8 @@ struct App {
     open: Option<OpenWindow>,
     /// Recording of the window.
     recording: Option<LiveRecording>,
+    /// Recording of the scene from its start.
+    scene_recording: Option<Recorder>,
     /// When the window began.
     start: Instant,
     /// Events that wait for the next frame.
@@ -286,6 +289,8 @@ impl App {
             return Ok(());
         };
         self.lab.advance(self.start.elapsed().as_secs_f64());
+        self.follow_scene_recording();
+        let Some(open) = &mut self.open else { return Ok(()) };
         let mut input = open.input.take_egui_input(&open.window);
         let mut events = std::mem::take(&mut self.later);
         events.append(&mut input.events);
@@ -320,19 +325,20 @@ impl App {
             self.ctx.tessellate(clipped.collect(), output.pixels_per_point)
         };
         let screen = open.screen(output.pixels_per_point);
+        let views = self.lab.views(screen.pixels_per_point);
         if let Some(recording) = &mut self.recording {
             recording.hand_on(&open.gpu);
             if let Some(number) = recording.due(now) {
                 let own = primitives.len();
                 primitives.extend(over(hand.into_iter().collect()));
-                let drawn = (&self.lab, primitives.as_slice());
+                let drawn = (views.as_slice(), primitives.as_slice());
                 recording.take(&open.gpu, &mut open.stage, drawn, &screen, (number, now));
                 primitives.truncate(own);
             }
             primitives.extend(over(mark));
         }
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        open.stage.paint(&open.gpu, &view, &screen, &primitives, &self.lab);
+        open.stage.paint(&open.gpu, &view, &screen, &primitives, &views);
         open.window.pre_present_notify();
         open.gpu.queue.present(texture);
         open.stage.free_textures(&mut output.textures_delta);
@@ -346,6 +352,7 @@ impl App {
                 Request::Screenshot => self.screenshot(screen.pixels_per_point),
                 Request::ForgetCopy => self.recovery.iter_mut().for_each(Recovery::forget_left),
                 Request::Record => self.record(now),
+                Request::RecordScene => self.record_scene(),
                 Request::Close => self.close(event_loop),
             }
         }
@@ -396,6 +403,32 @@ impl App {
                 open.window.request_redraw();
             }
             Err(reason) => self.say(fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
+        }
+    }
+
+    /// Starts to record the scene from its start, or ends that recording.
+    fn record_scene(&mut self) {
+        if let Some(recorder) = &self.scene_recording {
+            return recorder.stop();
+        }
+        let theme = if self.ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
+        let (source, scene) = (self.lab.source().clone(), self.lab.scene().clone());
+        match Recorder::start(source, scene, theme, self.lab.language()) {
+            Ok(recorder) => self.scene_recording = Some(recorder),
+            Err(reason) => self.say(fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
+        }
+        self.schedule(Duration::ZERO);
+    }
+
+    /// Shows the progress of the scene's recording, or its end.
+    fn follow_scene_recording(&mut self) {
+        let Some(recorder) = &mut self.scene_recording else { return };
+        let ended = recorder.listen();
+        let progress = ended.is_none().then(|| recorder.progress());
+        self.lab.show_recording(progress);
+        if let Some(words) = ended {
+            self.scene_recording = None;
+            self.lab.say(&self.ctx, words);
         }
     }
 

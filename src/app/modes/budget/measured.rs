@@ -1,5 +1,6 @@
 //! Measurements of a study, of a body at rest or in motion, as Budget shows them.
 
+use crate::app::action::Action;
 use egui::Color32;
 
 use crate::app::language::{count, fill, joined, percent, tr, translated};
@@ -149,11 +150,11 @@ impl Choice {
         }
     }
 
-    /// The scene with this setting.
-    pub(crate) fn apply(&self, scene: &Scene) -> Scene {
+    /// Gives a scene this setting. A motion takes one step at a time.
+    pub(crate) fn action(&self, scene: &Scene) -> Action {
         match self {
-            Self::Rest(m) => m.apply(scene),
-            Self::Motion(m) => m.setting.apply(scene),
+            Self::Rest(m) => Action::Apply(Box::new(m.apply(scene)), m.setting.iterations),
+            Self::Motion(m) => Action::Apply(Box::new(m.setting.apply(scene)), 1),
         }
     }
 
@@ -162,14 +163,6 @@ impl Choice {
         match self {
             Self::Rest(m) => m.is_applied_to(scene),
             Self::Motion(m) => m.setting == MotionSetting::of(scene),
-        }
-    }
-
-    /// Iterations a displayed frame; `None` for a motion, which steps by the clock.
-    pub(crate) fn iterations(&self) -> Option<u32> {
-        match self {
-            Self::Rest(m) => Some(m.setting.iterations),
-            Self::Motion(_) => None,
         }
     }
 

@@ -3,21 +3,23 @@
 pub(crate) mod measured;
 mod study_task;
 
+use crate::app::widgets::plot::marker;
 use egui::{Button, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
-use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
+use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoints, Points, VLine};
 
 use crate::app::action::Action;
 use crate::app::language::{fill, joined, percent, tr, translated};
 use crate::app::modes::budget::measured::{Choice, Group, Measured};
 use crate::app::modes::budget::study_task::{Background, BackgroundError, News};
-use crate::app::modes::explore::load_curve::{X_AXIS, segments};
 use crate::app::task::thread::LISTEN;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
 use crate::app::widgets::palette::Palette;
+use crate::app::widgets::plot::X_AXIS;
+use crate::app::widgets::plot::segments;
 use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
-use crate::scene::{Analysis, DynamicsSettings, ElementKind, Scene, SolverSettings, limits};
+use crate::scene::{Analysis, DynamicsSettings, Scene, SolverSettings, limits};
 use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
 use crate::words::{engineering, number, three_digits};
 
@@ -268,7 +270,7 @@ fn settings(
             .on_hover_text(tr("Use the fastest setting that meets both"))
             .on_disabled_hover_text(tr("No setting that has been measured meets both limits"));
         if let (true, Some(best)) = (apply.clicked(), best) {
-            actions.push(Action::Apply(best));
+            actions.push(best.action(budget.scene));
         }
         let measured = budget.choices.len();
         ui.label(match budget.study.and_then(|study| study.too_coarse_for(budget.demand)) {
@@ -291,7 +293,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
                     .truncate(),
             );
             if label.on_hover_text(m.parts()).clicked() {
-                actions.push(Action::Apply(*m));
+                actions.push(m.action(budget.scene));
             }
         }
     });
@@ -338,18 +340,6 @@ fn legend(ui: &mut Ui, moves: bool) {
         let words = RichText::new(fill!("%{shapes}; nothing beats the line", shapes = shapes)).small();
         ui.add(egui::Label::new(words).truncate());
     });
-}
-
-/// The mark of an element and its name: the first for the first of the registry.
-pub(crate) fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
-    const SHAPES: [(MarkerShape, &str); 4] = [
-        (MarkerShape::Up, "triangles"),
-        (MarkerShape::Circle, "circles"),
-        (MarkerShape::Square, "squares"),
-        (MarkerShape::Diamond, "diamonds"),
-    ];
-    let number = ELEMENTS.iter().position(|e| e.kind == element).unwrap_or_default();
-    SHAPES[number % SHAPES.len()]
 }
 
 fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {

@@ -5,17 +5,17 @@ use egui::{Align, Align2, FontId, Layout, Rect, RichText, Role, Sense, Ui, UiBui
 use nalgebra::Vector2;
 
 use super::setting::PANES;
-use crate::app::action::ViewOptions;
 use crate::app::diagnosis::Errors;
 use crate::app::language::{fill, tr};
-use crate::app::offscreen::painter::viewport;
 use crate::app::session::playback::Playback;
-use crate::app::shell::toolbar::option_button;
+use crate::app::view_options::ViewOptions;
 use crate::app::viewport::body_mesh::Shape;
 use crate::app::viewport::camera_controller::Eye;
 use crate::app::viewport::handle::HotHandle;
 use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{Body, Look, Pointer, Reach, Wish};
+use crate::app::viewport::projection::viewport;
+use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::assembly::System;

@@ -9,14 +9,14 @@ use egui::{Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
 
 use super::setting::PaneSetting;
-use crate::app::action::ViewOptions;
 use crate::app::size::{MOST_UNKNOWNS, unknowns};
 use crate::app::task::thread::{Heard, Job};
+use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::Forces;
 use crate::app::viewport::body_mesh::Shape;
-use crate::app::viewport::overlay::Projection;
 use crate::app::viewport::pointer::Pointer;
 use crate::app::viewport::probe;
+use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::assembly::System;
 use crate::render::Camera;

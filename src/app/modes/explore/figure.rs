@@ -1,5 +1,7 @@
 //! Figures in the window: the plot, the table beside it, the choice of quantities, and files of it.
 
+use crate::app::action::FigureFile;
+use crate::app::view_options::CurvePlot;
 use std::path::PathBuf;
 
 use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
@@ -8,67 +10,15 @@ use thiserror::Error;
 
 use crate::app::action::Action;
 use crate::app::language::{fill, tr};
-use crate::app::modes::budget::marker;
-use crate::app::modes::explore::load_curve::{segments, still};
-use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::app::widgets::plot::marker;
+use crate::app::widgets::plot::segments;
+use crate::app::widgets::plot::still;
 use crate::app::{NoName, free_name};
 use crate::export::{ExportError, write_text};
 use crate::picture::{PictureError, draw_svg};
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
-
-/// Quantities that a load curve shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CurvePlot {
-    /// The reaction of a support that moves, over its way.
-    Reaction,
-    /// The components of the displacement against each other.
-    Path,
-    /// The horizontal component over the load.
-    X,
-    /// The vertical component over the load.
-    Y,
-}
-
-impl CurvePlot {
-    /// The component along an axis: 0 is x.
-    pub(crate) fn component(axis: usize) -> Self {
-        if axis == 0 { Self::X } else { Self::Y }
-    }
-
-    fn words(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Reaction => ("Reaction", "The reaction of the support over its way"),
-            Self::Path => ("Path", "The path of the point where errors are measured: u_y against u_x, in one scale"),
-            Self::X => ("u_x", "u_x against load, where errors are measured"),
-            Self::Y => ("u_y", "u_y against load, where errors are measured"),
-        }
-    }
-}
-
-/// Kind of a file that a figure is saved to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FigureFile {
-    Csv,
-    Png,
-    Svg,
-}
-
-impl FigureFile {
-    const ALL: [(Self, &'static str); 3] = [
-        (Self::Csv, "Every point as a table, with units"),
-        (Self::Png, "The plot and its table as a picture"),
-        (Self::Svg, "The plot and its table as a drawing that scales"),
-    ];
-
-    fn extension(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Png => "png",
-            Self::Svg => "svg",
-        }
-    }
-}
 
 /// Reason why a figure is not saved.
 #[derive(Debug, Error)]

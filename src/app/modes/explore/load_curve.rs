@@ -2,14 +2,13 @@
 //! other scene: its load path, what is unstable dashed.
 
 use egui::{Align2, Ui, UiBuilder};
-use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, Plot};
 use nalgebra::Vector2;
 
 use crate::app::action::Action;
 use crate::app::language::{fill, tr, translated};
-use crate::app::modes::explore::figure::{self, CurvePlot, Parts};
-use crate::app::viewport::overlay::boxed_text;
-use crate::app::widgets::palette::Palette;
+use crate::app::modes::explore::figure::{self, Parts};
+use crate::app::view_options::CurvePlot;
+use crate::app::widgets::text::boxed_text;
 use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
 use crate::study::figure::{
@@ -17,7 +16,7 @@ use crate::study::figure::{
 };
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
-use crate::words::{engineering, engineering_pair, three_digits, ticks};
+use crate::words::{engineering, engineering_pair, three_digits};
 
 /// Load and displacement of a scene.
 #[derive(Debug)]
@@ -34,69 +33,6 @@ impl Curve {
         let beam = LoadCurve::new(scene).map(|curve| Self::Beam(Box::new((curve, scene.clone()))));
         beam.or_else(path)
     }
-}
-
-/// A plot that stands still, with round ticks and values in engineering units.
-pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
-    /// A value between ticks, to three digits.
-    fn value(value: f64, unit: &str) -> String {
-        engineering(three_digits(value), unit)
-    }
-    let ((x_name, x_unit), (y_name, y_unit)) = (x, y);
-    // The marks are as far apart as their numbers need.
-    let near = egui::Rangef::new(0.5 * APART[0], 0.75 * APART[0]);
-    let x_axis = AxisHints::new_x().label(x_name.to_owned()).label_spacing(near).min_thickness(X_AXIS).formatter(
-        move |mark, range| {
-            // In the corner stands the number of the other axis.
-            let in_corner = mark.value - range.start() < CORNER * (range.end() - range.start());
-            if in_corner { String::new() } else { engineering(mark.value, x_unit) }
-        },
-    );
-    let y_axis = AxisHints::new_y().label(y_name.to_owned()).min_thickness(Y_AXIS);
-    Plot::new(id.to_owned())
-        .custom_x_axes(vec![x_axis])
-        .custom_y_axes(vec![y_axis.formatter(move |mark, _| engineering(mark.value, y_unit))])
-        .x_grid_spacer(|input| round_marks(input, APART[0]))
-        .y_grid_spacer(|input| round_marks(input, APART[1]))
-        .label_formatter(move |at| match at {
-            HoverPosition::NearDataPoint { plot_name, position, .. } => {
-                Some(format!("{plot_name}\n{}, {}", value(position.x, x_unit), value(position.y, y_unit)))
-            }
-            HoverPosition::Elsewhere { .. } => None,
-        })
-        .grid_color(palette.line)
-        .grid_spacing(egui::Rangef::new(NEAREST, APART[1]))
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-}
-
-/// Room for the numbers and the title of an axis, points, before egui_plot has measured them.
-pub(crate) const X_AXIS: f32 = 38.0;
-pub(crate) const Y_AXIS: f32 = 68.0;
-
-/// Grid lines nearer to each other than this, points, are not drawn.
-const NEAREST: f32 = 8.0;
-/// Numbers so far apart, points, have room: beside each other, and over each other.
-const APART: [f32; 2] = [66.0, 26.0];
-
-/// The part of an axis, from its beginning, over which its numbers would touch those of the other axis.
-const CORNER: f64 = 0.02;
-
-/// Marks 1, 2 or 5 · 10ⁿ apart, as many as have room for their numbers.
-fn round_marks(input: GridInput, apart: f32) -> Vec<GridMark> {
-    const MOST: f64 = 9.0;
-    let (low, high) = input.bounds;
-    let room = (high - low) / input.base_step_size * f64::from(NEAREST / apart);
-    let ticks = ticks(low, high, room.clamp(2.0, MOST) as u32);
-    let step_size = ticks.windows(2).next().map_or(high - low, |pair| pair[1] - pair[0]);
-    ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
-}
-
-/// The pieces of a line: joints of one thick line would stick out where it turns sharply.
-pub(crate) fn segments(line: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
-    line.windows(2).map(<[_]>::to_vec).collect()
 }
 
 /// Shows the plot, that of the scene before while a new one is looked for; or says why there is none: not yet, or not at

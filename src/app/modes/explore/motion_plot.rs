@@ -1,31 +1,18 @@
 //! The plots of a motion: energy by kind, the tip over time and its phase, and the spectrum of its motion.
 
+use crate::app::view_options::MotionPlot;
 use egui::{Color32, Ui};
 use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Points, VLine};
 use realfft::RealFftPlanner;
 
 use crate::app::language::{fill, tr};
-use crate::app::modes::explore::load_curve::still;
 use crate::app::session::history::{History, Sample};
 use crate::app::session::playback::Playback;
-use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::Palette;
+use crate::app::widgets::plot::still;
 use crate::scene::IntegratorKind;
 use crate::words::engineering;
-
-/// What is plotted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum MotionPlot {
-    /// Energy by kind.
-    #[default]
-    Energy,
-    /// Displacement of the first probe.
-    Tip,
-    /// Its velocity against its displacement.
-    Phase,
-    /// The amplitudes of the frequencies in it.
-    Spectrum,
-}
 
 const PLOTS: [(MotionPlot, &str, &str); 4] = [
     (MotionPlot::Energy, "Energy", "Where the energy is, and where it has gone"),

@@ -4,12 +4,14 @@
 use egui::{Context, FontId, Key, Painter, Panel, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use nalgebra::Vector2;
 
-use crate::app::action::{Action, Toggle, ViewOptions};
+use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
-use crate::app::mode::Mode;
-use crate::app::panel::PanelInput;
+use crate::app::readout::Readout;
 use crate::app::shell::lab::Lab;
 use crate::app::task::lazy::{Finder, Search};
+use crate::app::view_options::Mode;
+use crate::app::view_options::Toggle;
+use crate::app::view_options::ViewOptions;
 use crate::app::widgets::number_field::Messages;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::render::Camera;
@@ -110,7 +112,7 @@ pub(crate) struct Learn {
 
 /// What a card shows numbers of.
 pub(crate) struct Shown<'a> {
-    pub input: PanelInput<'a>,
+    pub input: Readout<'a>,
     /// What has been measured.
     pub study: Option<&'a Study>,
     /// Fraction that is done and what is measured now, while a study runs.

@@ -6,7 +6,7 @@ use super::{Learn, Shown};
 use crate::app::action::Action;
 use crate::app::diagnosis::rho_number;
 use crate::app::language::{count, fill, tr};
-use crate::app::shell::toolbar::option_button;
+use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::method::METHODS;
 use crate::scene::MethodKind;

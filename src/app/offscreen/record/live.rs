@@ -12,10 +12,9 @@ use super::RecordError;
 use super::film::{Film, MovieFormat};
 use crate::app::language::{self, Language, count, fill, tr, translated};
 use crate::app::offscreen::painter::Stage;
-use crate::app::shell::lab::Lab;
 use crate::app::task::thread::{Heard, Job};
 use crate::picture::Picture;
-use crate::render::{Gpu, RenderError};
+use crate::render::{Gpu, RenderError, View};
 
 /// Pictures a second.
 const RATE: u16 = 25;
@@ -105,7 +104,7 @@ impl LiveRecording {
         &mut self,
         gpu: &Gpu,
         stage: &mut Stage,
-        (lab, primitives): (&Lab, &[ClippedPrimitive]),
+        (views, primitives): (&[View<'_>], &[ClippedPrimitive]),
         screen: &ScreenDescriptor,
         (number, now): (u64, f64),
     ) {
@@ -116,7 +115,7 @@ impl LiveRecording {
         let [x, y] = [0, 1].map(|axis| self.size[axis] as f32 / screen.size_in_pixels[axis].max(1) as f32);
         let own = ScreenDescriptor { size_in_pixels: self.size, pixels_per_point: screen.pixels_per_point * x.min(y) };
         let view = self.target.create_view(&wgpu::TextureViewDescriptor::default());
-        stage.paint(gpu, &view, &own, primitives, lab);
+        stage.paint(gpu, &view, &own, primitives, views);
         let reading = self.read(gpu, number);
         self.pending.push(reading);
         self.start.get_or_insert(now);
@@ -312,6 +311,7 @@ fn end_early(path: &Path, length: u64) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::shell::lab::Lab;
     use crate::render::{FORMAT, read_texture};
     use crate::scene::{Source, open};
     use crate::simulation::Simulation;
@@ -379,7 +379,13 @@ mod tests {
             stage.set_textures(&gpu, &mut output.textures_delta);
             recording.hand_on(&gpu);
             if let Some(number) = recording.due(now) {
-                recording.take(&gpu, &mut stage, (&lab, &primitives), &screen, (number, now));
+                recording.take(
+                    &gpu,
+                    &mut stage,
+                    (&lab.views(screen.pixels_per_point), &primitives),
+                    &screen,
+                    (number, now),
+                );
             }
             assert!(recording.pending.len() <= MOST_READ && recording.free.len() <= MOST_READ);
             stage.free_textures(&mut output.textures_delta);

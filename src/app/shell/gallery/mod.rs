@@ -14,7 +14,7 @@ use self::thumbnail::Thumbnail;
 use self::workshop::Workshop;
 use crate::app::action::Action;
 use crate::app::language::tr;
-use crate::app::panel::PanelInput;
+use crate::app::readout::Readout;
 use crate::app::task::thread::LISTEN;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::scene::{Analysis, Scene, registry};
@@ -82,7 +82,7 @@ impl Gallery {
     }
 
     /// The button with the scene's name, which opens the gallery.
-    pub(crate) fn show(&mut self, ui: &mut Ui, input: &PanelInput<'_>, wide: bool, actions: &mut Vec<Action>) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) {
         let palette = Palette::new(ui.visuals());
         let window = ui.ctx().content_rect().size();
         let label = ui.label(RichText::new(tr("Scene")).color(palette.secondary));
@@ -96,7 +96,7 @@ impl Gallery {
         opened.response.labelled_by(label.id).on_hover_text(tr(&input.scene.about));
     }
 
-    fn entries(&mut self, ui: &mut Ui, input: &PanelInput<'_>, window: f32, actions: &mut Vec<Action>) {
+    fn entries(&mut self, ui: &mut Ui, input: &Readout<'_>, window: f32, actions: &mut Vec<Action>) {
         /// What is beside the entries: margins and the scroll bar.
         const BESIDE: f32 = 36.0;
         const GAP: f32 = 6.0;

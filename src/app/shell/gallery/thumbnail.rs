@@ -4,7 +4,7 @@ use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Color32, Painter, Pos2, Rect, Shape as Painted, Stroke, vec2};
 use nalgebra::Vector2;
 
-use crate::app::action::ViewOptions;
+use crate::app::view_options::ViewOptions;
 use crate::app::viewport::body_mesh::Shape;
 use crate::app::widgets::palette::Palette;
 use crate::method::is_useful_start;

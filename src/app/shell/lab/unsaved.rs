@@ -5,10 +5,10 @@ use egui::{Context, Event, Id, Key, Modal, RichText};
 
 use super::{Lab, Request, banner};
 use crate::app::language::{fill, tr, translated};
-use crate::app::mode::Mode;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
+use crate::app::view_options::Mode;
 use crate::scene::{Scene, Source};
 
 /// Request that would lose the edits.

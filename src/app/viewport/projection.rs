@@ -1,0 +1,75 @@
+//! From the plane of the body to the window.
+
+use egui::{Pos2, Rect, vec2};
+use nalgebra::Vector2;
+
+use crate::render::{Camera, Viewport};
+
+/// Metres to window positions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Projection {
+    pub camera: Camera,
+    pub rect: Rect,
+}
+
+impl Projection {
+    fn offset(&self, p: Vector2<f64>) -> [f64; 2] {
+        self.camera.to_view(p)
+    }
+
+    /// The window position of a point; far outside the view, somewhere outside the view.
+    pub(crate) fn point(&self, p: Vector2<f64>) -> Pos2 {
+        let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
+        self.rect.center() + vec2(x, y)
+    }
+
+    /// The part of a segment that is in or near the view: coordinates far beyond it have no digits left as f32.
+    pub(crate) fn segment(&self, a: Vector2<f64>, b: Vector2<f64>) -> Option<[Pos2; 2]> {
+        let half = [f64::from(self.rect.width()) * 0.5 + 16.0, f64::from(self.rect.height()) * 0.5 + 16.0];
+        let [from, to] = clip(self.offset(a), self.offset(b), half)?;
+        let place = |p: [f64; 2]| self.rect.center() + vec2(p[0] as f32, p[1] as f32);
+        Some([place(from), place(to)])
+    }
+}
+
+/// Liang and Barsky 1984: the part of a segment inside the box |x| ≤ half₀, |y| ≤ half₁.
+fn clip(a: [f64; 2], b: [f64; 2], half: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        for (p, q) in [(-d[axis], a[axis] + half[axis]), (d[axis], half[axis] - a[axis])] {
+            if p == 0.0 {
+                if q < 0.0 {
+                    return None;
+                }
+            } else if p < 0.0 {
+                enter = enter.max(q / p);
+            } else {
+                leave = leave.min(q / p);
+            }
+        }
+    }
+    let at = |t: f64| [a[0] + t * d[0], a[1] + t * d[1]];
+    (enter <= leave).then(|| [at(enter), at(leave)])
+}
+
+/// The pixels of a place in the window, with so many of them a point.
+pub(crate) fn viewport(place: egui::Rect, pixels_per_point: f32) -> Viewport {
+    let place = place * pixels_per_point;
+    let [corner, end] = [place.min, place.max].map(|p| [p.x, p.y].map(|v| v.round().max(0.0) as u32));
+    Viewport { corner, size: [0, 1].map(|axis| end[axis].saturating_sub(corner[axis])) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_are_clipped_to_the_box() {
+        assert_eq!(clip([-20.0, 0.0], [20.0, 0.0], [10.0, 5.0]), Some([[-10.0, 0.0], [10.0, 0.0]]));
+        assert_eq!(clip([0.0, 0.0], [1.0, 1.0], [10.0, 5.0]), Some([[0.0, 0.0], [1.0, 1.0]]));
+        assert_eq!(clip([-20.0, 6.0], [20.0, 6.0], [10.0, 5.0]), None);
+        let [a, b] = clip([0.0, 0.0], [1e12, 1e12], [10.0, 5.0]).unwrap();
+        assert_eq!((a, b[0].round(), b[1].round()), ([0.0, 0.0], 5.0, 5.0));
+    }
+}

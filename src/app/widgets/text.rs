@@ -1,0 +1,36 @@
+//! Text on a box, semibold text, and the sign for a number that is not known.
+
+use std::sync::Arc;
+
+use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Visuals, vec2};
+
+use crate::app::widgets::palette::BODY;
+
+/// In place of a number that is not known.
+pub(crate) const UNKNOWN: &str = "\u{2013}";
+
+/// Text on a box of the background's colour, moved into the view where it would leave it.
+pub(crate) fn boxed_text(
+    painter: &Painter,
+    at: Pos2,
+    anchor: Align2,
+    text: &str,
+    visuals: &Visuals,
+    color: Color32,
+    width: f32,
+) {
+    let galley = painter.layout(text.to_owned(), FontId::proportional(BODY), color, width.max(40.0));
+    let view = painter.clip_rect().shrink(8.0);
+    let wanted = anchor.anchor_size(at, galley.size());
+    let corner = wanted.min.clamp(view.min, (view.max - galley.size()).max(view.min));
+    let rect = Rect::from_min_size(corner, galley.size());
+    painter.rect_filled(rect.expand(4.0), 4.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    painter.galley(rect.min, galley, color);
+}
+
+/// Paints text whose font has one weight as if it had another: drawn twice, a hair apart, it is semibold.
+pub(crate) fn semibold(painter: &Painter, at: Pos2, galley: &Arc<Galley>, color: Color32) {
+    for shift in [0.0, 0.45] {
+        painter.galley(at + vec2(shift, 0.0), galley.clone(), color);
+    }
+}
