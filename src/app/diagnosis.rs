@@ -44,7 +44,7 @@ pub(crate) struct Errors {
 pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     let simulation = input.simulation;
     let at_rest = simulation.is_at_rest() && simulation.hand().is_none();
-    let Some(reference) = input.truth.filter(|_| at_rest) else { return Errors::default() };
+    let Some(reference) = input.reference.filter(|_| at_rest) else { return Errors::default() };
     let Some(truth) = reference.first() else { return Errors::default() };
     let percent_of = |simulation: &Simulation| {
         let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;

@@ -27,9 +27,10 @@ pub use language::Language;
 pub use modes::compare::{MotionPane, MotionPaneSetting, Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
 pub use offscreen::record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
+pub use panel::PANEL_WIDTH;
 #[doc(hidden)]
 pub use session::recovery::{Recovery, Unsaved};
-pub use shell::lab::{Lab, PANEL_WIDTH, Request};
+pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
 pub use window::{Display, NoDisplay, opens_beside, run};
 

@@ -2,7 +2,7 @@
 
 use crate::app::language::Language;
 use crate::app::session::playback::Playback;
-use crate::app::session::quality::Quality;
+use crate::app::task::quality::Quality;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::study::{PathSummary, Reference};
@@ -33,7 +33,7 @@ pub(crate) struct Readout<'a> {
     pub can_undo: bool,
     pub can_redo: bool,
     /// What errors are measured against, once it is known.
-    pub truth: Option<&'a Reference>,
+    pub reference: Option<&'a Reference>,
     /// Where the body jumps on its way from rest, once it is known.
     pub jump: Option<&'a PathSummary>,
     /// ρ of the warped iteration at the equilibrium, where it has been looked for, whatever the body's state.

@@ -105,12 +105,12 @@ struct CameraUniform {
 
 /// What a camera is to the shader.
 #[derive(Debug)]
-struct Eye {
+struct CameraController {
     uniform: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
 }
 
-impl Eye {
+impl CameraController {
     fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, map: &wgpu::Buffer) -> Self {
         let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("camera"),
@@ -141,7 +141,7 @@ pub struct BodyRenderer {
     /// What is in there.
     uploaded_map: Option<ColorMap>,
     /// One a view: made when they are needed first.
-    eyes: Vec<Eye>,
+    eyes: Vec<CameraController>,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
     /// What is in the vertex buffer.
@@ -338,7 +338,7 @@ impl BodyRenderer {
             let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side)) as f32);
             let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
             if self.eyes.len() == i {
-                self.eyes.push(Eye::new(gpu, &self.layout, &self.map));
+                self.eyes.push(CameraController::new(gpu, &self.layout, &self.map));
             }
             gpu.queue.write_buffer(&self.eyes[i].uniform, 0, bytemuck::bytes_of(&uniform));
         }

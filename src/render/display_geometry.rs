@@ -9,7 +9,7 @@ use crate::mesh::{Mesh, Segment};
 
 /// What is drawn of a mesh. Points are weighted sums of nodes.
 #[derive(Debug, Default)]
-pub(crate) struct Drawing {
+pub(crate) struct DisplayGeometry {
     /// Nodes of an element, and for each point those of its element with their weights.
     stride: usize,
     nodes: Vec<u32>,
@@ -31,7 +31,7 @@ pub(crate) struct Drawing {
     pub boundary: Vec<Segment>,
 }
 
-impl Drawing {
+impl DisplayGeometry {
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let entry = mesh.element().entry();
         let (stride, pieces) = (entry.nodes.len(), entry.drawn_pieces);
@@ -180,7 +180,7 @@ mod tests {
         for element in ElementKind::all() {
             let scene = Scene::beam(3.0, 2.0).with_cells(3, 2).with_element(element);
             let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
-            let drawing = Drawing::new(&mesh);
+            let drawing = DisplayGeometry::new(&mesh);
             let mut points = Vec::new();
             drawing.points(&|n| mesh.nodes()[n as usize], &mut points);
             let area: f64 = drawing

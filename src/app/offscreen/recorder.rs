@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::app::language::{self, Language, count, fill, tr, translated};
 use crate::app::offscreen::record::{Phase, RecordOptions, RecordProgress, record};
-use crate::app::task::thread::{Heard, Job, Line};
+use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::{NoName, ThemeChoice, free_name};
 use crate::scene::{Scene, Source};
 
@@ -28,7 +28,7 @@ type Said = (f32, String);
 /// A recording in a thread of its own. Dropped, it is called off.
 #[derive(Debug)]
 pub(crate) struct Recorder {
-    job: Job<Said, String>,
+    task: Task<Said, String>,
     /// Fraction that is done, 0 to 1.
     fraction: f32,
     /// Description of the present phase.
@@ -47,8 +47,8 @@ impl Recorder {
         language: Language,
     ) -> Result<Self, RecorderError> {
         let path = free_name("gif")?;
-        let job = Job::start("record", move |line| work(&source, scene, (theme, language), &path, line))?;
-        Ok(Self { job, fraction: 0.0, words: String::new() })
+        let task = Task::start("record", move |reporter| work(&source, scene, (theme, language), &path, reporter))?;
+        Ok(Self { task, fraction: 0.0, words: String::new() })
     }
 
     /// Returns the text that shows the progress.
@@ -59,17 +59,17 @@ impl Recorder {
 
     /// Ends it with what it has.
     pub(crate) fn stop(&self) {
-        self.job.call_off();
+        self.task.cancel();
     }
 
     /// Hears how far it is; returns what there is to say once it has ended.
     pub(crate) fn listen(&mut self) -> Option<String> {
         loop {
-            match self.job.hear() {
-                Heard::News(said) => (self.fraction, self.words) = said,
-                Heard::Done(words) => return Some(words),
-                Heard::Nothing => return None,
-                Heard::Died => return Some(tr("The recording ended unexpectedly").to_owned()),
+            match self.task.poll() {
+                Update::Progress(said) => (self.fraction, self.words) = said,
+                Update::Done(words) => return Some(words),
+                Update::None => return None,
+                Update::Died => return Some(tr("The recording ended unexpectedly").to_owned()),
             }
         }
     }
@@ -80,7 +80,7 @@ fn work(
     scene: Scene,
     (theme, language): (ThemeChoice, Language),
     path: &Path,
-    line: &Line<Said, String>,
+    reporter: &Reporter<Said, String>,
 ) -> String {
     language::speak(language);
     let mut observe = |progress: RecordProgress| {
@@ -88,7 +88,7 @@ fn work(
             Phase::Looking => tr("Looking ahead").to_owned(),
             Phase::Drawing => fill!("Recording %{file}", file = path.display()),
         };
-        line.say((progress.fraction as f32, words))
+        reporter.report((progress.fraction as f32, words))
     };
     let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, overwrite: true, theme, language };
     match record(source, scene, &options, path, &mut observe) {

@@ -25,6 +25,9 @@ mod result;
 mod supports;
 mod view;
 
+/// Width of the panel, points.
+pub const PANEL_WIDTH: f32 = 284.0;
+
 /// What the panel remembers from frame to frame.
 #[derive(Debug, Default)]
 pub(super) struct PanelState {

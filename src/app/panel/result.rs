@@ -2,9 +2,7 @@
 
 use egui::{Grid, RichText, Ui};
 
-use crate::app::diagnosis::DRIFT_TIP;
-use crate::app::diagnosis::truth_words;
-use crate::app::diagnosis::{Errors, rho, stability};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, rho, stability, truth_words};
 use crate::app::language::{count, fill, joined, percent, sentence, tr, translated};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
@@ -61,14 +59,14 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
         "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
     );
     probe_row(row, simulation);
-    let words = errors.own.zip(input.truth.and_then(Reference::first)).map_or_else(
+    let words = errors.own.zip(input.reference.and_then(Reference::first)).map_or_else(
         || UNKNOWN.to_owned(),
         |(error, truth)| {
             let whole = engineering(truth.displacement.norm(), "m");
             fill!("%{error} of %{whole}", error = percent(error), whole = whole)
         },
     );
-    let truth = truth_words(input.truth);
+    let truth = truth_words(input.reference);
     row("Error", words, &fill!("Distance of the first probe from %{truth}, over its displacement", truth = truth));
     quality_rows(row, input);
     let (factor, steps) = simulation.load_stepping();
@@ -148,7 +146,7 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
         None => UNKNOWN.to_owned(),
     };
     let tip = "Simulated seconds a second; a machine that cannot keep up slows the motion down";
-    row("Pace", factor, tip);
+    row("RealTimeClock", factor, tip);
     let counts = motion.counts();
     let halvings = (counts.halvings > 0).then(|| count(counts.halvings, "halving"));
     row(

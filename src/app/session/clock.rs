@@ -34,7 +34,7 @@ pub(crate) fn fraction(speed: f64) -> String {
 
 /// How much time a motion owes.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Pace {
+pub(crate) struct RealTimeClock {
     /// Simulated seconds a second that are asked for.
     speed: f64,
     /// When the last frame was, s.
@@ -64,13 +64,13 @@ impl Steps {
     }
 }
 
-impl Default for Pace {
+impl Default for RealTimeClock {
     fn default() -> Self {
         Self { speed: 1.0, last: None, owed: 0.0, counted: (0.0, 0.0), factor: None }
     }
 }
 
-impl Pace {
+impl RealTimeClock {
     /// Simulated seconds a second that are asked for.
     pub(crate) fn speed(&self) -> f64 {
         self.speed
@@ -141,7 +141,7 @@ mod tests {
 
     /// The steps made in four seconds of frames so long, s.
     fn steps(frame: f64, speed: f64) -> u32 {
-        let mut pace = Pace::default();
+        let mut pace = RealTimeClock::default();
         pace.set_speed(speed);
         let frames = (4.0 / frame).round() as u32;
         let mut all = 0;
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_machine_that_cannot_keep_up_slows_the_motion_and_says_so() {
-        let mut pace = Pace::default();
+        let mut pace = RealTimeClock::default();
         let mut made = 0;
         for i in 0..60 {
             let due = pace.begin(f64::from(i) * 0.05, 0.01);
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_frame_after_a_long_absence_makes_up_for_little() {
-        let mut pace = Pace::default();
+        let mut pace = RealTimeClock::default();
         let due = pace.begin(0.0, 0.01);
         pace.end(due, due, 0.01);
         assert!(pace.begin(3600.0, 0.01) <= 10);

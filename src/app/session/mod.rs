@@ -1,10 +1,635 @@
-//! The model that is being worked on, without the user interface.
+//! One model that is being worked on, without the user interface: scene, simulation, linear theory's solution, motion,
+//! undo history, file, and results that are computed in the background.
 
+mod background;
 pub(crate) mod clock;
 pub(crate) mod document;
+pub(crate) mod facts;
 pub(crate) mod history;
 pub(crate) mod past;
 pub(crate) mod playback;
-pub(crate) mod quality;
 pub(crate) mod recovery;
 pub(crate) mod undo;
+
+use std::io;
+use std::path::Path;
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use crate::app::session::background::Background;
+use crate::app::session::document::{Document, SaveError};
+use crate::app::session::facts::Facts;
+use crate::app::session::playback::Playback;
+use crate::app::session::undo::{Press, UndoHistory, Version};
+use crate::app::task::quality::Quality;
+use crate::app::task::solve::{Start, note_residual, solve_linear};
+use crate::mesh::MaterialPoint;
+use crate::render::display_geometry::DisplayGeometry;
+use crate::scene::{IntegratorKind, Load, Scene, SceneError, Source};
+use crate::simulation::{Simulation, SimulationError, Status};
+use crate::state::State;
+use crate::timings::Timings;
+
+/// A change of the model that can be undone.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Edit {
+    /// Change the scene by the control of this label. UndoHistory by one control during one press are one step.
+    Scene(&'static str, Box<Scene>),
+    /// Use the scene of a measured setting, with its iterations a displayed frame.
+    Setting(Box<Scene>, u32),
+    /// Open a scene in the place of the present one.
+    Open(Source),
+    /// Take a document over, with a scene that may have been edited since.
+    Restore(Box<(Document, Scene)>),
+    Undo,
+    Redo,
+}
+
+/// Parts of the session that have changed since the last [`Session::take_changed`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Changed {
+    pub scene: bool,
+    /// `true` if the mesh is another one.
+    pub mesh: bool,
+    /// `true` if the mesh or the kind of analysis is another one.
+    pub body: bool,
+    /// `true` if the scene comes from another document.
+    pub document: bool,
+}
+
+/// News for the user, which follow no command at once.
+#[derive(Debug)]
+pub(crate) enum Notice {
+    /// The scene that was solved in the background has no model; `label` names the control that was edited.
+    Rejected {
+        label: Option<&'static str>,
+        message: String,
+    },
+    SolveDied,
+    NoThread(io::Error),
+}
+
+/// Why an edit was refused. The session is unchanged.
+#[derive(Debug, Error)]
+pub(crate) enum EditError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+/// Grab of the body with the pointer during one frame, in the order of its parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Grab {
+    /// Material point that is grabbed.
+    pub start: Option<MaterialPoint>,
+    /// Place that the grabbed point is pulled to, m.
+    pub target: Option<Vector2<f64>>,
+    pub release: bool,
+}
+
+/// One model that is being worked on.
+#[derive(Debug)]
+pub(crate) struct Session {
+    document: Document,
+    /// The scene that is wanted: the simulation's, unless a background solve is under way.
+    scene: Scene,
+    undo: UndoHistory,
+    /// The displayed model; a copy of it while it is solved in the background.
+    simulation: Simulation,
+    /// Linear theory's solution of the scene; `None` where it could not be set up.
+    linear: Option<Simulation>,
+    geometry: DisplayGeometry,
+    background: Background,
+    running: bool,
+    /// Iterations a displayed frame.
+    iterations: u32,
+    /// Time of the last iterations of one displayed frame.
+    timings: Timings,
+    /// The residual after every iteration since the last change.
+    residuals: Vec<f64>,
+    playback: Playback,
+    quality: Quality,
+    /// Last equilibrium, displayed in the place of a state that diverges.
+    converged: Option<Simulation>,
+    facts: Facts,
+    /// `true` if the scene's file has changed on disk since it was read or saved.
+    is_outdated: bool,
+    changed: Changed,
+    notices: Vec<Notice>,
+}
+
+impl Session {
+    /// A session with this scene, iterating from rest.
+    pub(crate) fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
+        let linear = solve_linear(simulation.scene(), simulation.system(), None);
+        Self {
+            document: Document::new(source, scene.clone()),
+            linear,
+            scene,
+            undo: UndoHistory::default(),
+            geometry: DisplayGeometry::new(simulation.system().mesh()),
+            simulation,
+            background: Background::default(),
+            running: true,
+            iterations: 1,
+            timings: Timings::default(),
+            residuals: Vec::new(),
+            playback: Playback::default(),
+            quality: Quality::default(),
+            converged: None,
+            facts: Facts::default(),
+            is_outdated: false,
+            changed: Changed::default(),
+            notices: Vec::new(),
+        }
+    }
+
+    pub(crate) fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The scene that is wanted.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    pub(crate) fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// Linear theory's solution of the scene.
+    pub(crate) fn linear(&self) -> Option<&Simulation> {
+        self.linear.as_ref()
+    }
+
+    pub(crate) fn geometry(&self) -> &DisplayGeometry {
+        &self.geometry
+    }
+
+    pub(crate) fn playback(&self) -> &Playback {
+        &self.playback
+    }
+
+    pub(crate) fn quality(&self) -> &Quality {
+        &self.quality
+    }
+
+    pub(crate) fn facts(&self) -> &Facts {
+        &self.facts
+    }
+
+    pub(crate) fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
+    /// The residual after every iteration since the last change.
+    pub(crate) fn residuals(&self) -> &[f64] {
+        &self.residuals
+    }
+
+    /// Iterations a displayed frame.
+    pub(crate) fn iterations(&self) -> u32 {
+        self.iterations
+    }
+
+    pub(crate) fn set_iterations(&mut self, iterations: u32) {
+        self.iterations = iterations;
+    }
+
+    pub(crate) fn can_undo(&self) -> bool {
+        self.undo.can_undo()
+    }
+
+    pub(crate) fn can_redo(&self) -> bool {
+        self.undo.can_redo()
+    }
+
+    /// `true` if the scene is a motion.
+    pub(crate) fn is_motion(&self) -> bool {
+        self.simulation.motion().is_some()
+    }
+
+    /// `true` if iterations or time steps are made.
+    pub(crate) fn is_running(&self) -> bool {
+        self.running
+    }
+
+    /// `true` if the next frame changes the body.
+    pub(crate) fn iterates(&self) -> bool {
+        self.running && !self.has_ended()
+    }
+
+    /// `true` if everything is at rest, and the next iteration changes nothing.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.simulation.is_at_rest() && !self.playback.companions_move()
+    }
+
+    /// `true` if the scene has edits that no file has.
+    pub(crate) fn is_edited(&self) -> bool {
+        self.scene != self.document.original
+    }
+
+    /// Last equilibrium of the displayed mesh.
+    pub(crate) fn converged(&self) -> Option<&Simulation> {
+        self.converged.as_ref().filter(|kept| std::sync::Arc::ptr_eq(kept.system(), self.simulation.system()))
+    }
+
+    /// Returns the parts that have changed since the last call.
+    pub(crate) fn take_changed(&mut self) -> Changed {
+        std::mem::take(&mut self.changed)
+    }
+
+    /// Adds news for the user.
+    pub(crate) fn notify(&mut self, notice: Notice) {
+        self.notices.push(notice);
+    }
+
+    /// Returns the news since the last call.
+    pub(crate) fn take_notices(&mut self) -> Vec<Notice> {
+        std::mem::take(&mut self.notices)
+    }
+
+    /// Follows the presses of the pointer: edits of one press are one step of the undo history.
+    pub(crate) fn follow_press(&mut self, press: Press) {
+        self.undo.follow_press(press);
+    }
+
+    /// Applies an edit, and returns the parts that it has changed. A large model is set up in the background, and changes
+    /// when a first snapshot of it is there.
+    ///
+    /// # Errors
+    /// [`EditError`]; the session is unchanged. Errors of a mesh that is made in the background follow as a [`Notice`].
+    pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, EditError> {
+        let before = self.version();
+        match edit {
+            Edit::Scene(label, scene) => {
+                self.set_scene(*scene)?;
+                self.record(before, Some(label));
+                self.name_edit(label);
+            }
+            Edit::Setting(scene, iterations) => {
+                self.set_scene(*scene)?;
+                self.iterations = iterations;
+                self.record(before, None);
+            }
+            Edit::Open(source) => {
+                let document = Document::open(source)?;
+                let scene = document.original.clone();
+                self.replace(document, scene)?;
+                self.record(before, None);
+            }
+            Edit::Restore(copy) => {
+                let (document, scene) = *copy;
+                self.replace(document, scene)?;
+                self.record(before, None);
+            }
+            Edit::Undo => {
+                let step = self.undo.undo(before);
+                self.go_to(step)?;
+            }
+            Edit::Redo => {
+                let step = self.undo.redo(before);
+                self.go_to(step)?;
+            }
+        }
+        Ok(self.changed)
+    }
+
+    /// The session as the undo history keeps it.
+    fn version(&self) -> Version {
+        Version { document: self.document.clone(), scene: self.scene.clone(), iterations: self.iterations }
+    }
+
+    fn record(&mut self, before: Version, label: Option<&'static str>) {
+        if before != self.version() {
+            self.undo.record(before, label);
+        }
+    }
+
+    fn go_to(&mut self, step: Option<Version>) -> Result<(), SimulationError> {
+        let Some(Version { document, scene, iterations }) = step else { return Ok(()) };
+        if document.source == self.document.source {
+            self.set_scene(scene)?;
+        } else {
+            self.replace(document, scene)?;
+        }
+        self.iterations = iterations;
+        Ok(())
+    }
+
+    /// Changes the scene under the body, which continues from its present state if it can.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; the session is unchanged.
+    pub(crate) fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
+        if self.is_for_background(&scene) {
+            scene.validate()?;
+            self.request_scene(scene);
+            self.poll();
+            return Ok(());
+        }
+        let before = self.simulation.scene().clone();
+        self.simulation.change_scene(&scene)?;
+        self.drop_background();
+        if !has_mesh_of(&scene, &before) {
+            self.geometry = DisplayGeometry::new(self.simulation.system().mesh());
+        }
+        self.scene = scene;
+        self.follow_scene(&before);
+        let known = self.linear.take();
+        self.linear = solve_linear(self.simulation.scene(), self.simulation.system(), known);
+        Ok(())
+    }
+
+    /// Makes everything belong to the simulation's scene, which was another one before.
+    fn follow_scene(&mut self, before: &Scene) {
+        self.changed.scene = true;
+        let scene = self.simulation.scene();
+        if scene == before {
+            return;
+        }
+        let is_another_mesh = !has_mesh_of(scene, before);
+        let is_another_body = is_another_mesh || scene.analysis != before.analysis;
+        self.changed.mesh |= is_another_mesh;
+        self.changed.body |= is_another_body;
+        self.playback.follow(scene, is_another_body);
+        self.facts.invalidate(before, scene);
+    }
+
+    /// Replaces the document.
+    pub(crate) fn replace(&mut self, document: Document, scene: Scene) -> Result<(), SimulationError> {
+        if self.is_for_background(&scene) {
+            scene.validate()?;
+            self.request_scene(scene);
+            self.request_document(document);
+            return Ok(());
+        }
+        self.set_scene(scene)?;
+        self.document = document;
+        self.is_outdated = false;
+        self.start_document();
+        self.reset();
+        Ok(())
+    }
+
+    /// Sets everything that belonged to the document before to its default.
+    fn start_document(&mut self) {
+        self.changed.document = true;
+        self.running = true;
+        self.playback = Playback::default();
+        self.facts.curve = Facts::default().curve;
+        self.iterations = 1;
+    }
+
+    /// Makes the present scene that of a document, without a way back.
+    pub(crate) fn rebase(&mut self, source: Source) {
+        self.document = Document::new(source, self.scene.clone());
+        self.undo = UndoHistory::default();
+        self.iterations = 1;
+    }
+
+    /// Saves the scene to a file.
+    ///
+    /// # Errors
+    /// [`SaveError`]; the file is unchanged.
+    pub(crate) fn save(&mut self, path: &Path) -> Result<(), SaveError> {
+        self.document = self.document.save(&self.scene, path)?;
+        self.is_outdated = false;
+        Ok(())
+    }
+
+    /// Checks whether the scene's file has changed on disk.
+    pub(crate) fn check_file(&mut self) {
+        self.is_outdated |= self.document.has_changed();
+    }
+
+    /// `true` if the scene's file has changed on disk since it was read or saved.
+    pub(crate) fn is_outdated(&self) -> bool {
+        self.is_outdated
+    }
+
+    /// Keeps the scene although its file has changed on disk.
+    pub(crate) fn ignore_file_change(&mut self) {
+        self.document.ignore_change();
+        self.is_outdated = false;
+    }
+
+    /// The scene with one of its loads as in its document; `None` if that has no load of the same kind there.
+    pub(crate) fn with_original_load(&self, load: usize) -> Option<Scene> {
+        let original = self.document.original.loads.get(load)?;
+        let mut scene = self.scene.clone();
+        let present = scene.loads.get_mut(load)?;
+        if std::mem::discriminant(original) != std::mem::discriminant(present) {
+            return None;
+        }
+        present.clone_from(original);
+        Some(scene)
+    }
+
+    /// `true` if a load of the document is a moment.
+    pub(crate) fn is_moment(&self, load: usize) -> bool {
+        self.scene.loads.get(load).is_some_and(Load::is_moment)
+    }
+
+    /// Starts or stops to iterate.
+    pub(crate) fn set_running(&mut self, running: bool) {
+        self.running = running;
+        if !running {
+            self.stop_solve();
+        }
+    }
+
+    /// Pauses. A background solve goes on to its end.
+    pub(crate) fn pause(&mut self) {
+        self.running = false;
+    }
+
+    /// Makes the iterations of one displayed frame, or the time steps that are due at `now`, s of any clock that goes with
+    /// real time; returns `true` if it has iterated.
+    pub(crate) fn advance(&mut self, now: f64) -> bool {
+        self.poll();
+        if self.is_in_background() || !self.iterates() {
+            self.rest();
+            return false;
+        }
+        if self.is_motion() {
+            self.playback.advance(now, &mut self.simulation);
+            self.timings = *self.simulation.last_iteration();
+            return false;
+        }
+        self.iterate(self.iterations);
+        true
+    }
+
+    /// Stops the clock of a motion until the next [`Self::advance`].
+    pub(crate) fn rest(&mut self) {
+        self.playback.pace.rest();
+    }
+
+    /// Makes iterations, or one time step.
+    pub(crate) fn iterate(&mut self, iterations: u32) {
+        if self.is_motion() {
+            self.playback.step(&mut self.simulation);
+            self.timings = *self.simulation.last_iteration();
+            return;
+        }
+        self.timings = Timings::default();
+        for _ in 0..iterations {
+            if *self.simulation.status() == Status::Running {
+                self.simulation.step();
+                self.timings.add(self.simulation.last_iteration());
+                note_residual(&self.simulation, &mut self.residuals);
+            }
+        }
+    }
+
+    /// Pauses, and makes one iteration or time step; a search that has ended starts again from rest.
+    pub(crate) fn step(&mut self) {
+        self.running = false;
+        let is_at_rest = self.simulation.is_at_rest();
+        if self.is_in_background() {
+            let start = if is_at_rest { Start::Rest } else { Start::Present };
+            return self.restart_in_background(start, Some(1));
+        }
+        if !self.is_motion() && is_at_rest {
+            self.reset();
+        }
+        self.iterate(1);
+    }
+
+    /// Goes back to rest, or to the start of the motion.
+    pub(crate) fn reset(&mut self) {
+        if self.is_in_background() {
+            return self.restart_in_background(Start::Rest, None);
+        }
+        self.playback.reset(&mut self.simulation);
+        self.residuals.clear();
+    }
+
+    /// Iterates to the end, or to the end of the motion's duration, and computes the results.
+    pub(crate) fn solve(&mut self, needs_curve: bool) {
+        self.wait_for_background();
+        while *self.simulation.status() == Status::Running {
+            self.iterate(1);
+        }
+        if self.is_motion() {
+            return self.facts.frequency.wait(&self.scene);
+        }
+        self.certify();
+        self.facts.wait_at_rest(&self.scene, needs_curve);
+    }
+
+    fn certify(&mut self) {
+        self.simulation.certify();
+        self.quality.follow(&self.simulation);
+    }
+
+    /// Requests the results of the scene, once the body is at rest; returns `true` while one of them is pending. A motion's
+    /// are not requested during a press: a dragged slider need not wait for them.
+    pub(crate) fn request_facts(&mut self, needs_curve: bool, is_pressed: bool) -> bool {
+        if self.is_motion() {
+            return !is_pressed && self.facts.frequency.request(&self.scene);
+        }
+        if self.iterates() || self.is_working() {
+            return false;
+        }
+        // A background solve has certified its result.
+        if !self.is_in_background() {
+            self.certify();
+        }
+        self.facts.request_at_rest(&self.scene, needs_curve)
+    }
+
+    /// Requests the reference solution, whatever the body's state; returns `true` while it is pending.
+    pub(crate) fn request_reference(&mut self) -> bool {
+        self.facts.reference.request(&self.scene)
+    }
+
+    /// Keeps a copy of an equilibrium, to be displayed when a later state diverges.
+    pub(crate) fn keep_converged(&mut self) {
+        let simulation = &self.simulation;
+        let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
+        if matches!(simulation.status(), Status::Converged | Status::Accepted)
+            && !self.converged.as_ref().is_some_and(is_kept)
+        {
+            self.converged = simulation.snapshot();
+        }
+    }
+
+    /// Puts the body into a state of its own; returns `false` if the state does not fit the mesh.
+    pub(crate) fn restore(&mut self, state: &State) -> bool {
+        self.simulation.restore(state).is_ok()
+    }
+
+    /// Grabs, pulls and releases the body, and the same motion under other integrators.
+    pub(crate) fn grab(&mut self, grab: Grab) {
+        if self.is_in_background() {
+            return;
+        }
+        if let Some(point) = grab.start
+            && self.simulation.grab(point)
+        {
+            self.playback.grab(point);
+        }
+        if let Some(target) = grab.target
+            && self.simulation.hand().is_some_and(|(hand, _)| hand.target() != target)
+        {
+            // A pointer has a finite place.
+            let _ = self.simulation.pull_to(target);
+            self.playback.pull_to(target);
+        }
+        if grab.release {
+            self.release();
+        }
+    }
+
+    fn release(&mut self) {
+        self.simulation.release();
+        self.playback.release();
+    }
+
+    /// Displays the moment of a motion that is closest to a time, s, and pauses there.
+    pub(crate) fn show_moment(&mut self, time: f64) {
+        self.running = false;
+        self.playback.show_moment(time, &mut self.simulation);
+    }
+
+    /// Displays the moment before, or after, and pauses there. After the last one a time step is made.
+    pub(crate) fn show_neighbour(&mut self, forward: bool) {
+        self.running = false;
+        let is_shown = self.playback.show_neighbour(forward, &mut self.simulation);
+        if forward && !is_shown {
+            self.iterate(1);
+        }
+    }
+
+    /// Makes the present state the one that a reset goes to, or the start again; returns `true` for the present state.
+    pub(crate) fn toggle_mark(&mut self) -> bool {
+        self.playback.mark(&self.simulation);
+        self.playback.is_marked()
+    }
+
+    /// Sets the speed of a motion, simulated seconds per second.
+    pub(crate) fn set_speed(&mut self, speed: f64) {
+        self.playback.pace.set_speed(speed);
+    }
+
+    /// Adds the same motion under another integrator, or removes it.
+    pub(crate) fn toggle_companion(&mut self, integrator: IntegratorKind) {
+        if self.is_motion() && integrator != self.scene.dynamics.integrator {
+            self.playback.toggle(integrator, &self.simulation);
+        }
+    }
+
+    /// Returns the integrators that became unstable since the last call, with their longest stable step, s.
+    pub(crate) fn take_unstable(&mut self) -> Vec<(IntegratorKind, Option<f64>)> {
+        self.playback.take_unstable()
+    }
+}
+
+/// `true` if two scenes have the same mesh.
+pub(crate) fn has_mesh_of(scene: &Scene, other: &Scene) -> bool {
+    scene.beam == other.beam && scene.mesh == other.mesh
+}

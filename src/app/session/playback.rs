@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::app::session::clock::Pace;
+use crate::app::session::clock::RealTimeClock;
 use crate::app::session::history::History;
 use crate::app::session::past::Past;
 use crate::mesh::MaterialPoint;
@@ -29,7 +29,7 @@ pub(crate) struct Companion {
 /// What a window of moving things has beside the body.
 #[derive(Debug, Default)]
 pub(crate) struct Playback {
-    pub pace: Pace,
+    pub pace: RealTimeClock,
     pub history: History,
     /// Moments of the last seconds.
     past: Past,

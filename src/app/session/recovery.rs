@@ -84,7 +84,7 @@ impl Unsaved {
 #[derive(Debug)]
 pub struct Recovery {
     place: Place,
-    /// Edits that the file has.
+    /// UndoHistory that the file has.
     written: Option<Unsaved>,
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,

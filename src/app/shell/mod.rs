@@ -1,11 +1,17 @@
 //! The window's contents: bars, dialogs, shortcuts, and the dispatch of actions.
 
+mod dispatch;
 pub(crate) mod file_dialog;
+mod files;
 pub(crate) mod gallery;
 pub(crate) mod help;
 pub(crate) mod intro;
 pub mod lab;
+mod layout;
+mod learning;
+mod messages;
 pub(crate) mod settings;
 pub(crate) mod shortcuts;
 pub(crate) mod status_bar;
 pub(crate) mod toolbar;
+mod unsaved;

@@ -3,9 +3,7 @@
 use egui::{Context, Event, Key, Modifiers};
 
 use crate::app::action::Action;
-use crate::app::view_options::Drawer;
-use crate::app::view_options::Mode;
-use crate::app::view_options::Toggle;
+use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::simulation::Field;
 
 /// A key and what it does.

@@ -1,6 +1,6 @@
 //! The bar along the bottom: three numbers that say it all, the residual's way down, and the drawer with the plots.
 
-use crate::app::diagnosis::{DRIFT_TIP, truth_words};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, error_color, rho, rho_number, truth_words};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -8,18 +8,16 @@ use std::sync::Arc;
 use egui::{Align, Color32, FontId, Galley, Layout, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::action::Action;
-use crate::app::diagnosis::{Errors, error_color, rho, rho_number};
-use crate::app::language::{fill, percent, tr};
+use crate::app::language::{fill, percent, tr, translated};
 use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
-use crate::app::view_options::Drawer;
-use crate::app::view_options::Toggle;
-use crate::app::view_options::ViewOptions;
-use crate::app::widgets::buttons::Icon;
-use crate::app::widgets::buttons::icon_button;
+use crate::app::task::solve::Phase;
+use crate::app::view_options::{Drawer, Toggle, ViewOptions};
+use crate::app::widgets::buttons::{Icon, icon_button};
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
+use crate::scene::Scene;
 use crate::simulation::Motion;
-use crate::words::{engineering, two_digits};
+use crate::words::{engineering, grouped, two_digits};
 
 /// Below this width, points, numbers stand without their gauges.
 const GAUGES: f32 = 820.0;
@@ -77,7 +75,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Head
     let times = simulation.timings();
     let seconds = (times.total() - times.certify).as_secs_f64();
     let rho = rho(input);
-    let truth = truth_words(input.truth);
+    let truth = truth_words(input.reference);
     let level = |decades: f64| decades.floor().clamp(0.0, 4.0) as u32;
     let error = errors.own.map_or(0.0, |error| error.max(1e-9).log10() + 2.0);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
@@ -265,4 +263,31 @@ fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
     );
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
     response.on_hover_text(fill!("%{residual}; dashed: what is asked for", residual = words));
+}
+
+/// Returns the text of the present part of a background solve.
+pub(crate) fn phase_text(scene: &Scene, phase: Phase) -> String {
+    let body = body_text(scene);
+    match phase {
+        Phase::Meshing => fill!("Meshing %{body}", body = body),
+        Phase::LinearSolve => fill!("Factorizing %{body}", body = body),
+        Phase::Iterating(0) => fill!("Solving %{body}", body = body),
+        Phase::Iterating(n) => fill!("Solving %{body}, iteration %{n}", body = body, n = n),
+        Phase::Certifying => fill!("Certifying %{body}", body = body),
+    }
+}
+
+/// Returns `500,000 triangles`, or the name of a mesh file.
+fn body_text(scene: &Scene) -> String {
+    let cell = scene.element().entry().cell;
+    match (&scene.beam, &scene.mesh) {
+        (Some(beam), _) => {
+            let cells = beam.cells.iter().map(|&n| u64::from(n)).product::<u64>();
+            // A triangle is half a cell of a beam.
+            let pieces = if cell.corners.len() == 3 { 2 } else { 1 };
+            translated(&format!("{} {}s", grouped(pieces * cells), cell.name))
+        }
+        (None, Some(mesh)) => mesh.file.clone(),
+        (None, None) => tr("the body").to_owned(),
+    }
 }

@@ -7,9 +7,7 @@ use crate::app::action::Action;
 use crate::app::language::{Language, tr};
 use crate::app::readout::Readout;
 use crate::app::shell::gallery::Gallery;
-use crate::app::view_options::MODES;
-use crate::app::view_options::Toggle;
-use crate::app::view_options::ViewOptions;
+use crate::app::view_options::{MODES, Toggle, ViewOptions};
 
 /// Below this width, points, buttons show no words.
 const WORDS: f32 = 1050.0;

@@ -1,25 +1,23 @@
-//! A large body, made and solved in a thread of its own: what is asked for, and what comes back.
+//! Background solve of a large model: request, progress and result.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::app::language::{fill, tr, translated};
-use crate::app::session::quality::Quality;
-use crate::app::task::thread::{Job, Line};
+use crate::app::task::quality::Quality;
+use crate::app::task::thread::{Reporter, Task, Update};
 use crate::assembly::System;
-use crate::render::display_geometry::Drawing;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::words::grouped;
 
-/// From one picture to the next while a body is solved.
-const PICTURE: Duration = Duration::from_millis(100);
+/// Time between two snapshots while a model is solved.
+const SNAPSHOT: Duration = Duration::from_millis(100);
 
-/// Residuals that are kept for the way down.
+/// Most residuals that are kept of one search.
 const MOST_RESIDUALS: usize = 400;
 
-/// A body, and the same under linear theory on the same equations; `None` where that could not be set up.
+/// A simulation, and linear theory's on the same equations; `None` where that could not be set up.
 #[derive(Debug)]
 pub(crate) struct Bodies {
     pub simulation: Simulation,
@@ -27,129 +25,165 @@ pub(crate) struct Bodies {
 }
 
 impl Bodies {
-    /// Copies to look at; `None` of a motion.
-    pub(crate) fn snapshot(&self) -> Option<Self> {
+    /// Returns copies to display; `None` for a motion.
+    fn snapshot(&self) -> Option<Self> {
         let linear = self.linear.as_ref().and_then(Simulation::snapshot);
         Some(Self { simulation: self.simulation.snapshot()?, linear })
     }
 }
 
-/// Where a solve begins.
+/// The model that a solve begins with.
+#[derive(Debug)]
+pub(crate) enum Model {
+    /// An existing one, with its display geometry where that has not been shown yet.
+    Existing(Box<(Bodies, Option<DisplayGeometry>)>),
+    /// A new one on existing equations.
+    Equations(Arc<System>),
+    /// A new one, which is meshed first.
+    New,
+}
+
+/// The state that a solve begins in.
 #[derive(Debug, Default)]
 pub(crate) enum Start {
-    /// Where the body is.
+    /// The model's own.
     #[default]
-    There,
-    AtRest,
-    /// In this state.
-    From(State),
+    Present,
+    Rest,
+    State(State),
 }
 
-/// What is asked for.
+/// A solve to be done.
 #[derive(Debug)]
-pub(crate) struct Order {
+pub(crate) struct SolveRequest {
     pub scene: Scene,
-    /// What goes on, with its drawing where that has not been shown yet; `None`: a new body is meshed.
-    pub bodies: Option<(Bodies, Option<Drawing>)>,
+    pub model: Model,
     pub start: Start,
-    /// Iterations at most; `None`: to the end.
+    /// Most iterations; `None` for no limit.
     pub iterations: Option<u32>,
-    /// Those before.
+    /// Residuals before the solve.
     pub residuals: Vec<f64>,
+    /// `true` if the main view shows the model: the solve then reports snapshots, and computes linear theory's solution,
+    /// display geometry and quality.
+    pub is_displayed: bool,
 }
 
-/// What there is to see at an instant.
+/// A model to display, of one instant.
 #[derive(Debug)]
-pub(crate) struct Picture {
+pub(crate) struct Snapshot {
     pub bodies: Bodies,
-    /// Of the mesh, where that is another one than before.
-    pub drawing: Option<Drawing>,
+    /// Display geometry of a new mesh.
+    pub geometry: Option<DisplayGeometry>,
     pub residuals: Vec<f64>,
 }
 
-/// What is done at present.
+/// The present part of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Doing {
-    Meshes,
-    SolvesLinear,
-    Iterates(u32),
-    Certifies,
+pub(crate) enum Phase {
+    Meshing,
+    LinearSolve,
+    /// The search, with the iterations that it has made.
+    Iterating(u32),
+    Certifying,
 }
 
-/// What is said on the way.
 #[derive(Debug)]
-pub(crate) enum News {
-    Doing(Doing),
-    Picture(Box<Picture>),
+enum Progress {
+    Phase(Phase),
+    Snapshot(Box<Snapshot>),
 }
 
-/// The end: the body itself, not a copy.
+/// A solved model: itself, not a copy.
 #[derive(Debug)]
-pub(crate) struct Done {
-    pub picture: Picture,
-    /// Of a body that has come to its end.
+pub(crate) struct Solved {
+    pub snapshot: Snapshot,
+    /// Quality of a displayed model whose search has ended.
     pub quality: Option<Quality>,
 }
 
-/// Why there is no such body; what there was is as it was.
+/// Error of a scene that has no model; the existing model is unchanged.
 #[derive(Debug)]
-pub(crate) struct Refused {
+pub(crate) struct Rejected {
     pub error: SimulationError,
-    pub bodies: Option<(Bodies, Option<Drawing>)>,
+    pub model: Option<(Bodies, Option<DisplayGeometry>)>,
 }
 
-pub(crate) type Ended = Result<Box<Done>, Box<Refused>>;
+type Outcome = Result<Box<Solved>, Box<Rejected>>;
 
-/// An order that is carried out.
+/// News of a background solve.
 #[derive(Debug)]
-pub(crate) struct Errand {
-    pub job: Job<News, Ended>,
-    /// The scene that was asked for.
-    pub given: Scene,
-    /// Whether a new body is meshed.
-    pub is_new: bool,
-    pub doing: Doing,
-    /// Whether nobody wants it any more.
-    pub is_cancelled: bool,
+pub(crate) enum SolveUpdate {
+    None,
+    Phase,
+    Snapshot(Box<Snapshot>),
+    Done(Outcome),
+    /// The thread ended without a result.
+    Died,
 }
 
-impl Errand {
-    /// Sends somebody.
+/// A solve in a thread of its own. Dropping it cancels it.
+#[derive(Debug)]
+pub(crate) struct BackgroundSolve {
+    task: Task<Progress, Outcome>,
+    scene: Scene,
+    is_new: bool,
+    phase: Phase,
+}
+
+impl BackgroundSolve {
+    /// Starts the thread.
     ///
     /// # Errors
-    /// There is no thread.
-    pub(crate) fn start(order: Order) -> std::io::Result<Self> {
-        let (given, is_new) = (order.scene.clone(), order.bodies.is_none());
-        let doing = if is_new { Doing::Meshes } else { Doing::Iterates(0) };
-        let job = Job::start("errand", move |line| work(order, line))?;
-        Ok(Self { job, given, is_new, doing, is_cancelled: false })
+    /// The system has no thread for it.
+    pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
+        let (scene, is_new) = (request.scene.clone(), matches!(request.model, Model::New));
+        let phase = if is_new { Phase::Meshing } else { Phase::Iterating(0) };
+        let task = Task::start("solve", move |reporter| run(request, reporter))?;
+        Ok(Self { task, scene, is_new, phase })
     }
 
-    /// What is done at present, in words.
-    pub(crate) fn words(&self) -> String {
-        let body = body_words(&self.given);
-        match self.doing {
-            Doing::Meshes => fill!("Meshing %{body}", body = body),
-            Doing::SolvesLinear => fill!("Factorizing %{body}", body = body),
-            Doing::Iterates(0) => fill!("Solving %{body}", body = body),
-            Doing::Iterates(n) => fill!("Solving %{body}, iteration %{n}", body = body, n = n),
-            Doing::Certifies => fill!("Certifying %{body}", body = body),
-        }
+    /// The scene that is solved.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
     }
-}
 
-/// `500,000 triangles`.
-fn body_words(scene: &Scene) -> String {
-    let cell = scene.element().entry().cell;
-    match (&scene.beam, &scene.mesh) {
-        (Some(beam), _) => {
-            let cells = beam.cells.iter().map(|&n| u64::from(n)).product::<u64>();
-            // A triangle is half a cell of a beam.
-            let pieces = if cell.corners.len() == 3 { 2 } else { 1 };
-            translated(&format!("{} {}s", grouped(pieces * cells), cell.name))
+    /// `true` if a new model is meshed.
+    pub(crate) fn is_new(&self) -> bool {
+        self.is_new
+    }
+
+    pub(crate) fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Asks the solve to end with the model that it has.
+    pub(crate) fn cancel(&self) {
+        self.task.cancel();
+    }
+
+    /// Returns the next update without waiting for it.
+    pub(crate) fn poll(&mut self) -> SolveUpdate {
+        let update = self.task.poll();
+        self.note(update)
+    }
+
+    /// Waits for the next update.
+    pub(crate) fn wait(&mut self) -> SolveUpdate {
+        let update = self.task.wait();
+        self.note(update)
+    }
+
+    fn note(&mut self, update: Update<Progress, Outcome>) -> SolveUpdate {
+        match update {
+            Update::None => SolveUpdate::None,
+            Update::Progress(Progress::Phase(phase)) => {
+                self.phase = phase;
+                SolveUpdate::Phase
+            }
+            Update::Progress(Progress::Snapshot(snapshot)) => SolveUpdate::Snapshot(snapshot),
+            Update::Done(outcome) => SolveUpdate::Done(outcome),
+            Update::Died => SolveUpdate::Died,
         }
-        (None, Some(mesh)) => mesh.file.clone(),
-        (None, None) => tr("the body").to_owned(),
     }
 }
 
@@ -167,13 +201,12 @@ fn linear_scene(scene: &Scene) -> Scene {
     Scene { solver, ..scene.clone() }
 }
 
-/// Linear theory's body of a scene, solved; `known` is that of the scene before.
+/// Solves a scene at rest under linear theory on existing equations; `known` is the solution of the scene before.
 pub(crate) fn solve_linear(scene: &Scene, system: &Arc<System>, known: Option<Simulation>) -> Option<Simulation> {
     if scene.analysis == Analysis::Dynamic {
         return None;
     }
     let scene = linear_scene(scene);
-    // On the body's own equations: nothing of them is made twice.
     let mut shared = known.filter(|linear| Arc::ptr_eq(linear.system(), system));
     shared = shared.and_then(|mut linear| linear.change_scene(&scene).is_ok().then_some(linear));
     let mut linear = shared.or_else(|| Simulation::with_system(&scene, system.clone()).ok())?;
@@ -181,73 +214,69 @@ pub(crate) fn solve_linear(scene: &Scene, system: &Arc<System>, known: Option<Si
     Some(linear)
 }
 
-fn work(order: Order, line: &Line<News, Ended>) -> Ended {
-    let Order { scene, bodies, start, iterations, mut residuals } = order;
-    let (mut bodies, mut drawing) = match bodies {
-        Some((mut bodies, drawing)) => {
-            if bodies.simulation.scene() != &scene
-                && let Err(error) = bodies.simulation.change_scene(&scene)
-            {
-                return Err(Box::new(Refused { error, bodies: Some((bodies, drawing)) }));
-            }
-            (bodies, drawing)
+/// Makes the model of a request, before its first iteration.
+fn set_up(scene: &Scene, model: Model, is_displayed: bool) -> Result<(Bodies, Option<DisplayGeometry>), Box<Rejected>> {
+    let rejected = |error| Box::new(Rejected { error, model: None });
+    let made = |simulation| (Bodies { simulation, linear: None }, None);
+    match model {
+        Model::Existing(own) if own.0.simulation.scene() == scene => Ok(*own),
+        Model::Existing(mut own) => match own.0.simulation.change_scene(scene) {
+            Ok(()) => Ok(*own),
+            Err(error) => Err(Box::new(Rejected { error, model: Some(*own) })),
+        },
+        Model::Equations(system) => Simulation::with_system(scene, system).map(made).map_err(rejected),
+        Model::New => {
+            let (bodies, _) = Simulation::new(scene).map(made).map_err(rejected)?;
+            let geometry = is_displayed.then(|| {
+                // Smooth fields need the recovery, which is made here instead of between two frames.
+                let _ = bodies.simulation.system().recovery();
+                DisplayGeometry::new(bodies.simulation.system().mesh())
+            });
+            Ok((bodies, geometry))
         }
-        None => {
-            let made = Simulation::new(&scene).map_err(|error| Box::new(Refused { error, bodies: None }))?;
-            let drawing = Drawing::new(made.system().mesh());
-            // Smooth fields need it, which are going to be looked at.
-            let _ = made.system().recovery();
-            (Bodies { simulation: made, linear: None }, Some(drawing))
-        }
-    };
-    match start {
-        Start::There => {}
-        Start::AtRest => bodies.simulation.reset(),
-        // A state of another body is not put on this one.
-        Start::From(state) => _ = bodies.simulation.restore(&state),
     }
-    if bodies.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {
+}
+
+fn run(request: SolveRequest, reporter: &Reporter<Progress, Outcome>) -> Outcome {
+    let SolveRequest { scene, model, start, iterations, mut residuals, is_displayed } = request;
+    let (mut bodies, mut geometry) = set_up(&scene, model, is_displayed)?;
+    match start {
+        Start::Present => {}
+        Start::Rest => bodies.simulation.reset(),
+        // The state of another mesh is not restored.
+        Start::State(state) => _ = bodies.simulation.restore(&state),
+    }
+    if is_displayed && bodies.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {
         let known = bodies.linear.take();
-        if line.say(News::Doing(Doing::SolvesLinear)).is_continue() {
+        if reporter.report(Progress::Phase(Phase::LinearSolve)).is_continue() {
             bodies.linear = solve_linear(&scene, bodies.simulation.system(), known);
         }
     }
-    solve(&mut bodies, &mut drawing, (iterations, &mut residuals), line);
+    let (mut made, mut shown) = (0, None::<Instant>);
+    while bodies.simulation.motion().is_none()
+        && *bodies.simulation.status() == Status::Running
+        && iterations.is_none_or(|most| made < most)
+        && reporter.report(Progress::Phase(Phase::Iterating(bodies.simulation.iterations()))).is_continue()
+    {
+        bodies.simulation.step();
+        note_residual(&bodies.simulation, &mut residuals);
+        made += 1;
+        if is_displayed
+            && shown.is_none_or(|shown| shown.elapsed() >= SNAPSHOT)
+            && let Some(bodies) = bodies.snapshot()
+        {
+            let snapshot = Snapshot { bodies, geometry: geometry.take(), residuals: residuals.clone() };
+            let _ = reporter.report(Progress::Snapshot(Box::new(snapshot)));
+            shown = Some(Instant::now());
+        }
+    }
     let mut quality = None;
-    let ended = bodies.simulation.motion().is_none() && *bodies.simulation.status() != Status::Running;
-    if ended && line.say(News::Doing(Doing::Certifies)).is_continue() {
+    let has_ended = bodies.simulation.motion().is_none() && *bodies.simulation.status() != Status::Running;
+    if is_displayed && has_ended && reporter.report(Progress::Phase(Phase::Certifying)).is_continue() {
         bodies.simulation.certify();
         let mut own = Quality::default();
         own.follow(&bodies.simulation);
         quality = Some(own);
     }
-    Ok(Box::new(Done { picture: Picture { bodies, drawing, residuals }, quality }))
-}
-
-/// Iterates to the end, or until it is called off; there is a picture of it now and then.
-fn solve(
-    bodies: &mut Bodies,
-    drawing: &mut Option<Drawing>,
-    (most, residuals): (Option<u32>, &mut Vec<f64>),
-    line: &Line<News, Ended>,
-) {
-    if bodies.simulation.motion().is_some() {
-        return;
-    }
-    let (mut made, mut shown) = (0, None::<Instant>);
-    while *bodies.simulation.status() == Status::Running && most.is_none_or(|most| made < most) {
-        if line.say(News::Doing(Doing::Iterates(bodies.simulation.iterations()))).is_break() {
-            return;
-        }
-        bodies.simulation.step();
-        note_residual(&bodies.simulation, residuals);
-        made += 1;
-        if shown.is_none_or(|shown| shown.elapsed() >= PICTURE)
-            && let Some(bodies) = bodies.snapshot()
-        {
-            let picture = Picture { bodies, drawing: drawing.take(), residuals: residuals.clone() };
-            let _ = line.say(News::Picture(Box::new(picture)));
-            shown = Some(Instant::now());
-        }
-    }
+    Ok(Box::new(Solved { snapshot: Snapshot { bodies, geometry, residuals }, quality }))
 }

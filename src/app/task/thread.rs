@@ -1,4 +1,4 @@
-//! Work in a thread of its own, beside the window.
+//! Work in a thread of its own, with progress and cancellation.
 
 use std::io;
 use std::ops::ControlFlow;
@@ -8,104 +8,104 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 use std::time::Duration;
 
-/// How often work beside the window is listened to.
-pub(crate) const LISTEN: Duration = Duration::from_millis(50);
+/// Time between two polls of a background task.
+pub(crate) const POLL: Duration = Duration::from_millis(50);
 
-enum Message<N, T> {
-    News(N),
+enum Message<P, T> {
+    Progress(P),
     Done(T),
 }
 
-/// What has been heard of a job.
+/// News of a task.
 #[derive(Debug)]
-pub(crate) enum Heard<N, T> {
-    /// Nothing new.
-    Nothing,
-    /// How far it is.
-    News(N),
-    /// It has ended with this: nothing more will be heard.
+pub(crate) enum Update<P, T> {
+    /// No news since the last poll.
+    None,
+    /// A report of its progress.
+    Progress(P),
+    /// Its result: no more updates follow.
     Done(T),
-    /// It has ended without a result.
+    /// The end of a thread without a result.
     Died,
 }
 
-/// Work in a thread of its own, which says how far it is by `N` and ends with a `T`. Dropped, it is called off.
+/// Work in a thread of its own, which reports its progress as `P` and ends with a `T`. Dropping it cancels it.
 #[derive(Debug)]
-pub(crate) struct Job<N, T> {
-    receiver: Receiver<Message<N, T>>,
-    called_off: Arc<AtomicBool>,
+pub(crate) struct Task<P, T> {
+    receiver: Receiver<Message<P, T>>,
+    is_cancelled: Arc<AtomicBool>,
 }
 
-/// The worker's end of the line.
-pub(crate) struct Line<N, T> {
-    sender: Sender<Message<N, T>>,
-    called_off: Arc<AtomicBool>,
+/// The thread's end of a task.
+pub(crate) struct Reporter<P, T> {
+    sender: Sender<Message<P, T>>,
+    is_cancelled: Arc<AtomicBool>,
 }
 
-impl<N: Send + 'static, T: Send + 'static> Job<N, T> {
-    /// Starts to work.
+impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
+    /// Starts the thread.
     ///
     /// # Errors
     /// The system has no thread for it.
-    pub(crate) fn start(name: &str, work: impl FnOnce(&Line<N, T>) -> T + Send + 'static) -> io::Result<Self> {
+    pub(crate) fn start(name: &str, work: impl FnOnce(&Reporter<P, T>) -> T + Send + 'static) -> io::Result<Self> {
         let (sender, receiver) = channel();
-        let called_off = Arc::new(AtomicBool::new(false));
-        let line = Line { sender, called_off: called_off.clone() };
+        let is_cancelled = Arc::new(AtomicBool::new(false));
+        let reporter = Reporter { sender, is_cancelled: is_cancelled.clone() };
         thread::Builder::new().name(name.to_owned()).spawn(move || {
-            let done = work(&line);
-            let _ = line.sender.send(Message::Done(done));
+            let done = work(&reporter);
+            let _ = reporter.sender.send(Message::Done(done));
         })?;
-        Ok(Self { receiver, called_off })
+        Ok(Self { receiver, is_cancelled })
     }
 
-    /// What it has said since, one message after the other.
-    pub(crate) fn hear(&self) -> Heard<N, T> {
+    /// Returns the next update without waiting for it.
+    pub(crate) fn poll(&self) -> Update<P, T> {
         match self.receiver.try_recv() {
             Ok(message) => message.into(),
-            Err(TryRecvError::Empty) => Heard::Nothing,
-            Err(TryRecvError::Disconnected) => Heard::Died,
+            Err(TryRecvError::Empty) => Update::None,
+            Err(TryRecvError::Disconnected) => Update::Died,
         }
     }
 
-    /// What it says next, however long that takes.
-    pub(crate) fn wait(&self) -> Heard<N, T> {
-        self.receiver.recv().map_or(Heard::Died, Into::into)
+    /// Waits for the next update.
+    pub(crate) fn wait(&self) -> Update<P, T> {
+        self.receiver.recv().map_or(Update::Died, Into::into)
     }
 }
 
-impl<N, T> Job<N, T> {
-    /// Asks it to end with what it has.
-    pub(crate) fn call_off(&self) {
-        self.called_off.store(true, Ordering::Relaxed);
+impl<P, T> Task<P, T> {
+    /// Asks the thread to end with the result that it has.
+    pub(crate) fn cancel(&self) {
+        self.is_cancelled.store(true, Ordering::Relaxed);
     }
 }
 
-impl<N, T> Drop for Job<N, T> {
+impl<P, T> Drop for Task<P, T> {
     fn drop(&mut self) {
-        self.call_off();
+        self.cancel();
     }
 }
 
-impl<N, T> From<Message<N, T>> for Heard<N, T> {
-    fn from(message: Message<N, T>) -> Self {
+impl<P, T> From<Message<P, T>> for Update<P, T> {
+    fn from(message: Message<P, T>) -> Self {
         match message {
-            Message::News(news) => Self::News(news),
+            Message::Progress(progress) => Self::Progress(progress),
             Message::Done(done) => Self::Done(done),
         }
     }
 }
 
-impl<N, T> Line<N, T> {
-    /// Says how far it is; breaks where it is to end with what it has.
-    pub(crate) fn say(&self, news: N) -> ControlFlow<()> {
-        // Nobody listening is as good as being called off.
-        let heard = self.sender.send(Message::News(news)).is_ok();
-        if heard && !self.is_called_off() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+impl<P, T> Reporter<P, T> {
+    /// Reports progress; breaks if the task is cancelled.
+    pub(crate) fn report(&self, progress: P) -> ControlFlow<()> {
+        // A task that was dropped has no receiver.
+        let is_received = self.sender.send(Message::Progress(progress)).is_ok();
+        if is_received && !self.is_cancelled() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
-    /// Whether it is to end with what it has.
-    pub(crate) fn is_called_off(&self) -> bool {
-        self.called_off.load(Ordering::Relaxed)
+    /// `true` if the thread is to end with the result that it has.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.is_cancelled.load(Ordering::Relaxed)
     }
 }
 
@@ -113,11 +113,11 @@ impl<N, T> Line<N, T> {
 mod tests {
     use super::*;
 
-    /// Counts until it is called off.
-    fn counter() -> Job<u32, u32> {
-        Job::start("counter", |line| {
+    /// Counts until it is cancelled.
+    fn counter() -> Task<u32, u32> {
+        Task::start("counter", |reporter| {
             let mut n = 0;
-            while line.say(n).is_continue() {
+            while reporter.report(n).is_continue() {
                 n += 1;
             }
             n
@@ -126,49 +126,49 @@ mod tests {
     }
 
     #[test]
-    fn a_job_says_how_far_it_is_and_ends_with_what_it_has_when_it_is_called_off() {
-        let job = counter();
+    fn a_task_reports_progress_and_ends_with_its_result_when_cancelled() {
+        let task = counter();
         let mut last = 0;
         while last < 100 {
-            let Heard::News(n) = job.wait() else { panic!("it ended") };
+            let Update::Progress(n) = task.wait() else { panic!("it ended") };
             last = n;
         }
-        job.call_off();
+        task.cancel();
         let done = loop {
-            match job.wait() {
-                Heard::News(n) => last = n,
-                Heard::Done(done) => break done,
-                Heard::Nothing | Heard::Died => panic!("no result"),
+            match task.wait() {
+                Update::Progress(n) => last = n,
+                Update::Done(done) => break done,
+                Update::None | Update::Died => panic!("no result"),
             }
         };
         assert_eq!(done, last);
-        assert!(matches!(job.wait(), Heard::Died), "there is more after the end");
+        assert!(matches!(task.wait(), Update::Died), "there is more after the end");
     }
 
     #[test]
-    fn a_dropped_job_ends_its_thread() {
+    fn a_dropped_task_ends_its_thread() {
         let alive = Arc::new(());
         let there = Arc::downgrade(&alive);
-        let job: Job<(), ()> = Job::start("waiting", move |line| {
+        let task: Task<(), ()> = Task::start("waiting", move |reporter| {
             let _alive = alive;
-            while line.say(()).is_continue() {
+            while reporter.report(()).is_continue() {
                 thread::yield_now();
             }
         })
         .unwrap();
-        assert!(matches!(job.wait(), Heard::News(())));
-        drop(job);
+        assert!(matches!(task.wait(), Update::Progress(())));
+        drop(task);
         while there.upgrade().is_some() {
             thread::yield_now();
         }
     }
 
     #[test]
-    fn a_job_that_panics_has_died() {
-        let job: Job<(), u32> = Job::start("panics", |_| {
+    fn a_task_that_panics_has_died() {
+        let task: Task<(), u32> = Task::start("panics", |_| {
             std::panic::panic_any("meant");
         })
         .unwrap();
-        assert!(matches!(job.wait(), Heard::Died));
+        assert!(matches!(task.wait(), Update::Died));
     }
 }

@@ -13,14 +13,14 @@ use crate::assembly::System;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::Frame;
 use crate::render::colormap::ColorMap;
-use crate::render::display_geometry::Drawing;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::Material;
 use crate::simulation::{Field, Simulation};
 use crate::stress::{NodalStress, RecoveryScratch};
 
 /// What is drawn of a body at present.
 #[derive(Debug, Default)]
-pub(crate) struct Shape {
+pub(crate) struct BodyMesh {
     /// Where the nodes are, m.
     pub nodes: Vec<Vector2<f64>>,
     /// Where the drawn points are, m.
@@ -124,13 +124,13 @@ fn stamp() -> u64 {
     LAST.fetch_add(1, Ordering::Relaxed) + 1
 }
 
-impl Shape {
+impl BodyMesh {
     /// Takes the state of a body on. In motion, after so many seconds of play, the range of colours is that of the last
     /// seconds.
     pub(crate) fn update(
         &mut self,
         simulation: &Simulation,
-        drawing: &Drawing,
+        drawing: &DisplayGeometry,
         view: &ViewOptions,
         played: Option<f64>,
     ) {
@@ -206,7 +206,7 @@ impl Shape {
     }
 
     /// What the body's pass draws.
-    pub(crate) fn frame<'a>(&'a self, drawing: &'a Drawing, wireframe: bool) -> Frame<'a> {
+    pub(crate) fn frame<'a>(&'a self, drawing: &'a DisplayGeometry, wireframe: bool) -> Frame<'a> {
         Frame {
             stamp: self.stamp,
             positions: &self.points,

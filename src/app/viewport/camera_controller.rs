@@ -16,7 +16,7 @@ const ZOOM: [f64; 2] = [0.02, 2e4];
 
 /// The camera of a view, and where it goes.
 #[derive(Clone, Debug)]
-pub(crate) struct Eye {
+pub(crate) struct CameraController {
     /// Where somebody has moved it; `None`: it shows the whole body.
     own: Option<Camera>,
     /// What the whole body is.
@@ -30,7 +30,7 @@ pub(crate) struct Eye {
     is_new: bool,
 }
 
-impl Eye {
+impl CameraController {
     /// One that shows a body whose rest box is this.
     pub(crate) fn new(rest: Box2) -> Self {
         let camera = Camera { center: (rest[0] + rest[1]) * 0.5, scale: 1.0 };
@@ -115,14 +115,14 @@ mod tests {
     const REST: Box2 = [Vector2::new(0.0, -0.5), Vector2::new(10.0, 0.5)];
     const VIEW: [f64; 2] = [800.0, 600.0];
 
-    fn fitted(eye: &Eye) -> Camera {
+    fn fitted(eye: &CameraController) -> Camera {
         let [low, high] = eye.whole();
         Camera::fit(low, high, VIEW, Margins::default())
     }
 
     #[test]
     fn the_first_look_is_there_and_later_ones_ease_and_arrive() {
-        let mut eye = Eye::new(REST);
+        let mut eye = CameraController::new(REST);
         assert!(!eye.aim(fitted(&eye), Some(0.016)));
         let first = eye.camera();
         assert_eq!(first, fitted(&eye));
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn the_way_depends_on_the_time_and_not_on_the_frames() {
         let after = |frames: u32| {
-            let mut eye = Eye::new(REST);
+            let mut eye = CameraController::new(REST);
             eye.aim(fitted(&eye), None);
             eye.follow([Vector2::new(-50.0, -20.0), Vector2::new(60.0, 30.0)]);
             for _ in 0..frames {
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn without_time_it_is_there_at_once() {
-        let mut eye = Eye::new(REST);
+        let mut eye = CameraController::new(REST);
         eye.aim(fitted(&eye), None);
         eye.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
         assert!(!eye.aim(fitted(&eye), None));
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_moved_view_stays_until_it_is_fitted_again() {
-        let mut eye = Eye::new(REST);
+        let mut eye = CameraController::new(REST);
         eye.aim(fitted(&eye), None);
         let own = Camera { center: Vector2::new(3.0, 1.0), scale: 200.0 };
         eye.look(own);
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn zoom_is_bounded_by_the_size_of_the_body() {
-        let eye = Eye::new(REST);
+        let eye = CameraController::new(REST);
         let scales = eye.scales(VIEW);
         let mut camera = fitted(&eye);
         for _ in 0..1000 {
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn a_state_that_is_not_finite_is_not_followed() {
-        let mut eye = Eye::new(REST);
+        let mut eye = CameraController::new(REST);
         eye.follow([Vector2::new(f64::NAN, 0.0), Vector2::new(1.0, 1.0)]);
         assert_eq!(eye.whole(), REST);
     }

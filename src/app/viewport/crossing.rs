@@ -83,7 +83,7 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::display_geometry::Drawing;
+    use crate::render::display_geometry::DisplayGeometry;
     use crate::{ElementKind, Scene, Simulation};
 
     /// A beam of 10 × 1 cells of 1 m × 0.1 m, bent into an arc of this angle, rad.
@@ -97,7 +97,7 @@ mod tests {
             Vector2::new((radius - x.y) * sin, radius - (radius - x.y) * cos)
         };
         let positions: Vec<_> = mesh.nodes().iter().map(place).collect();
-        passes_through_itself(mesh, &Drawing::new(mesh).boundary, &positions)
+        passes_through_itself(mesh, &DisplayGeometry::new(mesh).boundary, &positions)
     }
 
     #[test]
@@ -117,7 +117,7 @@ mod tests {
         let scene = Scene::beam(4.0, 1.0).with_cells(8, 2).clamp("left");
         let simulation = Simulation::new(&scene).unwrap();
         let mesh = simulation.system().mesh();
-        let outline = Drawing::new(mesh).boundary;
+        let outline = DisplayGeometry::new(mesh).boundary;
         // Folded about the middle, and the fold pressed by a part of an element's height.
         let folded = |pressed: f64| -> Vec<_> {
             let fold = |x: &Vector2<f64>| {

@@ -12,3 +12,4 @@ pub(crate) mod pointer;
 pub(crate) mod probe;
 pub(crate) mod projection;
 pub(crate) mod time_line;
+pub(crate) mod view;

@@ -17,7 +17,7 @@ use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::assembly::{Hand, System};
 use crate::render::Camera;
 use crate::render::colormap::ColorMap;
-use crate::render::display_geometry::Drawing;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Load, MethodKind, Scene};
 use crate::simulation::SupportReaction;
 use crate::words::{engineering, prefix, round_down, three_digits, ticks};
@@ -26,7 +26,7 @@ use crate::words::{engineering, prefix, round_down, three_digits, ticks};
 pub(crate) struct Overlay<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
-    pub drawing: &'a Drawing,
+    pub drawing: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
     pub camera: Camera,
     /// Where the nodes are, m.

@@ -1,25 +1,24 @@
-//! The pointer over the view. A press takes one thing: the tip of an arrow sets its load, the body is pulled, empty
-//! space moves the view. The wheel zooms to the pointer.
+//! The pointer over the view. A press takes one thing: the tip of an arrow sets its load, the body is grabbed, empty space
+//! moves the view. The wheel zooms to the pointer.
 
 use std::ops::RangeInclusive;
 
 use egui::{CursorIcon, Modifiers, Pos2, Response, Ui, Vec2};
 use nalgebra::Vector2;
 
-use crate::app::session::playback::Playback;
+use crate::app::session::Grab;
 use crate::app::viewport::handle::{self, Grip, Handle, HotHandle, Pull};
 use crate::mesh::{MaterialPoint, Mesh, Segment};
 use crate::render::Camera;
-use crate::simulation::Simulation;
 
-/// What the pointer has done to the view.
+/// Movement of the camera by the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum Look {
-    /// Nothing.
+pub(crate) enum CameraMove {
+    /// None.
     #[default]
-    Same,
-    /// Somewhere else.
-    At(Camera),
+    None,
+    /// To another camera.
+    To(Camera),
     /// Back to the whole body.
     Fit,
 }
@@ -54,13 +53,14 @@ pub(crate) struct Pointer {
     scrolls: bool,
 }
 
-/// What the pointer asks for in one frame.
+/// Interaction of the pointer with the view in one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Wish {
-    pub look: Look,
-    /// A load by its number, and what it is to be.
+pub(crate) struct Interaction {
+    pub camera: CameraMove,
+    pub grab: Grab,
+    /// A load by its number, and its new value.
     pub load: Option<(usize, Pull)>,
-    /// A load by its number, that is to be as in the scene's file again.
+    /// A load by its number, which gets the value of the scene's document.
     pub restore: Option<usize>,
     /// A click on the body, or `None` in it for one beside the body.
     pub clicked: Option<Option<MaterialPoint>>,
@@ -70,30 +70,30 @@ pub(crate) struct Wish {
 const NEAR: f64 = 8.0;
 
 /// The body under the pointer.
-pub(crate) enum Body<'a> {
-    /// None that could be reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// A body that is not under the pointer's control.
     None,
-    /// One that says its values and cannot be pulled.
-    Seen,
-    /// One that can be pulled.
-    InHand(&'a mut Simulation, &'a mut Playback),
+    /// A body whose values are shown, and that cannot be grabbed.
+    Visible,
+    Grabbable,
 }
 
-/// What a hand needs to find what it reaches for.
-pub(crate) struct Reach<'a> {
+/// Targets of the pointer in the view.
+pub(crate) struct HitTargets<'a> {
     pub camera: Camera,
-    /// The body; `None` where its elements are drawn elsewhere: there is nothing to reach then.
+    /// The body; `None` where its elements are drawn elsewhere: there is nothing to targets then.
     pub mesh: Option<&'a Mesh>,
     /// Where the nodes are, m.
     pub positions: &'a [Vector2<f64>],
     pub outline: &'a [Segment],
     /// The tips of arrows.
     pub handles: &'a [Handle],
-    /// Magnifications that the wheel may reach.
+    /// Magnifications that the wheel may targets.
     pub scales: RangeInclusive<f64>,
 }
 
-impl Reach<'_> {
+impl HitTargets<'_> {
     /// The place in the plane under a place in the view, m.
     fn place(&self, response: &Response, at: Pos2) -> Vector2<f64> {
         let at = at - response.rect.center();
@@ -125,7 +125,13 @@ impl Pointer {
     }
 
     /// Follows the pointer over the view that `response` belongs to.
-    pub(crate) fn follow(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, mut body: Body<'_>) -> Wish {
+    pub(crate) fn follow(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        targets: &HitTargets<'_>,
+        body: Target,
+    ) -> Interaction {
         let (pressed, origin, down, at, let_go_at, fingers, keys) = ui.input(|i| {
             let pointer = &i.pointer;
             let fingers = i.multi_touch().map(|touch| touch.translation_delta);
@@ -139,58 +145,60 @@ impl Pointer {
             (pressed, pointer.press_origin(), down, pointer.interact_pos(), let_go_at, fingers, i.modifiers)
         });
         self.at = at;
-        let mut wish = Wish::default();
+        let mut interaction = Interaction::default();
         // A quick click is pressed and released within one frame. Two fingers move the view: what the first has taken is
         // let go.
         let is_here = response.is_pointer_button_down_on() || response.clicked();
         if pressed && is_here && fingers.is_none() {
             // Since the press the pointer may have moved on.
             let at = origin.or(at);
-            self.held = at.map_or(Held::Nothing, |at| Self::take(response, reach, &mut body, at));
+            self.held = at.map_or(Held::Nothing, |at| Self::take(response, targets, &mut interaction, body, at));
         }
         // After it was let go the pointer may have moved on, too.
         if let Some(at) = let_go_at.or(at) {
-            self.drag(response, reach, &mut body, (at, keys), &mut wish);
+            self.drag(response, targets, body, (at, keys), &mut interaction);
         }
         if response.double_clicked() {
             match self.held {
-                Held::Tip(grip) => wish.restore = Some(grip.handle.load()),
-                Held::Body(_) | Held::Point(_) | Held::Space => wish.look = Look::Fit,
+                Held::Tip(grip) => interaction.restore = Some(grip.handle.load()),
+                Held::Body(_) | Held::Point(_) | Held::Space => interaction.camera = CameraMove::Fit,
                 Held::Nothing => {}
             }
         } else if response.clicked() {
             match self.held {
-                Held::Body(point) | Held::Point(point) => wish.clicked = Some(Some(point)),
-                Held::Space => wish.clicked = Some(None),
+                Held::Body(point) | Held::Point(point) => interaction.clicked = Some(Some(point)),
+                Held::Space => interaction.clicked = Some(None),
                 Held::Tip(..) | Held::Nothing => {}
             }
         }
         if !down || fingers.is_some() {
-            if let (Held::Body(_), Body::InHand(simulation, playback)) = (self.held, &mut body) {
-                simulation.release();
-                playback.release();
-            }
+            interaction.grab.release = matches!(self.held, Held::Body(_));
             self.held = Held::Nothing;
         }
-        self.hover(ui, response, reach, &body, down);
-        if wish.look == Look::Same {
-            wish.look = self.look(ui, response, reach, fingers);
+        self.hover(ui, response, targets, body, down);
+        if interaction.camera == CameraMove::None {
+            interaction.camera = self.look(ui, response, targets, fingers);
         }
-        wish
+        interaction
     }
 
     /// What a press here takes: a tip before the body that it may lie over.
-    fn take(response: &Response, reach: &Reach<'_>, body: &mut Body<'_>, at: Pos2) -> Held {
-        if let Some(handle) = handle::at(reach.handles, at) {
+    fn take(
+        response: &Response,
+        targets: &HitTargets<'_>,
+        interaction: &mut Interaction,
+        body: Target,
+        at: Pos2,
+    ) -> Held {
+        if let Some(handle) = handle::at(targets.handles, at) {
             return Held::Tip(Grip::new(*handle, at));
         }
-        let reached = reach.point(reach.place(response, at)).filter(|_| !matches!(body, Body::None));
+        let reached = targets.point(targets.place(response, at)).filter(|_| body != Target::None);
         let Some(point) = reached else { return Held::Space };
-        let Body::InHand(simulation, playback) = body else { return Held::Point(point) };
-        if !simulation.grab(point) {
-            return Held::Space;
+        if body != Target::Grabbable {
+            return Held::Point(point);
         }
-        playback.grab(point);
+        interaction.grab.start = Some(point);
         Held::Body(point)
     }
 
@@ -198,45 +206,37 @@ impl Pointer {
     fn drag(
         &mut self,
         response: &Response,
-        reach: &Reach<'_>,
-        body: &mut Body<'_>,
+        targets: &HitTargets<'_>,
+        body: Target,
         (at, keys): (Pos2, Modifiers),
-        wish: &mut Wish,
+        interaction: &mut Interaction,
     ) {
         match &mut self.held {
             Held::Tip(grip) => {
                 grip.follow(at, keys.alt || keys.ctrl);
-                wish.load = grip.pull(keys.shift).map(|pull| (grip.handle.load(), pull));
+                interaction.load = grip.pull(keys.shift).map(|pull| (grip.handle.load(), pull));
             }
-            Held::Body(_) => {
-                let Body::InHand(simulation, playback) = body else { return };
-                let place = reach.place(response, at);
-                if simulation.hand().is_some_and(|(hand, _)| hand.target() != place) {
-                    // A pointer has a finite place.
-                    let _ = simulation.pull_to(place);
-                    playback.pull_to(place);
-                }
-            }
-            Held::Point(_) | Held::Space | Held::Nothing => {}
+            Held::Body(_) if body == Target::Grabbable => interaction.grab.target = Some(targets.place(response, at)),
+            Held::Body(_) | Held::Point(_) | Held::Space | Held::Nothing => {}
         }
     }
 
     /// Finds what is under the pointer, and says so with the cursor.
-    fn hover(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, body: &Body<'_>, down: bool) {
+    fn hover(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, body: Target, down: bool) {
         (self.over_tip, self.over_body) = (None, None);
         let cursor = match self.held {
             Held::Tip(..) => Some(CursorIcon::Move),
             Held::Body(_) => Some(CursorIcon::Grabbing),
             Held::Point(_) | Held::Space => Some(CursorIcon::AllScroll),
             Held::Nothing => response.hover_pos().filter(|_| !down).map(|at| {
-                self.over_tip = handle::at(reach.handles, at).copied();
+                self.over_tip = handle::at(targets.handles, at).copied();
                 if self.over_tip.is_some() {
                     return CursorIcon::Move;
                 }
-                self.over_body = reach.point(reach.place(response, at));
+                self.over_body = targets.point(targets.place(response, at));
                 match (self.over_body, body) {
-                    (Some(_), Body::InHand(..)) => CursorIcon::Grab,
-                    (Some(_), Body::None) => CursorIcon::Crosshair,
+                    (Some(_), Target::Grabbable) => CursorIcon::Grab,
+                    (Some(_), Target::None) => CursorIcon::Crosshair,
                     _ => CursorIcon::Default,
                 }
             }),
@@ -247,14 +247,14 @@ impl Pointer {
     }
 
     /// Moves and zooms the view.
-    fn look(&mut self, ui: &Ui, response: &Response, reach: &Reach<'_>, fingers: Option<Vec2>) -> Look {
-        let mut camera = reach.camera;
-        let mut look = Look::Same;
+    fn look(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, fingers: Option<Vec2>) -> CameraMove {
+        let mut camera = targets.camera;
+        let mut look = CameraMove::None;
         // Two fingers move the view together, wherever they are.
         let drag = fingers.unwrap_or_else(|| response.drag_delta());
         if drag != Vec2::ZERO && !self.holds() {
             camera.pan([f64::from(drag.x), f64::from(drag.y)]);
-            look = Look::At(camera);
+            look = CameraMove::To(camera);
         }
         let turned = ui.input(|i| {
             i.events.iter().any(|event| matches!(event, egui::Event::MouseWheel { .. } | egui::Event::Zoom(_)))
@@ -268,8 +268,8 @@ impl Pointer {
             // A pointer that only rests over the view must not stop it from following the body.
             if factor != 1.0 {
                 let at = pointer - response.rect.center();
-                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)], reach.scales.clone());
-                look = Look::At(camera);
+                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)], targets.scales.clone());
+                look = CameraMove::To(camera);
             }
         }
         look

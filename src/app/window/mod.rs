@@ -25,7 +25,7 @@ use crate::app::session::recovery::Recovery;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::size::{MOST_ALONE, unknowns};
-use crate::app::task::thread::LISTEN;
+use crate::app::task::thread::POLL;
 use crate::app::window::clipboard::Clipboard;
 use crate::app::{AppError, NoName, ThemeChoice, free_name};
 use crate::render::{Gpu, RenderError};
@@ -304,7 +304,7 @@ impl App {
             if let Some(recording) = &self.recording {
                 mark = recording.mark(ui.ctx(), self.lab.view_rect(), now);
                 hand = pointer(ui.ctx());
-                ui.ctx().request_repaint_after(LISTEN);
+                ui.ctx().request_repaint_after(POLL);
             }
         });
         open.clipboard.after(&output.platform_output);
@@ -375,7 +375,7 @@ impl App {
         }
     }
 
-    /// Closes the window. Edits that are not saved by now are not wanted.
+    /// Closes the window. UndoHistory that are not saved by now are not wanted.
     fn close(&mut self, event_loop: &ActiveEventLoop) {
         if let Some(recovery) = &mut self.recovery
             && let Err(error) = recovery.keep(None)

@@ -3,7 +3,8 @@
 pub(crate) mod measured;
 mod study_task;
 
-use crate::app::widgets::plot::marker;
+use crate::app::session::facts::without_settings;
+use crate::app::widgets::plot::{X_AXIS, marker, segments};
 use egui::{Button, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
 use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoints, Points, VLine};
 
@@ -11,15 +12,13 @@ use crate::app::action::Action;
 use crate::app::language::{fill, joined, percent, tr, translated};
 use crate::app::modes::budget::measured::{Choice, Group, Measured};
 use crate::app::modes::budget::study_task::{Background, BackgroundError, News};
-use crate::app::task::thread::LISTEN;
+use crate::app::task::thread::POLL;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
 use crate::app::widgets::palette::Palette;
-use crate::app::widgets::plot::X_AXIS;
-use crate::app::widgets::plot::segments;
 use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
-use crate::scene::{Analysis, DynamicsSettings, Scene, SolverSettings, limits};
+use crate::scene::{Analysis, Scene, limits};
 use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
 use crate::words::{engineering, number, three_digits};
 
@@ -57,26 +56,10 @@ impl From<Limits> for Demand {
     }
 }
 
-/// A scene without what a study varies: what its truth depends on.
-pub(crate) fn question(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    // The first that the mesh can be.
-    let first = scene.elements().next().unwrap_or_default();
-    scene.set_element(first);
-    if let Some(beam) = &mut scene.beam {
-        beam.cells = [1, 1];
-    }
-    scene.solver = SolverSettings { tolerance: scene.solver.tolerance, ..SolverSettings::default() };
-    let any = DynamicsSettings::default();
-    let dynamics = &mut scene.dynamics;
-    (dynamics.integrator, dynamics.time_step, dynamics.iterations) = (any.integrator, any.time_step, any.iterations);
-    scene
-}
-
 impl Budget {
     /// Starts to measure a scene; what was measured before goes.
     pub(crate) fn measure(&mut self, scene: &Scene, extent: Extent) {
-        *self = Self { of: Some(question(scene)), limits: self.limits, ..Self::default() };
+        *self = Self { of: Some(without_settings(scene)), limits: self.limits, ..Self::default() };
         match Background::start(scene.clone(), extent) {
             Ok(background) => self.background = Some(background),
             Err(error) => self.error = Some(error),
@@ -128,7 +111,7 @@ impl Budget {
     /// Takes a study made elsewhere.
     pub(crate) fn set(&mut self, scene: &Scene, study: Study) {
         *self = Self {
-            of: Some(question(scene)),
+            of: Some(without_settings(scene)),
             study: Some(Measured::Rest(study)),
             limits: self.limits,
             ..Self::default()
@@ -139,7 +122,7 @@ impl Budget {
     pub(crate) fn listen(&mut self, ctx: &Context) {
         let Some(background) = &mut self.background else { return };
         match background.listen(&mut self.study) {
-            News::Running => ctx.request_repaint_after(LISTEN),
+            News::Running => ctx.request_repaint_after(POLL),
             News::Ended(result) => {
                 self.error = result.err();
                 self.background = None;
@@ -157,7 +140,7 @@ impl Budget {
             choices: self.study.as_ref().map(Measured::choices).unwrap_or_default(),
             demand,
             meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
-            current: self.of.as_ref() == Some(&question(scene)),
+            current: self.of.as_ref() == Some(&without_settings(scene)),
             is_partial: self.is_partial,
             progress: self.background.as_ref().map(Background::progress),
             error: self.error.as_ref().map(ToString::to_string),

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::app::modes::budget::measured::Measured;
-use crate::app::task::thread::{Heard, Job, Line};
+use crate::app::task::thread::{Reporter, Task, Update};
 use crate::scene::{Analysis, Scene};
 use crate::study::{Extent, MotionStudy, Progress, Study, StudyError};
 
@@ -39,7 +39,7 @@ pub(crate) enum News {
 /// A study in a thread of its own. Dropped, it is called off.
 #[derive(Debug)]
 pub(crate) struct Background {
-    job: Job<Said, Done>,
+    task: Task<Said, Done>,
     /// Fraction that is done, and what is measured now.
     fraction: f32,
     now: String,
@@ -51,8 +51,8 @@ impl Background {
     /// # Errors
     /// [`BackgroundError::NoThread`].
     pub(crate) fn start(scene: Scene, extent: Extent) -> Result<Self, BackgroundError> {
-        let job = Job::start("study", move |line| work(&scene, extent, line))?;
-        Ok(Self { job, fraction: 0.0, now: String::new() })
+        let task = Task::start("study", move |reporter| work(&scene, extent, reporter))?;
+        Ok(Self { task, fraction: 0.0, now: String::new() })
     }
 
     /// Fraction that is done, and what is measured now.
@@ -62,31 +62,31 @@ impl Background {
 
     /// Asks the study to end with the measurements that it has.
     pub(crate) fn call_off(&self) {
-        self.job.call_off();
+        self.task.cancel();
     }
 
     /// Takes what has been heard since; measurements go to `study`.
     pub(crate) fn listen(&mut self, study: &mut Option<Measured>) -> News {
         loop {
-            match self.job.hear() {
-                Heard::News(Said::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
-                Heard::News(Said::SoFar(so_far)) => *study = Some(so_far),
-                Heard::Done(Ok(done)) => {
+            match self.task.poll() {
+                Update::Progress(Said::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
+                Update::Progress(Said::SoFar(so_far)) => *study = Some(so_far),
+                Update::Done(Ok(done)) => {
                     *study = Some(done);
                     return News::Ended(Ok(()));
                 }
-                Heard::Done(Err(StudyError::Cancelled)) => return News::Ended(Ok(())),
-                Heard::Done(Err(error)) => return News::Ended(Err(error.into())),
-                Heard::Nothing => return News::Running,
-                Heard::Died => return News::Ended(Err(BackgroundError::Died)),
+                Update::Done(Err(StudyError::Cancelled)) => return News::Ended(Ok(())),
+                Update::Done(Err(error)) => return News::Ended(Err(error.into())),
+                Update::None => return News::Running,
+                Update::Died => return News::Ended(Err(BackgroundError::Died)),
             }
         }
     }
 }
 
-fn work(scene: &Scene, extent: Extent, line: &Line<Said, Done>) -> Done {
+fn work(scene: &Scene, extent: Extent, reporter: &Reporter<Said, Done>) -> Done {
     let mut observe = |progress: Progress<'_>| {
-        line.say(match progress.so_far {
+        reporter.report(match progress.so_far {
             Some(study) => Said::SoFar(Measured::Rest(study.clone())),
             None => Said::Now(progress.fraction as f32, progress.now.to_owned()),
         })

@@ -9,17 +9,17 @@ use crate::app::diagnosis::Errors;
 use crate::app::language::{fill, tr};
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::body_mesh::Shape;
-use crate::app::viewport::camera_controller::Eye;
+use crate::app::viewport::body_mesh::BodyMesh;
+use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::HotHandle;
 use crate::app::viewport::overlay::{self, Overlay};
-use crate::app::viewport::pointer::{Body, Look, Pointer, Reach, Wish};
+use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Pointer, Target};
 use crate::app::viewport::projection::viewport;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::assembly::System;
-use crate::render::display_geometry::Drawing;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::render::{Camera, View};
 use crate::scene::Scene;
 use crate::words::{engineering, prefix, three_digits};
@@ -138,7 +138,7 @@ pub(super) fn common_range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
 }
 
 /// Turns the camera towards a box, m.
-pub(super) fn aim(ui: &Ui, eye: &mut Eye, fit: impl FnOnce([Vector2<f64>; 2]) -> Camera, eases: bool) {
+pub(super) fn aim(ui: &Ui, eye: &mut CameraController, fit: impl FnOnce([Vector2<f64>; 2]) -> Camera, eases: bool) {
     let dt = f64::from(ui.input(|i| i.stable_dt));
     if eye.aim(fit(eye.whole()), eases.then_some(dt)) {
         ui.ctx().request_repaint();
@@ -148,7 +148,7 @@ pub(super) fn aim(ui: &Ui, eye: &mut Eye, fit: impl FnOnce([Vector2<f64>; 2]) ->
 /// Part of the picture that a pane draws.
 pub(super) fn view<'a>(
     place: Option<Rect>,
-    (shape, drawing): (&'a Shape, &'a Drawing),
+    (shape, drawing): (&'a BodyMesh, &'a DisplayGeometry),
     camera: Camera,
     wireframe: bool,
     pixels_per_point: f32,
@@ -161,18 +161,18 @@ pub(super) fn follow(
     ui: &Ui,
     (number, place): (usize, Rect),
     pointer: &mut Pointer,
-    reach: &Reach<'_>,
-    eye: &mut Eye,
-) -> Wish {
+    reach: &HitTargets<'_>,
+    eye: &mut CameraController,
+) -> Interaction {
     let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
-    let wish = pointer.follow(ui, &response, reach, Body::None);
-    match wish.look {
-        Look::Same => {}
-        Look::At(camera) => {
+    let wish = pointer.follow(ui, &response, reach, Target::None);
+    match wish.camera {
+        CameraMove::None => {}
+        CameraMove::To(camera) => {
             eye.look(camera);
             ui.ctx().request_repaint();
         }
-        Look::Fit => eye.fit(),
+        CameraMove::Fit => eye.fit(),
     }
     wish
 }
@@ -181,8 +181,8 @@ pub(super) fn follow(
 pub(super) struct PaneBody<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
-    pub drawing: &'a Drawing,
-    pub shape: &'a Shape,
+    pub drawing: &'a DisplayGeometry,
+    pub shape: &'a BodyMesh,
     /// Outline of the exact solution, m.
     pub exact: &'a [Vec<Vector2<f64>>],
     /// s.

@@ -13,22 +13,20 @@ use self::pane::{Doing, Equations, Turn};
 use self::setting::PANES;
 use self::trace::Trace;
 use crate::app::action::Action;
-use crate::app::diagnosis::error_color;
-use crate::app::diagnosis::truth_words;
+use crate::app::diagnosis::{error_color, truth_words};
 use crate::app::language::{count, fill, percent, sentence, tr, translated};
+use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::playback::Playback;
-use crate::app::task::thread::LISTEN;
+use crate::app::task::thread::POLL;
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::camera_controller::Eye;
+use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay;
-use crate::app::viewport::pointer::{Reach, Wish};
+use crate::app::viewport::pointer::{HitTargets, Interaction};
 use crate::app::viewport::projection::Projection;
-use crate::app::widgets::buttons::Icon;
-use crate::app::widgets::buttons::choice;
-use crate::app::widgets::buttons::icon_button;
+use crate::app::widgets::buttons::{Icon, choice, icon_button};
 use crate::app::widgets::legend::Mark;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
-use crate::app::widgets::text::semibold;
+use crate::app::widgets::text::{UNKNOWN, semibold};
 use crate::assembly::System;
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
@@ -78,7 +76,7 @@ pub(crate) struct Compare {
     /// Whether the load curve is shown; `None`: where there is room.
     shows_trace: Option<bool>,
     /// Where all panes look; `None` before the first look.
-    eye: Option<Eye>,
+    eye: Option<CameraController>,
     /// Nothing has moved: bodies at rest have no past.
     still: Playback,
 }
@@ -120,12 +118,12 @@ impl Compare {
 
     /// The camera of all panes.
     pub(crate) fn camera(&self) -> Camera {
-        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, Eye::camera)
+        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
     }
 
     /// Shows all bodies again.
     pub(crate) fn fit(&mut self) {
-        self.eye.iter_mut().for_each(Eye::fit);
+        self.eye.iter_mut().for_each(CameraController::fit);
     }
 
     /// All start over at rest.
@@ -197,7 +195,7 @@ impl Compare {
         if is_new || input.running && self.panes.iter().any(busy) {
             ctx.request_repaint();
         } else if self.panes.iter().any(Pane::is_away) {
-            ctx.request_repaint_after(LISTEN);
+            ctx.request_repaint_after(POLL);
         }
     }
 
@@ -210,7 +208,7 @@ impl Compare {
     pub(crate) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>, actions: &mut Vec<Action>) {
         let height = ui.ctx().content_rect().height();
         let panel = if input.common.view.bars && input.common.view.panel && !input.common.view.narrow {
-            crate::app::PANEL_WIDTH
+            PANEL_WIDTH
         } else {
             0.0
         };
@@ -284,7 +282,7 @@ impl Compare {
     }
 
     /// The panes; returns what is asked for of their load.
-    pub(crate) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) -> Wish {
+    pub(crate) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) -> Interaction {
         self.advance(ui.ctx(), input);
         for pane in &mut self.panes {
             pane.update_shape(input.common.view, ui.visuals());
@@ -296,7 +294,7 @@ impl Compare {
             pane.place = Some(grid::body_place(*cell));
         }
         self.look(ui, input);
-        let (mut change, mut wish) = (None, Wish::default());
+        let (mut change, mut wish) = (None, Interaction::default());
         for (number, cell) in cells.into_iter().enumerate() {
             let Some(place) = self.panes.get(number).and_then(Pane::place) else { continue };
             grid::header(ui, number, [cell, place], |ui| self.header(ui, number, input, &mut change));
@@ -349,7 +347,7 @@ impl Compare {
         let rest = [low, high];
         let iterates = self.is_iterating();
         let margins = self.margins(input, size);
-        let eye = self.eye.get_or_insert_with(|| Eye::new(rest));
+        let eye = self.eye.get_or_insert_with(|| CameraController::new(rest));
         if !self.panes.iter().any(|pane| pane.pointer.holds()) {
             let truth = input.truth.filter(|_| input.common.view.exact);
             let mut bounds = truth.into_iter().flat_map(|truth| &truth.outline).flatten().fold(rest, grow);
@@ -453,7 +451,7 @@ impl Compare {
             painter.rect_filled(rect, 4.0, palette.error_chip);
             left += 6.0;
         } else {
-            let number = error.map_or_else(|| crate::app::widgets::text::UNKNOWN.to_owned(), percent);
+            let number = error.map_or_else(|| UNKNOWN.to_owned(), percent);
             let color = error_color(&palette, error);
             let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
             let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
@@ -478,14 +476,14 @@ impl Compare {
     }
 
     /// The body of a pane, over what its pass has drawn.
-    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) -> Wish {
-        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Wish::default() };
-        let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
+    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) -> Interaction {
+        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Interaction::default() };
+        let Some(pane) = self.panes.get_mut(number) else { return Interaction::default() };
         // What is no answer has no values.
         let system = pane.system().filter(|_| pane.is_sound() && !pane.is_outdated()).cloned();
         let forces = pane.forces(input.common.direction, input.common.opening);
         let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&Projection { camera, rect: place }));
-        let reach = Reach {
+        let reach = HitTargets {
             mesh: system.as_ref().map(|system| system.mesh()),
             camera,
             positions: &pane.shape.nodes,

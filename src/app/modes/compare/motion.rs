@@ -10,17 +10,17 @@ use super::grid::{self, Grid, PaneBody, PaneInput, Preset, grow};
 use super::setting::PANES;
 use super::{mesh_picker, pick};
 use crate::app::language::{fill, joined, percent, sentence, tr, translated};
-use crate::app::session::clock::{FRAMES, Pace};
+use crate::app::session::clock::{FRAMES, RealTimeClock};
 use crate::app::session::playback::Playback;
 use crate::app::viewport::arrow::Forces;
-use crate::app::viewport::body_mesh::Shape;
-use crate::app::viewport::camera_controller::Eye;
+use crate::app::viewport::body_mesh::BodyMesh;
+use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay;
-use crate::app::viewport::pointer::{Pointer, Reach, Wish};
+use crate::app::viewport::pointer::{HitTargets, Interaction, Pointer};
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::palette::Palette;
 use crate::dynamics::INTEGRATORS;
-use crate::render::display_geometry::Drawing;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, IntegratorKind, Scene};
 use crate::simulation::{Motion, Simulation, Status, probe_results};
@@ -70,8 +70,8 @@ pub struct MotionPane {
     refused: Option<String>,
     /// Time of computing a step, s: a mean in which old steps fade.
     seconds: Option<f64>,
-    drawing: Drawing,
-    shape: Shape,
+    drawing: DisplayGeometry,
+    shape: BodyMesh,
     /// Range of its own colours; all panes are drawn in one that has room for each.
     range: [f64; 2],
     place: Option<Rect>,
@@ -86,8 +86,8 @@ impl MotionPane {
             simulation: None,
             refused: None,
             seconds: None,
-            drawing: Drawing::default(),
-            shape: Shape::default(),
+            drawing: DisplayGeometry::default(),
+            shape: BodyMesh::default(),
             range: [0.0; 2],
             place: None,
             pointer: Pointer::default(),
@@ -129,8 +129,8 @@ impl MotionPane {
         self.refused = made.as_ref().err().map(ToString::to_string);
         self.simulation = made.ok();
         if let (Some(simulation), false) = (&self.simulation, goes_on) {
-            self.drawing = Drawing::new(simulation.system().mesh());
-            self.shape = Shape::default();
+            self.drawing = DisplayGeometry::new(simulation.system().mesh());
+            self.shape = BodyMesh::default();
             self.seconds = None;
         }
         self.scene = Some(wanted);
@@ -167,8 +167,8 @@ impl MotionPane {
 #[derive(Debug)]
 pub(crate) struct MotionCompare {
     panes: Vec<MotionPane>,
-    pub pace: Pace,
-    eye: Option<Eye>,
+    pub pace: RealTimeClock,
+    eye: Option<CameraController>,
     /// Box of everything that the bodies have swept, m.
     swept: Option<[Vector2<f64>; 2]>,
     /// Time of play, s: longer than simulated time in slow motion.
@@ -180,7 +180,7 @@ impl Default for MotionCompare {
     fn default() -> Self {
         let mut compare = Self {
             panes: Vec::new(),
-            pace: Pace::default(),
+            pace: RealTimeClock::default(),
             eye: None,
             swept: None,
             played: 0.0,
@@ -221,7 +221,7 @@ impl MotionCompare {
 
     /// Shows all bodies again.
     pub(crate) fn fit(&mut self) {
-        self.eye.iter_mut().for_each(Eye::fit);
+        self.eye.iter_mut().for_each(CameraController::fit);
     }
 
     /// One time step of everything.
@@ -253,7 +253,7 @@ impl MotionCompare {
     }
 
     pub(crate) fn camera(&self) -> Camera {
-        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, Eye::camera)
+        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
     }
 
     /// The bodies, with so many pixels a point.
@@ -307,7 +307,7 @@ impl MotionCompare {
     }
 
     /// The panes; returns the wish for their load.
-    pub(crate) fn show(&mut self, ui: &mut Ui, input: &PaneInput<'_>) -> Wish {
+    pub(crate) fn show(&mut self, ui: &mut Ui, input: &PaneInput<'_>) -> Interaction {
         for pane in &mut self.panes {
             if let Some(simulation) = &pane.simulation {
                 pane.shape.range = pane.range;
@@ -325,7 +325,7 @@ impl MotionCompare {
             pane.place = Some(grid::body_place(*cell));
         }
         self.look(ui, input);
-        let (mut change, mut wish) = (None, Wish::default());
+        let (mut change, mut wish) = (None, Interaction::default());
         for (number, cell) in cells.into_iter().enumerate() {
             let Some(place) = self.panes.get(number).and_then(MotionPane::place) else { continue };
             grid::header(ui, number, [cell, place], |ui| self.header(ui, number, input, &mut change));
@@ -357,7 +357,7 @@ impl MotionCompare {
         let sound = self.panes.iter().filter(|pane| pane.is_sound());
         let swept = sound.flat_map(|pane| pane.shape.points()).fold(self.swept.unwrap_or(rest), grow);
         self.swept = Some(swept);
-        let eye = self.eye.get_or_insert_with(|| Eye::new(rest));
+        let eye = self.eye.get_or_insert_with(|| CameraController::new(rest));
         if !self.panes.iter().any(|pane| pane.pointer.holds()) {
             eye.follow(swept);
         }
@@ -439,10 +439,10 @@ impl MotionCompare {
     }
 
     /// The body of a pane, over what its pass has drawn.
-    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &PaneInput<'_>) -> Wish {
-        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Wish::default() };
-        let Some(pane) = self.panes.get_mut(number) else { return Wish::default() };
-        let Some(simulation) = pane.simulation.as_deref() else { return Wish::default() };
+    fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &PaneInput<'_>) -> Interaction {
+        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Interaction::default() };
+        let Some(pane) = self.panes.get_mut(number) else { return Interaction::default() };
+        let Some(simulation) = pane.simulation.as_deref() else { return Interaction::default() };
         let forces = Forces {
             scene: simulation.scene(),
             system: simulation.system(),
@@ -452,7 +452,7 @@ impl MotionCompare {
             opening: input.opening,
         };
         let handles = forces.handles(&Projection { camera, rect: place });
-        let reach = Reach {
+        let reach = HitTargets {
             mesh: Some(simulation.system().mesh()),
             camera,
             positions: &pane.shape.nodes,

@@ -1,7 +1,6 @@
 //! A pane: a simulation of its own on the scene with a setting of its own. Small ones iterate between two frames, large
 //! ones beside the window.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -10,17 +9,17 @@ use nalgebra::Vector2;
 
 use super::setting::PaneSetting;
 use crate::app::size::{MOST_UNKNOWNS, unknowns};
-use crate::app::task::thread::{Heard, Job};
+use crate::app::task::solve::{BackgroundSolve, Bodies, Model, Phase, SolveRequest, SolveUpdate, Start};
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::Forces;
-use crate::app::viewport::body_mesh::Shape;
+use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::pointer::Pointer;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::assembly::System;
 use crate::render::Camera;
-use crate::render::display_geometry::Drawing;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Beam, MeshFile, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status, probe_results};
 use crate::study::Reference;
@@ -45,8 +44,8 @@ pub struct Pane {
     measures: bool,
     end: Option<PaneEnd>,
     system: Option<Arc<System>>,
-    pub(super) drawing: Drawing,
-    pub(super) shape: Shape,
+    pub(super) drawing: DisplayGeometry,
+    pub(super) shape: BodyMesh,
     /// The range of the field over the body.
     pub(super) range: Option<[f64; 2]>,
     /// Where the body is drawn.
@@ -75,54 +74,46 @@ enum Body {
     #[default]
     None,
     Here(Box<Simulation>),
-    Away(Errand),
+    Away(Box<PaneSolve>),
     /// What is wrong with the scene.
     Refused(String),
 }
 
-/// A solve beside the window, which says how many iterations it has made.
+/// A background solve of a pane.
 #[derive(Debug)]
-struct Errand {
-    job: Job<u32, Result<Box<Simulation>, SimulationError>>,
-    iterations: u32,
+struct PaneSolve {
+    solve: BackgroundSolve,
     since: Instant,
 }
 
-/// What is to be solved.
-struct Task {
+/// The model of a pane before its first iteration.
+struct PaneModel {
     simulation: Option<Box<Simulation>>,
-    scene: Scene,
-    /// Equations made before that are the scene's.
+    /// Existing equations of the scene's mesh.
     system: Option<Arc<System>>,
-    from_rest: bool,
-    most_iterations: Option<u32>,
 }
 
-impl Task {
-    /// The simulation with the scene, before its first iteration.
-    fn begin(self) -> Result<Box<Simulation>, SimulationError> {
-        let Self { simulation, scene, system, from_rest, .. } = self;
-        Ok(match (simulation, system) {
+impl PaneModel {
+    /// Sets the simulation up here.
+    fn set_up(self, scene: &Scene) -> Result<Box<Simulation>, SimulationError> {
+        Ok(match (self.simulation, self.system) {
             (Some(mut simulation), _) => {
-                simulation.change_scene(&scene)?;
-                if from_rest {
-                    simulation.reset();
-                }
+                simulation.change_scene(scene)?;
                 simulation
             }
-            (None, Some(system)) => Box::new(Simulation::with_system(&scene, system)?),
-            (None, None) => Box::new(Simulation::new(&scene)?),
+            (None, Some(system)) => Box::new(Simulation::with_system(scene, system)?),
+            (None, None) => Box::new(Simulation::new(scene)?),
         })
     }
+}
 
-    /// Solves it; `say` is told the iterations made, and calls the rest off.
-    fn solve(self, say: impl Fn(u32) -> ControlFlow<()>) -> Result<Box<Simulation>, SimulationError> {
-        let most = self.most_iterations;
-        let mut simulation = self.begin()?;
-        while !has_ended(&simulation, most) && say(simulation.iterations()).is_continue() {
-            simulation.step();
+impl From<PaneModel> for Model {
+    fn from(model: PaneModel) -> Self {
+        match (model.simulation, model.system) {
+            (Some(simulation), _) => Self::Existing(Box::new((Bodies { simulation: *simulation, linear: None }, None))),
+            (None, Some(system)) => Self::Equations(system),
+            (None, None) => Self::New,
         }
-        Ok(simulation)
     }
 }
 
@@ -207,7 +198,10 @@ impl Pane {
         match (&self.end, &self.body) {
             (Some(end), _) => Doing::Rests(end),
             (None, Body::Refused(reason)) => Doing::Refused(reason),
-            (None, Body::Away(errand)) => Doing::Works(errand.iterations),
+            (None, Body::Away(away)) => Doing::Works(match away.solve.phase() {
+                Phase::Iterating(iterations) => iterations,
+                _ => 0,
+            }),
             (None, Body::Here(simulation)) => Doing::Iterates(simulation.iterations()),
             (None, Body::None) => Doing::Iterates(0),
         }
@@ -335,17 +329,17 @@ impl Pane {
 
     /// Takes the simulation that comes back; says whether it is not away.
     fn hear(&mut self) -> bool {
-        let Body::Away(errand) = &mut self.body else { return true };
-        if self.given != self.wanted && errand.since.elapsed() > LONGEST_OUTDATED {
-            errand.job.call_off();
+        let Body::Away(away) = &mut self.body else { return true };
+        if self.given != self.wanted && away.since.elapsed() > LONGEST_OUTDATED {
+            away.solve.cancel();
         }
         self.body = loop {
-            match errand.job.hear() {
-                Heard::News(iterations) => errand.iterations = iterations,
-                Heard::Nothing => return false,
-                Heard::Done(Ok(simulation)) => break Body::Here(simulation),
-                Heard::Done(Err(error)) => break Body::Refused(error.to_string()),
-                Heard::Died => break Body::Refused("the solve ended unexpectedly".to_owned()),
+            match away.solve.poll() {
+                SolveUpdate::Phase | SolveUpdate::Snapshot(_) => {}
+                SolveUpdate::None => return false,
+                SolveUpdate::Done(Ok(solved)) => break Body::Here(Box::new(solved.snapshot.bodies.simulation)),
+                SolveUpdate::Done(Err(rejected)) => break Body::Refused(rejected.error.to_string()),
+                SolveUpdate::Died => break Body::Refused("the solve ended unexpectedly".to_owned()),
             }
         };
         if self.given == self.wanted {
@@ -367,18 +361,22 @@ impl Pane {
         let simulation = simulation.filter(|s| s.scene().beam == scene.beam && s.scene().mesh == scene.mesh);
         self.from_rest = simulation.is_none();
         let system = Equations::of(equations, &scene);
-        let task = Task { simulation, scene, system, from_rest: false, most_iterations: self.setting.iterations };
-        self.is_large = unknowns(&task.scene) > MOST_UNKNOWNS;
+        let model = PaneModel { simulation, system };
+        self.is_large = unknowns(&scene) > MOST_UNKNOWNS;
         if self.is_large {
-            self.send(task);
+            self.send(scene, model, Start::Present);
         } else {
-            self.body = task.begin().map_or_else(|error| Body::Refused(error.to_string()), Body::Here);
+            self.body = model.set_up(&scene).map_or_else(|error| Body::Refused(error.to_string()), Body::Here);
         }
     }
 
-    fn send(&mut self, task: Task) {
-        self.body = match Job::start("pane", move |line| task.solve(|iterations| line.say(iterations))) {
-            Ok(job) => Body::Away(Errand { job, iterations: 0, since: Instant::now() }),
+    /// Starts a solve in the background.
+    fn send(&mut self, scene: Scene, model: PaneModel, start: Start) {
+        let iterations = self.setting.iterations;
+        let (model, residuals) = (model.into(), Vec::new());
+        let request = SolveRequest { scene, model, start, iterations, residuals, is_displayed: false };
+        self.body = match BackgroundSolve::start(request) {
+            Ok(solve) => Body::Away(Box::new(PaneSolve { solve, since: Instant::now() })),
             Err(error) => Body::Refused(format!("no thread for the solve: {error}")),
         };
     }
@@ -410,8 +408,8 @@ impl Pane {
             return simulation.reset();
         }
         if let (Body::Here(simulation), Some(scene)) = (std::mem::take(&mut self.body), self.given.clone()) {
-            let simulation = Some(simulation);
-            self.send(Task { simulation, scene, system: None, from_rest: ended, most_iterations: most });
+            let start = if ended { Start::Rest } else { Start::Present };
+            self.send(scene, PaneModel { simulation: Some(simulation), system: None }, start);
         }
     }
 
@@ -435,14 +433,13 @@ impl Pane {
     pub(super) fn settle(&mut self, scene: &Scene, equations: &[Equations]) {
         let wanted = self.setting.apply(scene);
         let system = Equations::of(equations, &wanted);
-        let task = Task {
-            simulation: None,
-            scene: wanted.clone(),
-            system,
-            from_rest: false,
-            most_iterations: self.setting.iterations,
-        };
-        let solved = task.solve(|_| ControlFlow::Continue(()));
+        let most = self.setting.iterations;
+        let solved = PaneModel { simulation: None, system }.set_up(&wanted).map(|mut simulation| {
+            while !has_ended(&simulation, most) {
+                simulation.step();
+            }
+            simulation
+        });
         self.body = solved.map_or_else(|error| Body::Refused(error.to_string()), Body::Here);
         (self.wanted, self.given) = (Some(wanted.clone()), Some(wanted));
         (self.from_rest, self.end) = (true, None);
@@ -454,7 +451,7 @@ impl Pane {
         if let (Body::Here(simulation), false) = (&self.body, self.measures) {
             let system = simulation.system();
             if self.system.as_ref().is_none_or(|drawn| !Arc::ptr_eq(drawn, system)) {
-                self.drawing = Drawing::new(system.mesh());
+                self.drawing = DisplayGeometry::new(system.mesh());
                 self.system = Some(system.clone());
             }
             self.shape.update(simulation, &self.drawing, view, None);

@@ -8,10 +8,11 @@ use super::pane::{Doing, Pane};
 use super::setting::PaneSetting;
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
-use crate::app::modes::budget::question;
 use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::modes::explore::load_curve::{axes, displacement_words, pair, quantities, usual};
-use crate::app::task::lazy::Finder;
+use crate::app::session::facts::without_settings;
+use crate::app::task::lazy::Lazy;
+use crate::app::task::thread::POLL;
 use crate::app::view_options::CurvePlot;
 use crate::scene::limits::{self, Limit};
 use crate::scene::{Load, MethodKind, Place, Scene};
@@ -73,7 +74,7 @@ impl Axis {
 
     /// What scenes that differ in the magnitude only have in common.
     fn family(&self, scene: &Scene) -> Scene {
-        let mut family = question(scene);
+        let mut family = without_settings(scene);
         self.set(&mut family, [0.0; 2], 0.0);
         family
     }
@@ -96,7 +97,7 @@ pub(super) struct Trace {
     family: Option<Scene>,
     direction: Option<[f64; 2]>,
     series: Vec<(PaneSetting, Vec<Dot>)>,
-    exact: Finder<Vec<Exact>>,
+    exact: Lazy<Vec<Exact>>,
     /// The exact curve that was found last.
     line: Vec<Exact>,
     /// What is true of the loads that were there: plane elasticity may differ from the exact beam.
@@ -117,7 +118,7 @@ impl Default for Trace {
             family: None,
             direction: None,
             series: Vec::new(),
-            exact: Finder::new(|scene, _| exact_line(scene)),
+            exact: Lazy::new(|scene, _| exact_line(scene)),
             line: Vec::new(),
             truths: Vec::new(),
             reach: 0.0,
@@ -166,10 +167,10 @@ impl Trace {
     /// Looks for the exact curve, where that is not known far enough.
     pub(super) fn ask(&mut self, scene: &Scene, ctx: &egui::Context) {
         if self.needs_exact() {
-            self.exact.forget();
+            self.exact.invalidate();
         }
-        if self.axis.is_some_and(|axis| axis.magnitude > 0.0) {
-            self.exact.ask(scene, ctx);
+        if self.axis.is_some_and(|axis| axis.magnitude > 0.0) && self.exact.request(scene) {
+            ctx.request_repaint_after(POLL);
         }
         self.take_exact();
     }
@@ -177,9 +178,9 @@ impl Trace {
     /// Finds the exact curve, however long it takes.
     pub(super) fn settle(&mut self, scene: &Scene) {
         if self.needs_exact() {
-            self.exact.forget();
+            self.exact.invalidate();
         }
-        self.exact.settle(scene);
+        self.exact.wait(scene);
         self.take_exact();
     }
 

@@ -1,6 +1,6 @@
 //! Figures in the window: the plot, the table beside it, the choice of quantities, and files of it.
 
-use crate::app::action::FigureFile;
+use crate::app::action::{Action, FigureFile};
 use crate::app::view_options::CurvePlot;
 use std::path::PathBuf;
 
@@ -8,13 +8,10 @@ use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, WidgetI
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, PlotResponse, Points, VLine};
 use thiserror::Error;
 
-use crate::app::action::Action;
 use crate::app::language::{fill, tr};
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
-use crate::app::widgets::plot::marker;
-use crate::app::widgets::plot::segments;
-use crate::app::widgets::plot::still;
+use crate::app::widgets::plot::{marker, segments, still};
 use crate::app::{NoName, free_name};
 use crate::export::{ExportError, write_text};
 use crate::picture::{PictureError, draw_svg};

@@ -1,6 +1,7 @@
 //! The load curve. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory leaves. Of any
 //! other scene: its load path, what is unstable dashed.
 
+use crate::app::session::facts::Curve;
 use egui::{Align2, Ui, UiBuilder};
 use nalgebra::Vector2;
 
@@ -17,23 +18,6 @@ use crate::study::figure::{
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
 use crate::words::{engineering, engineering_pair, three_digits};
-
-/// Load and displacement of a scene.
-#[derive(Debug)]
-pub(crate) enum Curve {
-    /// The curve of a cantilever, and its scene.
-    Beam(Box<(LoadCurve, Scene)>),
-    /// Of any scene at rest; of the scene with it.
-    Path(Box<(LoadPath, Scene)>),
-}
-
-impl Curve {
-    pub(crate) fn of(scene: &Scene) -> Option<Self> {
-        let path = || Some(Self::Path(Box::new((LoadPath::of(scene)?, scene.clone()))));
-        let beam = LoadCurve::new(scene).map(|curve| Self::Beam(Box::new((curve, scene.clone()))));
-        beam.or_else(path)
-    }
-}
 
 /// Shows the plot, that of the scene before while a new one is looked for; or says why there is none: not yet, or not at
 /// all.

@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         let linear = shown.input.linear.map(triangle::area_growth);
         row(ui, &palette, MethodKind::Linear.id(), linear, palette.method(MethodKind::Linear));
     }
-    let outline = shown.input.truth.filter(|_| shown.input.simulation.is_at_rest()).map(|truth| &truth.outline);
+    let outline = shown.input.reference.filter(|_| shown.input.simulation.is_at_rest()).map(|truth| &truth.outline);
     let exact = outline.map(|lines| {
         let rest: f64 = shown.input.simulation.system().nodal_areas().iter().sum();
         100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)

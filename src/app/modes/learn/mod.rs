@@ -7,15 +7,13 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::readout::Readout;
-use crate::app::shell::lab::Lab;
-use crate::app::task::lazy::{Finder, Search};
-use crate::app::view_options::Mode;
-use crate::app::view_options::Toggle;
-use crate::app::view_options::ViewOptions;
+use crate::app::task::lazy::{Compute, Lazy};
+use crate::app::task::thread::POLL;
+use crate::app::view_options::{Mode, Toggle};
 use crate::app::widgets::number_field::Messages;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::render::Camera;
-use crate::render::display_geometry::Drawing;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{self, Analysis, MethodKind, Scene, SolverSettings, Source, registry};
 use crate::simulation::Simulation;
 use crate::study::Study;
@@ -67,21 +65,21 @@ pub(crate) enum Needs {
 /// Something found beside the window, of a part of the scene.
 #[derive(Debug)]
 struct Known<T> {
-    finder: Finder<T>,
+    lazy: Lazy<T>,
     /// What it depends on.
     key: fn(&Scene) -> Scene,
     of: Option<Scene>,
 }
 
 impl<T: Send + 'static> Known<T> {
-    fn new(find: Search<T>, key: fn(&Scene) -> Scene) -> Self {
-        Self { finder: Finder::new(find), key, of: None }
+    fn new(find: Compute<T>, key: fn(&Scene) -> Scene) -> Self {
+        Self { lazy: Lazy::new(find), key, of: None }
     }
 
     fn follow(&mut self, scene: &Scene) {
         let key = (self.key)(scene);
         if self.of.as_ref() != Some(&key) {
-            self.finder.forget();
+            self.lazy.invalidate();
             self.of = Some(key);
         }
     }
@@ -90,8 +88,6 @@ impl<T: Send + 'static> Known<T> {
 /// What is remembered while the article is walked through.
 #[derive(Debug)]
 pub(crate) struct Learn {
-    /// The lab as it was.
-    before: Box<Lab>,
     card: usize,
     /// The number of the element that was clicked last.
     picked: usize,
@@ -122,7 +118,7 @@ pub(crate) struct Shown<'a> {
 /// The view that a card paints over.
 pub(crate) struct View<'a> {
     pub simulation: &'a Simulation,
-    pub drawing: &'a Drawing,
+    pub drawing: &'a DisplayGeometry,
     /// Where the drawn points are, m.
     pub points: &'a [Vector2<f64>],
     pub camera: Camera,
@@ -166,9 +162,8 @@ impl View<'_> {
 
 impl Learn {
     /// At the card of this number, from 0.
-    pub(crate) fn new(before: Box<Lab>, card: usize) -> Self {
+    pub(crate) fn new(card: usize) -> Self {
         Self {
-            before,
             card: card.min(CARDS.len() - 1),
             picked: 6,
             turned: 1.0,
@@ -193,21 +188,6 @@ impl Learn {
         }
     }
 
-    /// The lab as it was, and the number of the last card.
-    pub(crate) fn leave(self) -> (Box<Lab>, usize) {
-        (self.before, self.card)
-    }
-
-    /// The lab as it was before the mode.
-    pub(crate) fn lab_before(&self) -> &Lab {
-        &self.before
-    }
-
-    /// How the lab was looked at.
-    pub(crate) fn view_before(&self) -> &ViewOptions {
-        self.before.view()
-    }
-
     pub(crate) fn card(&self) -> &'static Card {
         &CARDS[self.card.min(CARDS.len() - 1)]
     }
@@ -230,29 +210,32 @@ impl Learn {
 
     /// ρ at the equilibrium, once it is known.
     pub(crate) fn rho(&self) -> Option<f64> {
-        self.rho.finder.get().copied()
+        self.rho.lazy.get().copied()
     }
 
     fn errors(&self) -> Option<&[ElementError]> {
-        self.errors.finder.get().map(Vec::as_slice)
+        self.errors.lazy.get().map(Vec::as_slice)
     }
 
     /// Whether what the card needs is still being looked for.
     pub(crate) fn is_looking(&self) -> bool {
         match self.card().needs {
             Needs::Nothing => false,
-            Needs::Rho => self.rho.finder.is_open(),
-            Needs::Errors => self.errors.finder.is_open(),
+            Needs::Rho => self.rho.lazy.is_pending(),
+            Needs::Errors => self.errors.lazy.is_pending(),
         }
     }
 
     /// Looks for what the card needs.
     fn find_out(&mut self, scene: &Scene, ctx: &Context) {
         self.follow(scene);
-        match self.card().needs {
-            Needs::Nothing => {}
-            Needs::Rho => self.rho.finder.ask(scene, ctx),
-            Needs::Errors => self.errors.finder.ask(scene, ctx),
+        let is_pending = match self.card().needs {
+            Needs::Nothing => false,
+            Needs::Rho => self.rho.lazy.request(scene),
+            Needs::Errors => self.errors.lazy.request(scene),
+        };
+        if is_pending {
+            ctx.request_repaint_after(POLL);
         }
     }
 
@@ -266,13 +249,13 @@ impl Learn {
         self.follow(scene);
         match self.card().needs {
             Needs::Nothing => {}
-            Needs::Rho => self.rho.finder.settle(scene),
-            Needs::Errors => self.errors.finder.settle(scene),
+            Needs::Rho => self.rho.lazy.wait(scene),
+            Needs::Errors => self.errors.lazy.wait(scene),
         }
     }
 
     /// Moves the drawn points to where a card that draws the elements apart has them.
-    pub(crate) fn place(&self, simulation: &Simulation, drawing: &Drawing, points: &mut [Vector2<f64>]) {
+    pub(crate) fn place(&self, simulation: &Simulation, drawing: &DisplayGeometry, points: &mut [Vector2<f64>]) {
         let mesh = simulation.system().mesh();
         let mut rest = Vec::new();
         drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);

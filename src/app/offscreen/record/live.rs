@@ -12,7 +12,7 @@ use super::RecordError;
 use super::film::{Film, MovieFormat};
 use crate::app::language::{self, Language, count, fill, tr, translated};
 use crate::app::offscreen::painter::Stage;
-use crate::app::task::thread::{Heard, Job};
+use crate::app::task::thread::{Task, Update};
 use crate::picture::Picture;
 use crate::render::{Gpu, RenderError, View};
 
@@ -28,7 +28,7 @@ const MOST_WAITING: usize = 4;
 /// A recording of the window. Dropped, it ends with what it has.
 pub(crate) struct LiveRecording {
     path: PathBuf,
-    job: Job<(), String>,
+    task: Task<(), String>,
     /// Way to the encoder; `None` once the recording is stopped.
     sender: Option<SyncSender<(u64, Picture)>>,
     /// Number of the picture at which the recording ends.
@@ -69,13 +69,13 @@ impl LiveRecording {
         let (sender, receiver) = sync_channel(MOST_WAITING);
         let end = Arc::new(AtomicU64::new(0));
         let (own_path, own_end) = (path.to_owned(), end.clone());
-        let job = Job::start("recording", move |_| {
+        let task = Task::start("recording", move |_| {
             language::speak(language);
             encode(&own_path, &receiver, &own_end)
         })?;
         Ok(Self {
             path: path.to_owned(),
-            job,
+            task,
             sender: Some(sender),
             end,
             target,
@@ -200,16 +200,16 @@ impl LiveRecording {
 
     /// Returns a message once the recording has ended, also where it failed.
     pub(crate) fn listen(&self) -> Option<String> {
-        match self.job.hear() {
-            Heard::Done(words) => Some(words),
-            Heard::Died => Some(tr("The recording ended unexpectedly").to_owned()),
-            Heard::News(()) | Heard::Nothing => None,
+        match self.task.poll() {
+            Update::Done(words) => Some(words),
+            Update::Died => Some(tr("The recording ended unexpectedly").to_owned()),
+            Update::Progress(()) | Update::None => None,
         }
     }
 
     /// Waits until the file is whole; returns the message.
     pub(crate) fn wait(&self) -> Option<String> {
-        if let Heard::Done(words) = self.job.wait() { Some(words) } else { None }
+        if let Update::Done(words) = self.task.wait() { Some(words) } else { None }
     }
 
     /// The mark in the window, which is not recorded.

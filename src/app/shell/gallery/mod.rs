@@ -15,7 +15,7 @@ use self::workshop::Workshop;
 use crate::app::action::Action;
 use crate::app::language::tr;
 use crate::app::readout::Readout;
-use crate::app::task::thread::LISTEN;
+use crate::app::task::thread::POLL;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::scene::{Analysis, Scene, registry};
 
@@ -75,7 +75,7 @@ impl Gallery {
         while let Work::Goes(workshop) = &self.work {
             match workshop.hear() {
                 Ok((id, thumbnail)) => _ = self.thumbnails.insert(id, thumbnail),
-                Err(TryRecvError::Empty) => return ctx.request_repaint_after(LISTEN),
+                Err(TryRecvError::Empty) => return ctx.request_repaint_after(POLL),
                 Err(TryRecvError::Disconnected) => self.work = Work::Ended,
             }
         }

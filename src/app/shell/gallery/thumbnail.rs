@@ -5,10 +5,10 @@ use egui::{Color32, Painter, Pos2, Rect, Shape as Painted, Stroke, vec2};
 use nalgebra::Vector2;
 
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::body_mesh::Shape;
+use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::widgets::palette::Palette;
 use crate::method::is_useful_start;
-use crate::render::display_geometry::Drawing;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::render::{Camera, Margins};
 use crate::scene::Scene;
 use crate::simulation::{Field, Simulation, Status};
@@ -55,13 +55,13 @@ impl Thumbnail {
             simulation.reset();
         }
         let mesh = simulation.system().mesh();
-        let (drawing, view) = (Drawing::new(mesh), ViewOptions::default());
-        let (mut rest, mut shape) = (Vec::new(), Shape::default());
+        let (drawing, view) = (DisplayGeometry::new(mesh), ViewOptions::default());
+        let (mut rest, mut shape) = (Vec::new(), BodyMesh::default());
         drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
         shape.update(&simulation, &drawing, &view, None);
         let moved = shape.points().to_vec();
-        let Shape { values, range, .. } = shape;
-        let Drawing { outline, triangles, .. } = drawing;
+        let BodyMesh { values, range, .. } = shape;
+        let DisplayGeometry { outline, triangles, .. } = drawing;
         Some(Self { scene: scene.clone(), field: view.field, range, rest, moved, outline, triangles, values })
     }
 

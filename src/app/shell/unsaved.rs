@@ -1,40 +1,23 @@
-//! Edits that no file has: the question that is asked before they are lost, and the offer of those that a crashed window
+//! UndoHistory that no file has: the question that is asked before they are lost, and the offer of those that a crashed window
 //! has left.
 
 use egui::{Context, Event, Id, Key, Modal, RichText};
 
-use super::{Lab, Request, banner};
-use crate::app::language::{fill, tr, translated};
+use crate::app::language::{fill, tr};
+use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
+use crate::app::shell::lab::{Departure, Lab, Question, Request};
+use crate::app::shell::messages::banner;
 use crate::app::view_options::Mode;
-use crate::scene::{Scene, Source};
-
-/// Request that would lose the edits.
-#[derive(Clone, Debug)]
-pub(crate) enum Departure {
-    Close,
-    Open(Source),
-    AskForFile,
-}
-
-/// State of the question.
-#[derive(Debug, Default)]
-pub(crate) enum Question {
-    #[default]
-    None,
-    /// The question is shown.
-    Asked(Departure),
-    /// "Save" was answered, and the dialog asks for a file.
-    Saving(Departure),
-}
+use crate::scene::Scene;
 
 impl Lab {
     /// The scene with edits that no file has, and where it comes from; `None` where there are none.
     pub(crate) fn unsaved(&self) -> Option<(&Document, &Scene)> {
-        let lab = self.learn.as_ref().map_or(self, |learn| learn.lab_before());
-        (lab.scene != lab.document.original).then_some((&lab.document, &lab.scene))
+        let desk = self.lesson.as_ref().map_or(&self.desk, |lesson| &lesson.aside);
+        desk.session.is_edited().then(|| (desk.session.document(), desk.session.scene()))
     }
 
     /// Offers edits that a crashed window has left.
@@ -45,8 +28,8 @@ impl Lab {
     /// Returns `true` if the window may close now. Else the user is asked about unsaved edits, and [`Request::Close`] follows
     /// if the answer is not "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {
-        if self.unsaved().is_some() && self.learn.is_some() {
-            self.view.mode = Mode::Explore;
+        if self.unsaved().is_some() && self.lesson.is_some() {
+            self.desk.view.mode = Mode::Explore;
             self.enter_or_leave();
         }
         self.depart(ctx, Departure::Close);
@@ -59,8 +42,8 @@ impl Lab {
     }
 
     /// Opens or closes something, after a question if edits would be lost. Learn keeps the scene from before.
-    pub(crate) fn depart(&mut self, ctx: &Context, departure: Departure) {
-        let loses = self.learn.is_none() && self.unsaved().is_some();
+    pub(super) fn depart(&mut self, ctx: &Context, departure: Departure) {
+        let loses = self.lesson.is_none() && self.unsaved().is_some();
         if !loses {
             return self.go(ctx, departure);
         }
@@ -78,7 +61,9 @@ impl Lab {
         match departure {
             Departure::Close => self.closes = true,
             Departure::Open(source) => self.open(ctx, source),
-            Departure::AskForFile => self.dialog = Some(FileDialog::new(Purpose::Open, self.document.path(), "")),
+            Departure::AskForFile => {
+                self.dialog = Some(FileDialog::new(Purpose::Open, self.desk.session.document().path(), ""))
+            }
         }
         ctx.request_repaint();
     }
@@ -94,7 +79,7 @@ impl Lab {
     pub(crate) fn ask_to_save(&mut self, ctx: &Context) {
         let Question::Asked(departure) = &self.question else { return };
         let departure = departure.clone();
-        let title = fill!("Save the changes to “%{scene}”?", scene = tr(&self.scene.name));
+        let title = fill!("Save the changes to “%{scene}”?", scene = tr(&self.scene().name));
         let (mut save, mut discard, mut cancel) = (false, false, false);
         let modal = Modal::new(Id::unique("unsaved")).show(ctx, |ui| {
             ui.set_width(ui.available_width().min(360.0));
@@ -141,12 +126,8 @@ impl Lab {
             return;
         }
         let Some(Unsaved { document, scene }) = self.left.clone() else { return };
-        if restore {
-            let before = self.snapshot();
-            if let Err(error) = self.adopt(document, scene) {
-                return self.say(ctx, translated(&error.to_string()));
-            }
-            self.remember(before, None);
+        if restore && !self.apply(ctx, Edit::Restore(Box::new((document, scene)))) {
+            return;
         }
         self.left = None;
         requests.push(Request::ForgetCopy);

@@ -1,0 +1,399 @@
+//! A large model is meshed and solved in the background, one solve at a time. The last snapshot stays on display; edits
+//! change the scene that is wanted, which the next solve takes.
+
+use std::time::Instant;
+
+use crate::app::session::document::Document;
+use crate::app::session::undo::Version;
+use crate::app::session::{Notice, Session, has_mesh_of};
+use crate::app::size::{MOST_ALONE, unknowns};
+use crate::app::task::quality::Quality;
+use crate::app::task::solve::{
+    BackgroundSolve, Bodies, Model, Phase, Rejected, Snapshot, SolveRequest, SolveUpdate, Solved, Start,
+};
+use crate::render::display_geometry::DisplayGeometry;
+use crate::scene::{Analysis, Scene};
+use crate::simulation::{Simulation, Status};
+
+/// Background work of a session.
+#[derive(Debug)]
+pub(super) struct Background {
+    /// Larger models than this, in unknowns, are solved in the background.
+    most_unknowns: f64,
+    work: Work,
+    /// Model of a solve that is not to be displayed: the next solve continues with it.
+    returned: Option<(Bodies, Option<DisplayGeometry>)>,
+    /// Start of the next solve, and its most iterations, if it is not to go to the end.
+    start: Start,
+    iterations: Option<u32>,
+}
+
+/// State of the background solve.
+#[derive(Debug, Default)]
+enum Work {
+    /// The simulation is displayed and complete.
+    #[default]
+    Idle,
+    /// An edit waits for the thread to start.
+    Waiting {
+        rollback: Box<Rollback>,
+    },
+    Running {
+        solve: BackgroundSolve,
+        rollback: Box<Rollback>,
+    },
+    /// The user has cancelled; the model comes back when the thread has ended.
+    Cancelled {
+        solve: BackgroundSolve,
+    },
+}
+
+/// The session before the first edit whose result is not complete: a cancelled edit goes back to it.
+#[derive(Debug)]
+struct Rollback {
+    since: Instant,
+    version: Version,
+    /// Number of steps that could be undone.
+    depth: usize,
+    /// The control that was edited.
+    label: Option<&'static str>,
+    /// `true` while the scene of another document is not displayed yet.
+    is_another_document: bool,
+    /// The display before the first snapshot.
+    snapshot: Option<Snapshot>,
+    quality: Quality,
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self { most_unknowns: MOST_ALONE, work: Work::Idle, returned: None, start: Start::Present, iterations: None }
+    }
+}
+
+impl Work {
+    fn solve(&self) -> Option<&BackgroundSolve> {
+        match self {
+            Self::Running { solve, .. } | Self::Cancelled { solve } => Some(solve),
+            Self::Idle | Self::Waiting { .. } => None,
+        }
+    }
+
+    fn solve_mut(&mut self) -> Option<&mut BackgroundSolve> {
+        match self {
+            Self::Running { solve, .. } | Self::Cancelled { solve } => Some(solve),
+            Self::Idle | Self::Waiting { .. } => None,
+        }
+    }
+
+    fn rollback(&mut self) -> Option<&mut Rollback> {
+        match self {
+            Self::Running { rollback, .. } | Self::Waiting { rollback } => Some(rollback),
+            Self::Idle | Self::Cancelled { .. } => None,
+        }
+    }
+
+    fn take_rollback(&mut self) -> Option<Box<Rollback>> {
+        match std::mem::take(self) {
+            Self::Running { solve, rollback } => {
+                *self = Self::Cancelled { solve };
+                Some(rollback)
+            }
+            Self::Waiting { rollback } => Some(rollback),
+            other => {
+                *self = other;
+                None
+            }
+        }
+    }
+}
+
+impl Session {
+    /// Sets the size, in unknowns, above which a model is meshed and solved in the background.
+    pub(crate) fn set_most_unknowns(&mut self, most: f64) {
+        self.background.most_unknowns = most;
+    }
+
+    /// `true` while a model is meshed or solved in the background.
+    pub(crate) fn is_working(&self) -> bool {
+        self.background.work.solve().is_some()
+    }
+
+    /// The scene that is solved in the background, the part that is done now, and seconds since the edit.
+    pub(crate) fn work(&self) -> Option<(&Scene, Phase, u64)> {
+        match &self.background.work {
+            Work::Running { solve, rollback } => {
+                Some((solve.scene(), solve.phase(), rollback.since.elapsed().as_secs()))
+            }
+            _ => None,
+        }
+    }
+
+    /// `true` if a scene is set up in the background: a large model that needs a mesh or has to be searched. Motions take
+    /// their steps between frames.
+    pub(super) fn is_for_background(&self, scene: &Scene) -> bool {
+        let is_search = scene.analysis == Analysis::Static && self.simulation.motion().is_none();
+        unknowns(scene) > self.background.most_unknowns && (is_search || !has_mesh_of(scene, self.simulation.scene()))
+    }
+
+    /// `true` if the displayed model is solved in the background.
+    pub(crate) fn is_in_background(&self) -> bool {
+        self.is_working() || self.is_for_background(&self.scene)
+    }
+
+    /// Requests a scene, which the next background solve takes.
+    pub(super) fn request_scene(&mut self, scene: Scene) {
+        self.keep_rollback();
+        self.scene = scene;
+        self.changed.scene = true;
+        self.stop_solve();
+    }
+
+    /// Notes that the requested scene comes from another document.
+    pub(super) fn request_document(&mut self, document: Document) {
+        self.document = document;
+        self.is_outdated = false;
+        self.background.start = Start::Rest;
+        if let Some(rollback) = self.background.work.rollback() {
+            rollback.is_another_document = true;
+        }
+        self.poll();
+    }
+
+    /// Names the control whose edit is under way.
+    pub(super) fn name_edit(&mut self, label: &'static str) {
+        if let Some(rollback) = self.background.work.rollback() {
+            rollback.label = Some(label);
+        }
+    }
+
+    /// Solves from another start, to the end or for some iterations.
+    pub(super) fn restart_in_background(&mut self, start: Start, iterations: Option<u32>) {
+        self.keep_rollback();
+        (self.background.start, self.background.iterations) = (start, iterations);
+        self.stop_solve();
+        self.poll();
+    }
+
+    /// Keeps the present session as the one to go back to, unless an earlier one is kept.
+    fn keep_rollback(&mut self) {
+        // The model that is displayed from now on is a copy, which cannot be pulled.
+        self.release();
+        if self.background.work.rollback().is_some() {
+            return;
+        }
+        let rollback = Box::new(Rollback {
+            since: Instant::now(),
+            version: self.version(),
+            depth: self.undo.depth(),
+            label: None,
+            is_another_document: false,
+            snapshot: None,
+            quality: Quality::default(),
+        });
+        self.background.work = match std::mem::take(&mut self.background.work) {
+            Work::Cancelled { solve } | Work::Running { solve, .. } => Work::Running { solve, rollback },
+            Work::Idle | Work::Waiting { .. } => Work::Waiting { rollback },
+        };
+    }
+
+    /// Asks the solve to end with the model that it has.
+    pub(super) fn stop_solve(&self) {
+        self.background.work.solve().into_iter().for_each(BackgroundSolve::cancel);
+    }
+
+    /// Drops the background work.
+    pub(super) fn drop_background(&mut self) {
+        self.background = Background { most_unknowns: self.background.most_unknowns, ..Background::default() };
+    }
+
+    /// Takes the news of the background solve, and starts the next one where there is something to solve.
+    pub(crate) fn poll(&mut self) {
+        while let Some(solve) = self.background.work.solve_mut() {
+            match solve.poll() {
+                SolveUpdate::None => return,
+                update => self.take_update(update),
+            }
+        }
+        self.start_solve();
+    }
+
+    /// Waits until the background work is done.
+    pub(super) fn wait_for_background(&mut self) {
+        self.poll();
+        while let Some(solve) = self.background.work.solve_mut() {
+            let update = solve.wait();
+            self.take_update(update);
+            self.poll();
+        }
+    }
+
+    fn take_update(&mut self, update: SolveUpdate) {
+        let is_cancelled = matches!(self.background.work, Work::Cancelled { .. });
+        match update {
+            SolveUpdate::None | SolveUpdate::Phase => {}
+            SolveUpdate::Snapshot(_) if is_cancelled => {}
+            SolveUpdate::Snapshot(snapshot) => self.display(*snapshot),
+            SolveUpdate::Done(outcome) => {
+                let solve = match std::mem::take(&mut self.background.work) {
+                    Work::Running { solve, rollback } => {
+                        self.background.work = Work::Waiting { rollback };
+                        solve
+                    }
+                    Work::Cancelled { solve } => solve,
+                    other => return self.background.work = other,
+                };
+                match outcome {
+                    Ok(solved) => self.receive(&solve, is_cancelled, *solved),
+                    Err(rejected) => self.receive_rejection(&solve, is_cancelled, *rejected),
+                }
+            }
+            SolveUpdate::Died => {
+                self.roll_back();
+                self.background.work = Work::Idle;
+                // The same solve would only end so again.
+                self.running = false;
+                self.notices.push(Notice::SolveDied);
+            }
+        }
+    }
+
+    fn receive(&mut self, solve: &BackgroundSolve, is_cancelled: bool, solved: Solved) {
+        let Solved { snapshot, quality } = solved;
+        let background = &mut self.background;
+        if is_cancelled {
+            if !solve.is_new() {
+                background.returned = Some((snapshot.bodies, None));
+            }
+            // The displayed model is a copy of the returned one.
+            if background.returned.is_some() && matches!(background.start, Start::Present) {
+                background.start = Start::State(self.simulation.state().clone());
+            }
+            return;
+        }
+        let is_wanted = *solve.scene() == self.scene
+            && matches!(background.start, Start::Present)
+            && background.iterations.is_none();
+        if !is_wanted {
+            if has_mesh_of(&self.scene, snapshot.bodies.simulation.scene()) {
+                background.returned = Some((snapshot.bodies, snapshot.geometry));
+            }
+            return;
+        }
+        self.display(snapshot);
+        if let Some(quality) = quality {
+            self.quality = quality;
+        }
+        (self.background.work, self.background.returned) = (Work::Idle, None);
+    }
+
+    fn receive_rejection(&mut self, solve: &BackgroundSolve, is_cancelled: bool, rejected: Rejected) {
+        self.background.returned = rejected.model.or_else(|| self.background.returned.take());
+        if is_cancelled || *solve.scene() != self.scene {
+            return;
+        }
+        let label = self.background.work.rollback().and_then(|rollback| rollback.label);
+        self.roll_back();
+        self.notices.push(Notice::Rejected { label, message: rejected.error.to_string() });
+    }
+
+    /// Displays a snapshot in the place of the present model.
+    fn display(&mut self, snapshot: Snapshot) {
+        let scene = self.simulation.scene().clone();
+        let Snapshot { bodies, geometry, residuals } = snapshot;
+        let simulation = std::mem::replace(&mut self.simulation, bodies.simulation);
+        let linear = std::mem::replace(&mut self.linear, bodies.linear);
+        let residuals = std::mem::replace(&mut self.residuals, residuals);
+        let geometry = geometry.map(|geometry| std::mem::replace(&mut self.geometry, geometry));
+        self.timings = *self.simulation.last_iteration();
+        let is_another_document = self.background.work.rollback().is_some_and(|rollback| {
+            if rollback.snapshot.is_none() {
+                rollback.quality = std::mem::take(&mut self.quality);
+                rollback.snapshot = Some(Snapshot { bodies: Bodies { simulation, linear }, geometry, residuals });
+            }
+            std::mem::take(&mut rollback.is_another_document)
+        });
+        self.follow_scene(&scene);
+        if is_another_document {
+            self.start_document();
+        }
+    }
+
+    /// Starts the next solve, if there is something to solve.
+    fn start_solve(&mut self) {
+        if !self.is_for_background(&self.scene) {
+            return;
+        }
+        let background = &self.background;
+        let own = background.returned.as_ref().map_or(&self.simulation, |(bodies, _)| &bodies.simulation);
+        let is_new = !has_mesh_of(&self.scene, own.scene());
+        let is_needed = own.scene() != &self.scene
+            || !matches!(background.start, Start::Present)
+            || background.iterations.is_some()
+            || background.returned.is_some()
+            || self.running && *own.status() == Status::Running;
+        if !is_new && (!is_needed || own.motion().is_some()) {
+            self.background.work = Work::Idle;
+            return;
+        }
+        self.keep_rollback();
+        let model = if is_new { Some(Model::New) } else { self.take_model() };
+        let Some(model) = model else { return };
+        let request = SolveRequest {
+            scene: self.scene.clone(),
+            model,
+            start: std::mem::take(&mut self.background.start),
+            iterations: self.background.iterations.take().or((!self.running).then_some(0)),
+            residuals: self.residuals.clone(),
+            is_displayed: true,
+        };
+        match BackgroundSolve::start(request) {
+            Ok(solve) => {
+                if let Work::Waiting { rollback } = std::mem::take(&mut self.background.work) {
+                    self.background.work = Work::Running { solve, rollback };
+                }
+            }
+            Err(error) => {
+                self.roll_back();
+                self.running = false;
+                self.notices.push(Notice::NoThread(error));
+            }
+        }
+    }
+
+    /// Takes the model for a solve; a copy stays on display.
+    fn take_model(&mut self) -> Option<Model> {
+        if let Some(returned) = self.background.returned.take() {
+            return Some(Model::Existing(Box::new(returned)));
+        }
+        let simulation = self.simulation.snapshot()?;
+        let linear = self.linear.as_ref().and_then(Simulation::snapshot);
+        let simulation = std::mem::replace(&mut self.simulation, simulation);
+        let linear = std::mem::replace(&mut self.linear, linear);
+        Some(Model::Existing(Box::new((Bodies { simulation, linear }, None))))
+    }
+
+    /// Cancels the background solve, and goes back to the session before the edit.
+    pub(crate) fn cancel(&mut self) {
+        self.stop_solve();
+        self.roll_back();
+        // A search that had not ended would only go on.
+        self.running &= self.simulation.is_at_rest();
+    }
+
+    fn roll_back(&mut self) {
+        (self.background.start, self.background.iterations) = (Start::Present, None);
+        let Some(rollback) = self.background.work.take_rollback() else { return };
+        let Rollback { version, depth, snapshot, quality, .. } = *rollback;
+        self.undo.take_back(depth);
+        Version { document: self.document, scene: self.scene, iterations: self.iterations } = version;
+        if let Some(Snapshot { bodies, geometry, residuals }) = snapshot {
+            let scene = self.simulation.scene().clone();
+            (self.simulation, self.linear, self.residuals) = (bodies.simulation, bodies.linear, residuals);
+            self.quality = quality;
+            if let Some(geometry) = geometry {
+                self.geometry = geometry;
+            }
+            self.follow_scene(&scene);
+        }
+    }
+}

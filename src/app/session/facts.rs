@@ -1,0 +1,106 @@
+//! Results of a scene that take a while: computed in the background, and invalidated by edits in one place.
+
+use std::f64::consts::TAU;
+
+use crate::app::task::lazy::{Lazy, Watch};
+use crate::assembly::Mass;
+use crate::dynamics::lowest_frequency;
+use crate::scene::{DynamicsSettings, Scene, SolverSettings};
+use crate::simulation::Simulation;
+use crate::study::{Effort, LoadCurve, LoadPath, PathSummary, Reference};
+
+/// Load and displacement of a scene.
+#[derive(Debug)]
+pub(crate) enum Curve {
+    /// Load curve of a cantilever, with its scene.
+    Beam(Box<(LoadCurve, Scene)>),
+    /// Load path of any other scene at rest, with its scene.
+    Path(Box<(LoadPath, Scene)>),
+}
+
+impl Curve {
+    fn of(scene: &Scene) -> Option<Self> {
+        let path = || Some(Self::Path(Box::new((LoadPath::of(scene)?, scene.clone()))));
+        let beam = LoadCurve::new(scene).map(|curve| Self::Beam(Box::new((curve, scene.clone()))));
+        beam.or_else(path)
+    }
+}
+
+/// Results of the present scene, each `None` until it is known.
+#[derive(Debug)]
+pub(crate) struct Facts {
+    /// Solution that errors are measured against.
+    pub reference: Lazy<Reference>,
+    pub curve: Lazy<Curve>,
+    /// Jumps of the body on the load path from rest.
+    pub jump: Lazy<PathSummary>,
+    /// Lowest natural frequency, Hz.
+    pub frequency: Lazy<f64>,
+}
+
+impl Default for Facts {
+    fn default() -> Self {
+        Self {
+            reference: Lazy::new(find_reference),
+            curve: Lazy::new(|scene, _| Curve::of(scene)),
+            jump: Lazy::new(|scene, _| LoadPath::summary_of(scene)),
+            frequency: Lazy::new(|scene, _| natural_frequency(scene)),
+        }
+    }
+}
+
+impl Facts {
+    /// Invalidates everything that depends on the difference between two scenes.
+    pub(super) fn invalidate(&mut self, before: &Scene, scene: &Scene) {
+        self.frequency.invalidate();
+        if without_settings(before) != without_settings(scene) {
+            self.reference.invalidate();
+        }
+        self.curve.invalidate();
+        self.jump.invalidate();
+    }
+
+    /// Requests the results of a scene at rest; returns `true` while one of them is pending.
+    pub(super) fn request_at_rest(&mut self, scene: &Scene, needs_curve: bool) -> bool {
+        let reference = self.reference.request(scene);
+        let jump = self.jump.request(scene);
+        let curve = needs_curve && self.curve.request(scene);
+        reference || jump || curve
+    }
+
+    /// Computes the results of a scene at rest, however long it takes.
+    pub(super) fn wait_at_rest(&mut self, scene: &Scene, needs_curve: bool) {
+        self.reference.wait(scene);
+        self.jump.wait(scene);
+        if needs_curve {
+            self.curve.wait(scene);
+        }
+    }
+}
+
+/// Returns the scene with default values of everything that a study varies: the reference solution depends on the rest.
+pub(crate) fn without_settings(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let first = scene.elements().next().unwrap_or_default();
+    scene.set_element(first);
+    if let Some(beam) = &mut scene.beam {
+        beam.cells = [1, 1];
+    }
+    scene.solver = SolverSettings { tolerance: scene.solver.tolerance, ..SolverSettings::default() };
+    let any = DynamicsSettings::default();
+    let dynamics = &mut scene.dynamics;
+    (dynamics.integrator, dynamics.time_step, dynamics.iterations) = (any.integrator, any.time_step, any.iterations);
+    scene
+}
+
+fn find_reference(scene: &Scene, watch: Watch<'_>) -> Option<Reference> {
+    Reference::find(scene, None, Effort::Bounded, &mut |progress| watch(progress.fraction)).ok()
+}
+
+/// The lowest natural frequency of a scene's body about rest, Hz.
+fn natural_frequency(scene: &Scene) -> Option<f64> {
+    let simulation = Simulation::new(scene).ok()?;
+    let problem = simulation.problem();
+    let mass = Mass::new(problem.system(), scene.material.area_density());
+    Some(lowest_frequency(problem, &mass)? / TAU)
+}

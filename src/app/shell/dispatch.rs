@@ -1,0 +1,245 @@
+//! The dispatch of actions: edits go to the session, the rest to the part of the window that it concerns.
+
+use crate::app::action::{Action, MOST_ITERATIONS};
+use crate::app::language::{fill, tr, translated};
+use crate::app::modes::budget::Budget;
+use crate::app::modes::compare::{Compare, MotionCompare};
+use crate::app::modes::explore::figure;
+use crate::app::modes::learn;
+use crate::app::session::Edit;
+use crate::app::shell::lab::{Departure, Desk, Lab, Request};
+use crate::app::view_options::{Drawer, Mode, Toggle};
+use crate::app::viewport::arrow::vector;
+use crate::app::viewport::handle::Pull;
+use crate::app::viewport::pointer::Interaction;
+use crate::scene::Source;
+use crate::study::Extent;
+
+impl Lab {
+    /// Makes the rest of the window follow the changes of the session.
+    pub(super) fn follow_session(&mut self) {
+        let Desk { session, viewport, view, panel, budget, compare, motions } = &mut self.desk;
+        let changed = session.take_changed();
+        if changed.scene {
+            self.intro = None;
+            view.drawer = view.drawer.map(|_| Drawer::of(session.simulation().scene()));
+        }
+        let mesh = session.simulation().system().mesh();
+        if changed.mesh {
+            viewport.set_mesh(mesh);
+        }
+        if changed.body || changed.document {
+            viewport.clear_swept();
+        }
+        if changed.document {
+            panel.clear();
+            *budget = Budget::default();
+            *compare = Compare::default();
+            *motions = MotionCompare::default();
+            viewport.start(mesh);
+            view.why = false;
+            view.fixed_range = None;
+        }
+    }
+
+    /// Applies an edit, and shows a message if it is refused.
+    pub(super) fn apply(&mut self, ctx: &egui::Context, edit: Edit) -> bool {
+        let applied = self.desk.session.apply(edit);
+        self.follow_session();
+        if let Err(error) = &applied {
+            self.say(ctx, translated(&error.to_string()));
+        }
+        applied.is_ok()
+    }
+
+    /// Does what the user asks for.
+    pub(super) fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
+        match action {
+            Action::Open(id) => {
+                self.depart(ctx, Departure::Open(Source { name: id.into(), assignments: Vec::new() }));
+            }
+            Action::OpenFile => self.depart(ctx, Departure::AskForFile),
+            Action::Drop(path) => self.depart(ctx, Departure::Open(Source { name: path, assignments: Vec::new() })),
+            Action::Reload => self.open(ctx, self.source().clone()),
+            Action::Save => self.save_here(ctx),
+            Action::SaveAs => self.ask_where_to_save(),
+            Action::Undo | Action::Redo => {
+                self.desk.panel.messages.clear();
+                self.apply(ctx, if action == Action::Undo { Edit::Undo } else { Edit::Redo });
+            }
+            Action::Escape if self.desk.view.help => self.desk.view.help = false,
+            Action::Cancel => self.cancel(),
+            Action::Escape if self.desk.session.is_working() => self.cancel(),
+            Action::Escape => self.desk.viewport.clear_probe(),
+            Action::Edit(label, scene) => {
+                let applied = self.desk.session.apply(Edit::Scene(label, scene));
+                let messages = &mut self.desk.panel.messages;
+                match applied {
+                    Ok(_) => messages.remove(label),
+                    Err(error) => messages.insert(label, error.to_string()),
+                };
+                self.follow_session();
+            }
+            Action::Apply(scene, iterations) => {
+                self.apply(ctx, Edit::Setting(scene, iterations.clamp(1, MOST_ITERATIONS)));
+            }
+            Action::ToggleRun => {
+                let is_running = self.desk.session.is_running();
+                // A body that has come to its end has nothing to pause.
+                if !(is_running && self.readout().ended) {
+                    self.desk.session.set_running(!is_running);
+                }
+            }
+            Action::Step | Action::Forward if self.compares_motions() => {
+                self.desk.session.pause();
+                self.desk.motions.step();
+            }
+            Action::Step => self.step(),
+            Action::Scrub(_) | Action::Back | Action::Mark if self.compares_motions() => {}
+            Action::Scrub(_) | Action::Back | Action::Forward
+                if !self.desk.session.is_motion() || self.desk.session.is_in_background() => {}
+            Action::Scrub(time) => {
+                self.desk.session.show_moment(time);
+                ctx.request_repaint();
+            }
+            Action::Back | Action::Forward => {
+                self.desk.session.show_neighbour(action == Action::Forward);
+                ctx.request_repaint();
+            }
+            Action::Reset => self.reset(),
+            Action::Mark => {
+                let is_marked = self.desk.session.toggle_mark();
+                let words = if is_marked { "Reset goes to here" } else { "Reset goes to the start" };
+                self.say(ctx, tr(words).to_owned());
+            }
+            Action::Speed(speed) => {
+                self.desk.session.set_speed(speed);
+                self.desk.motions.pace.set_speed(speed);
+            }
+            Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
+            Action::Iterations(iterations) => self.desk.session.set_iterations(iterations.clamp(1, MOST_ITERATIONS)),
+            Action::Fit => {
+                self.desk.viewport.fit();
+                self.desk.compare.fit();
+                self.desk.motions.fit();
+            }
+            // The other kind of scene has other plots.
+            Action::Toggle(Toggle::Drawer(drawer)) if drawer != Drawer::of(self.scene()) => {}
+            Action::Toggle(toggle) => {
+                self.desk.view.toggle(toggle);
+                self.enter_or_leave();
+                ctx.request_repaint();
+            }
+            Action::Card(card) => {
+                self.go_to_card(card);
+                ctx.request_repaint();
+            }
+            Action::Color(field) => self.desk.view.color_with(field),
+            Action::ToggleTheme => {
+                let dark = ctx.theme() == egui::Theme::Dark;
+                ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+            }
+            Action::ToggleLanguage => self.settings.language = self.settings.language.other(),
+            Action::Plot(plot) => {
+                self.desk.view.curve_plot = Some(plot);
+                ctx.request_repaint();
+            }
+            Action::Export(figure, file) => {
+                let words = match figure::save(&figure, file) {
+                    Ok(path) => fill!("Saved %{file}", file = path.display()),
+                    Err(reason) => fill!("Not saved: %{reason}", reason = translated(&reason.to_string())),
+                };
+                self.say(ctx, words);
+                ctx.request_repaint();
+            }
+            Action::Screenshot => requests.push(Request::Screenshot),
+            Action::Record => requests.push(Request::Record),
+            Action::RecordScene => requests.push(Request::RecordScene),
+            Action::Copy => self.copy(ctx),
+            Action::CopyRust => self.copy_rust(ctx),
+            Action::Measure(true) => {
+                // Full studies of motions take many minutes.
+                let is_quick = self.lesson.is_some() || self.desk.session.is_motion();
+                let extent = if is_quick { Extent::Quick } else { Extent::Full };
+                self.desk.budget.measure(self.desk.session.scene(), extent);
+            }
+            Action::Measure(false) => self.desk.budget.cancel(),
+        }
+    }
+
+    /// Cancels the background solve.
+    fn cancel(&mut self) {
+        self.desk.session.cancel();
+        self.follow_session();
+    }
+
+    /// Pauses, and makes one step of the shown mode.
+    fn step(&mut self) {
+        if self.desk.view.mode == Mode::Compare {
+            self.desk.session.pause();
+            return self.desk.compare.step();
+        }
+        let session = &mut self.desk.session;
+        // On the card of the pseudocode a step goes to the next line, and one line iterates.
+        let ended = !session.is_motion() && session.simulation().is_at_rest();
+        let line = self.lesson.as_ref().and_then(|lesson| lesson.learn.next_line(session.simulation(), ended));
+        let Some(line) = line.filter(|_| !session.is_in_background()) else {
+            session.step();
+            return;
+        };
+        session.pause();
+        if ended && line == learn::AT_REST {
+            session.reset();
+        }
+        if line == learn::SOLVE {
+            session.iterate(1);
+        }
+        if let Some(lesson) = &mut self.lesson {
+            lesson.learn.line = line;
+        }
+    }
+
+    /// Goes back to rest, or to the start of the motion.
+    pub(super) fn reset(&mut self) {
+        let Desk { session, viewport, compare, motions, .. } = &mut self.desk;
+        compare.reset();
+        motions.reset();
+        let is_here = !session.is_in_background();
+        session.reset();
+        if is_here {
+            viewport.clear_swept();
+            if let Some(lesson) = &mut self.lesson {
+                lesson.learn.line = 0;
+            }
+        }
+    }
+
+    /// Sets the load whose arrow is dragged, or gives a load the value of the scene's document.
+    pub(super) fn edit_loads(&mut self, ctx: &egui::Context, interaction: &Interaction, requests: &mut Vec<Request>) {
+        let mut edit = |lab: &mut Self, label, scene| {
+            lab.act(ctx, Action::Edit(label, Box::new(scene)), requests);
+            ctx.request_repaint();
+        };
+        if let Some((load, pull)) = interaction.load {
+            self.desk.panel.choose_force(load);
+            let mut scene = self.scene().clone();
+            let (label, set) = match pull {
+                Pull::Force(magnitude, degrees) => {
+                    self.desk.panel.keep_force_direction(degrees);
+                    ("Force", scene.set_force(load, vector(magnitude, degrees)))
+                }
+                Pull::Moment(moment) => ("Moment", scene.set_moment(load, moment)),
+            };
+            // The load of an arrow exists.
+            if set.is_ok() && scene != *self.scene() {
+                edit(self, label, scene);
+            }
+        }
+        if let Some(load) = interaction.restore
+            && let Some(restored) = self.desk.session.with_original_load(load)
+        {
+            let label = if self.desk.session.is_moment(load) { "Moment" } else { "Force" };
+            edit(self, label, restored);
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Files in the window: opening, saving, dropping, changes on disk, and copies of the scene.
+
+use std::path::Path;
+
+use crate::app::action::Action;
+use crate::app::language::{fill, tr, translated};
+use crate::app::session::Edit;
+use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
+use crate::app::shell::lab::{Lab, Question};
+use crate::app::shell::messages::banner;
+use crate::scene::Source;
+
+impl Lab {
+    /// Opens a scene in the place of the present one, and shows a message if that fails.
+    pub(super) fn open(&mut self, ctx: &egui::Context, source: Source) {
+        if self.apply(ctx, Edit::Open(source)) {
+            self.note_recent();
+        }
+    }
+
+    /// Adds the scene's file to the recent ones.
+    fn note_recent(&mut self) {
+        if let Some(path) = self.desk.session.document().path() {
+            self.settings.add_recent(path);
+        }
+    }
+
+    /// Saves the scene to a file; returns a message, or the reason for a failure.
+    fn save(&mut self, path: &Path) -> Result<String, String> {
+        self.desk.session.save(path).map_err(|reason| translated(&reason.to_string()))?;
+        self.settings.add_recent(path);
+        Ok(fill!("Saved %{file}", file = path.display()))
+    }
+
+    /// Saves the scene to its file, or asks for one.
+    pub(super) fn save_here(&mut self, ctx: &egui::Context) {
+        let Some(path) = self.desk.session.document().path().map(Path::to_owned) else {
+            return self.ask_where_to_save();
+        };
+        match self.save(&path) {
+            Ok(words) => {
+                self.say(ctx, words);
+                self.after_save(ctx);
+            }
+            Err(reason) => {
+                self.question = Question::None;
+                self.say(ctx, fill!("Not saved: %{reason}", reason = reason));
+            }
+        }
+    }
+
+    pub(super) fn ask_where_to_save(&mut self) {
+        let document = self.desk.session.document();
+        let name = document.path().and_then(Path::file_name).and_then(|name| name.to_str());
+        let name = name.map_or_else(|| format!("{}.toml", document.source.name.display()), str::to_owned);
+        let name = if name == "-.toml" { "scene.toml".to_owned() } else { name };
+        self.dialog = Some(FileDialog::new(Purpose::Save, document.path(), &name));
+    }
+
+    /// Shows the dialog that asks for a file, and does what it answers.
+    pub(super) fn ask_for_file(&mut self, ctx: &egui::Context) {
+        let Some(mut dialog) = self.dialog.take() else { return };
+        let done = match dialog.show(ctx, self.settings.recent()) {
+            None => Err(None),
+            Some(Answer::Cancel) => {
+                self.question = Question::None;
+                Ok(None)
+            }
+            Some(Answer::File(path)) => match dialog.purpose {
+                Purpose::Open => {
+                    let opened = self.desk.session.apply(Edit::Open(Source { name: path, assignments: Vec::new() }));
+                    self.follow_session();
+                    opened.map(|_| self.note_recent()).map(|()| None).map_err(|error| Some(error.to_string()))
+                }
+                Purpose::Save => self.save(&path).map(Some).map_err(Some),
+            },
+        };
+        match done {
+            Ok(None) => {}
+            Ok(Some(words)) => {
+                self.say(ctx, words);
+                self.after_save(ctx);
+            }
+            Err(message) => {
+                message.into_iter().for_each(|message| dialog.refuse(message));
+                self.dialog = Some(dialog);
+            }
+        }
+        if self.dialog.is_none() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Opens a file that is dropped on the window. When the window gets the focus, checks whether the scene's file has
+    /// changed on disk, and offers to read it again.
+    pub(super) fn check_files(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        let (dropped, is_back) = ctx.input(|i| {
+            let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
+            (dropped, i.events.contains(&egui::Event::WindowFocused(true)))
+        });
+        actions.extend(dropped.map(Action::Drop));
+        let session = &mut self.desk.session;
+        if is_back {
+            session.check_file();
+        }
+        if !session.is_outdated() {
+            return;
+        }
+        banner(ctx, "outdated", |ui| {
+            let file = session.document().source.name.display();
+            ui.label(fill!("%{file} has changed on disk.", file = file));
+            if ui.button(tr("Reload")).clicked() {
+                actions.push(Action::Reload);
+            }
+            if ui.button(tr("Keep this one")).clicked() {
+                session.ignore_file_change();
+            }
+        });
+    }
+
+    /// Copies the scene as TOML.
+    pub(super) fn copy(&mut self, ctx: &egui::Context) {
+        match self.scene().to_toml() {
+            Ok(toml) => {
+                ctx.copy_text(format!("# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}"));
+                self.say(ctx, tr("Scene copied as TOML").to_owned());
+            }
+            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
+        }
+    }
+
+    /// Copies the scene as a Rust program.
+    pub(super) fn copy_rust(&mut self, ctx: &egui::Context) {
+        ctx.copy_text(self.scene().to_rust(&self.source().folder()));
+        self.say(ctx, tr("Scene copied as a Rust program").to_owned());
+    }
+}

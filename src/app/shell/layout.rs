@@ -1,0 +1,422 @@
+//! The layout of the window: bars, panel, plots, the body or the panes that are compared, and everything over them.
+
+use egui::{CentralPanel, Color32, Panel, Rect, Ui};
+
+use crate::app::action::Action;
+use crate::app::diagnosis::{self, Errors};
+use crate::app::language::{self, spaced, tr};
+use crate::app::modes::compare::{Compare, CompareInput};
+use crate::app::modes::explore::{load_curve, motion_plot};
+use crate::app::modes::learn::{self, Shown};
+use crate::app::panel::{self, PANEL_WIDTH};
+use crate::app::session::undo::Press;
+use crate::app::shell::lab::{Desk, Lab, Request};
+use crate::app::shell::{help, shortcuts, status_bar, toolbar};
+use crate::app::task::thread::POLL;
+use crate::app::view_options::{Drawer, Mode, Toggle};
+use crate::app::viewport::{overlay, time_line};
+use crate::app::widgets::palette::{self, Palette};
+
+/// A window narrower than this, points, has no place for the panel: it lies over the body, and can be put away.
+const NARROW: f32 = 900.0;
+
+/// Height of the bar along the bottom, points.
+const STATUS_BAR_HEIGHT: f32 = 42.0;
+
+/// Height of the plots under the body, points; at most a part of the window's.
+const DRAWER_HEIGHT: f32 = 270.0;
+const DRAWER_SHARE: f32 = 0.45;
+
+impl Lab {
+    /// Shows everything but the body, which is drawn under it, and does what the user asks for.
+    pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
+        palette::install(ui.ctx());
+        language::speak(self.settings.language);
+        let mut actions = Vec::new();
+        self.desk.session.follow_press(press(ui.ctx()));
+        self.check_files(ui.ctx(), &mut actions);
+        self.request_facts(ui.ctx());
+        self.desk.budget.listen(ui.ctx());
+        self.continue_intro(ui.ctx());
+        self.show_notices(ui.ctx());
+        self.desk.view.narrow = ui.available_width() < NARROW;
+        // Enter ends a text within its frame: the other keys of that frame were typed into it.
+        let was_typing = ui.ctx().text_edit_focused();
+        if self.desk.view.bars {
+            self.bars(ui, &mut actions);
+        }
+        if !self.has_dialog() && !was_typing {
+            actions.extend(shortcuts::actions(ui.ctx()));
+        }
+        match self.desk.view.mode {
+            Mode::Explore => self.plots(ui, &mut actions),
+            Mode::Learn => self.card_row(ui, &mut actions),
+            Mode::Compare => self.comparison_bars(ui, &mut actions),
+            Mode::Budget => {
+                let Desk { session, budget, .. } = &mut self.desk;
+                drawer_panel(ui).show(ui, |ui| budget.show(ui, session.scene(), &mut actions));
+            }
+        }
+        let mut requests = Vec::new();
+        for action in actions {
+            self.act(ui.ctx(), action, &mut requests);
+        }
+        let mut actions = Vec::new();
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| match self.desk.view.mode {
+            Mode::Compare => self.comparison(ui, &mut actions, &mut requests),
+            _ => self.body_view(ui, &mut actions, &mut requests),
+        });
+        let view = &self.desk.view;
+        if view.bars && view.narrow && view.sheet && self.view_rect().width() >= 160.0 {
+            self.sheet(ui, &mut actions);
+        }
+        for action in actions {
+            self.act(ui.ctx(), action, &mut requests);
+        }
+        help::show(ui.ctx(), &mut self.desk.view.help);
+        self.offer_unsaved(ui.ctx(), &mut requests);
+        self.ask_to_save(ui.ctx());
+        self.ask_for_file(ui.ctx());
+        requests.extend(std::mem::take(&mut self.closes).then_some(Request::Close));
+        if self.desk.session.is_working() {
+            ui.ctx().request_repaint_after(POLL);
+        } else if self.iterates() || self.intro.is_some() {
+            ui.ctx().request_repaint();
+        }
+        requests
+    }
+
+    /// Requests the results that are shown of the scene.
+    fn request_facts(&mut self, ctx: &egui::Context) {
+        let Desk { session, view, .. } = &mut self.desk;
+        let is_pressed = ctx.input(|i| i.pointer.any_down());
+        if session.request_facts(view.drawer == Some(Drawer::Curve), is_pressed) {
+            ctx.request_repaint_after(POLL);
+        }
+    }
+
+    /// Continues the animation of the first seconds, until it is over or the user does something.
+    fn continue_intro(&mut self, ctx: &egui::Context) {
+        if self.intro.is_none() {
+            return;
+        }
+        let (now, touched) = ctx.input(|i| {
+            let idle = |event: &egui::Event| {
+                matches!(event, egui::Event::PointerMoved(_) | egui::Event::WindowFocused(_) | egui::Event::PointerGone)
+            };
+            (i.time, i.events.iter().any(|event| !idle(event)))
+        });
+        // The camera is fitted to the end of the animation, which has to be known.
+        let waits = self.iterates() || self.desk.session.facts().reference.is_pending();
+        let goes_on = waits || self.intro.as_mut().is_some_and(|intro| intro.advance(now));
+        if touched || !goes_on {
+            self.intro = None;
+        }
+    }
+
+    /// The bars along the top and the bottom, and the panel where it has its place.
+    fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let errors = diagnosis::errors(&self.readout());
+        let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
+        let top = Panel::top("toolbar")
+            .exact_size(toolbar::height(ui.ctx().content_rect().width()))
+            .resizable(false)
+            .frame(bar(ui));
+        let mut gallery = std::mem::take(&mut self.gallery);
+        top.show(ui, |ui| toolbar::show(ui, &self.readout(), &mut gallery, &self.desk.view, actions));
+        self.gallery = gallery;
+        // Compared panes have a status each; over a card a low window has no room for the bar.
+        let is_low_card = self.lesson.is_some() && learn::is_low(ui.ctx());
+        if self.desk.view.mode != Mode::Compare && !is_low_card {
+            let bottom = Panel::bottom("headline").exact_size(STATUS_BAR_HEIGHT).resizable(false).frame(bar(ui));
+            bottom.show(ui, |ui| status_bar::show(ui, &self.readout(), &errors, &self.desk.view, actions));
+        }
+        if self.desk.view.panel && !self.desk.view.narrow {
+            let frame = unfilled(ui).inner_margin(egui::Margin { left: 12, right: 8, top: 8, bottom: 4 });
+            let panel = Panel::right("panel").exact_size(PANEL_WIDTH).resizable(false).frame(frame);
+            panel.show(ui, |ui| self.panel(ui, &errors, actions));
+        }
+    }
+
+    /// The panel over the body, where the window is narrow.
+    fn sheet(&mut self, ui: &Ui, actions: &mut Vec<Action>) {
+        let errors = diagnosis::errors(&self.readout());
+        let rect = self.view_rect();
+        let width = PANEL_WIDTH.min(rect.width());
+        egui::Area::new(egui::Id::unique("sheet"))
+            .order(egui::Order::Foreground)
+            .fixed_pos(rect.right_top() - egui::vec2(width, 0.0))
+            .constrain(false)
+            .show(ui.ctx(), |ui| {
+                let palette = Palette::new(ui.visuals());
+                let margin = egui::Margin { left: 12, right: 8, top: 8, bottom: 4 };
+                let frame = egui::Frame::new().fill(palette.panel).inner_margin(margin);
+                frame.stroke(egui::Stroke::new(1.0, palette.line)).show(ui, |ui| {
+                    ui.set_width((width - 22.0).max(0.0));
+                    ui.set_height((rect.height() - 14.0).max(0.0));
+                    self.panel(ui, &errors, actions);
+                });
+            });
+        if ui.input(|i| i.key_pressed(egui::Key::Escape)) && !ui.ctx().text_edit_focused() {
+            self.desk.view.sheet = false;
+        }
+    }
+
+    fn panel(&mut self, ui: &mut Ui, errors: &Errors, actions: &mut Vec<Action>) {
+        // The panel's state is apart from the readout that it shows.
+        let mut state = std::mem::take(&mut self.desk.panel);
+        let mut view = self.desk.view.clone();
+        panel::show(ui, &self.readout(), errors, &mut state, &mut view, actions);
+        (self.desk.panel, self.desk.view) = (state, view);
+    }
+
+    /// The plots under the body, where they are open.
+    fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let Desk { session, view, .. } = &mut self.desk;
+        let Some(drawer) = view.drawer else { return };
+        let facts = session.facts();
+        drawer_panel(ui).show(ui, |ui| match drawer {
+            Drawer::Curve => {
+                load_curve::show(ui, facts.curve.latest(), !facts.curve.is_pending(), view.curve_plot, actions);
+            }
+            Drawer::Motion => {
+                let frequency = facts.frequency.get().copied();
+                let integrator = session.scene().dynamics.integrator;
+                motion_plot::show(ui, &mut view.motion_plot, session.playback(), integrator, frequency);
+            }
+        });
+    }
+
+    /// The presets over the panes that are compared, and the load curve under them.
+    fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        if self.desk.session.is_motion() {
+            let Desk { session, viewport, view, panel, motions, .. } = &mut self.desk;
+            return motions.bars(ui, &Desk::pane_input(session, view, panel, viewport.eases()));
+        }
+        let (compare, input) = self.compared();
+        compare.bars(ui, &input, actions);
+    }
+
+    /// The panes that are compared, in the place of the body.
+    fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+        let rect = ui.available_rect_before_wrap();
+        self.desk.viewport.set_rect(rect);
+        let interaction = if self.desk.session.is_motion() {
+            let Desk { session, viewport, view, panel, motions, .. } = &mut self.desk;
+            motions.show(ui, &Desk::pane_input(session, view, panel, viewport.eases()))
+        } else {
+            // The reference solution does not depend on the search of the panel's own setting.
+            if !self.desk.compare.is_iterating() && self.desk.session.request_reference() {
+                ui.ctx().request_repaint_after(POLL);
+            }
+            let (compare, input) = self.compared();
+            compare.show(ui, &input)
+        };
+        self.edit_loads(ui.ctx(), &interaction, requests);
+        let painter = ui.painter_at(rect);
+        self.show_work(ui, rect, actions);
+        self.paint_recording(ui, &painter, rect);
+        self.paint_toast(ui, &painter, rect);
+    }
+
+    /// The comparison of equilibria, and its input.
+    fn compared(&mut self) -> (&mut Compare, CompareInput<'_>) {
+        let Desk { session, viewport, view, panel, budget, compare, .. } = &mut self.desk;
+        let input = CompareInput {
+            common: Desk::pane_input(session, view, panel, viewport.eases()),
+            shown: session.simulation().scene(),
+            system: session.simulation().system(),
+            truth: session.facts().reference.get(),
+            running: session.is_running(),
+            chosen: budget.chosen(),
+        };
+        (compare, input)
+    }
+
+    /// The row of cards under the body.
+    fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        // The state of the cards is apart from the readout that they show.
+        let Some(mut lesson) = self.lesson.take() else { return };
+        let rho = lesson.learn.rho();
+        let budget = &self.desk.budget;
+        let mut readout = self.readout();
+        readout.equilibrium_rho = rho;
+        let shown = Shown { input: readout, study: budget.study(), progress: budget.progress() };
+        // The panel over the body has Escape first.
+        let sheet = self.desk.view.narrow && self.desk.view.sheet;
+        let keys = !self.has_dialog() && !self.desk.view.help && !sheet;
+        lesson.learn.show(ui, &shown, keys, actions);
+        self.lesson = Some(lesson);
+    }
+
+    /// The body, with its overlays.
+    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+        let (viewport, content) = self.viewport_and_content();
+        let (response, interaction) = viewport.interact(ui, &content);
+        let rect = viewport.rect();
+        self.desk.session.grab(interaction.grab);
+        self.edit_loads(ui.ctx(), &interaction, requests);
+        self.desk.session.keep_converged();
+        let (viewport, content) = self.viewport_and_content();
+        viewport.update(ui.visuals(), &content);
+        if let Some(lesson) = self.lesson.as_ref().filter(|lesson| lesson.learn.is_apart()) {
+            let Desk { session, viewport, .. } = &mut self.desk;
+            viewport.displace(|points| lesson.learn.place(session.simulation(), session.geometry(), points));
+        }
+        let (viewport, content) = self.viewport_and_content();
+        viewport.take(&interaction, &response, &content);
+        viewport.follow(ui, &content);
+        let painter = ui.painter_at(rect);
+        let readout = self.readout();
+        let errors = diagnosis::errors(&readout);
+        let (words, is_bad) = diagnosis::status_words(readout.simulation, true, readout.shows_converged);
+        // Beside bars the status says it.
+        let warning = (is_bad && !self.desk.view.bars).then_some(words.as_str());
+        self.desk.viewport.paint(&painter, ui.visuals(), &self.content(), errors, warning);
+        if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
+            let taken =
+                (overlay::scale_bar_width(&self.desk.viewport.camera()), overlay::has_legend_below(rect.size()));
+            let now = self.simulation().state().time();
+            time_line::show(ui, rect, taken, (self.desk.session.playback(), now), actions);
+        }
+        if let Some(lesson) = &mut self.lesson {
+            let Desk { session, viewport, .. } = &self.desk;
+            let view = learn::View {
+                simulation: session.simulation(),
+                drawing: session.geometry(),
+                points: viewport.body().points(),
+                camera: viewport.camera(),
+                rect,
+                palette: Palette::new(ui.visuals()),
+            };
+            if let (true, Some(at)) = (response.clicked(), response.interact_pointer_pos()) {
+                lesson.learn.pick(&view, at);
+            }
+            lesson.learn.paint(&painter, &view);
+        }
+        let (viewport, content) = self.viewport_and_content();
+        viewport.show_values(ui, &painter, &content);
+        if self.desk.view.bars && self.intro.is_none() {
+            let mut free = rect;
+            if self.desk.view.narrow && self.desk.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
+                free.max.x -= PANEL_WIDTH;
+            }
+            if free.width() >= 160.0 && free.height() >= 90.0 {
+                self.status(ui, free, &errors, actions);
+                self.show_work(ui, free, actions);
+            }
+        }
+        self.report_crossing(ui);
+        self.paint_recording(ui, &painter, rect);
+        self.paint_toast(ui, &painter, rect);
+    }
+
+    /// The status over the body, its reasons, and a remedy.
+    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
+        const WIDEST: f32 = 460.0;
+        /// The same beside a small body.
+        const WIDEST_BESIDE: f32 = 250.0;
+        let input = self.readout();
+        let palette = Palette::new(ui.visuals());
+        let narrow = rect.width() < 640.0;
+        // Where two lines would lie over the body there is one.
+        let is_low = rect.height() < 220.0;
+        let (words, bad) = diagnosis::summary(&input);
+        // A card that leaves the body little room says itself that all is well.
+        let is_tight = self.lesson.is_some() && rect.height() < 300.0;
+        let shows_reasons = self.desk.view.why;
+        if is_tight && !(bad || shows_reasons || diagnosis::is_stale(&input)) {
+            return;
+        }
+        let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
+        let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
+        let id = egui::Id::unique("status");
+        let widest = if is_tight { WIDEST_BESIDE } else { WIDEST }.min(rect.width() - 28.0);
+        let (pivot, at, width) = self.desk.viewport.message_place(&self.content(), rect, above, widest);
+        let area = egui::Area::new(id).order(egui::Order::Middle).fixed_pos(at).pivot(pivot).constrain_to(rect);
+        area.show(ui.ctx(), |ui| {
+            ui.set_max_width(width);
+            if shows_reasons {
+                chip(palette.panel).show(ui, |ui| {
+                    for line in diagnosis::explanation(&input) {
+                        ui.add(egui::Label::new(spaced(line.into(), palette::BODY)).wrap());
+                    }
+                });
+            }
+            // The other modes have remedies of their own.
+            let remedy = diagnosis::remedy(&input, errors).filter(|_| self.desk.view.mode == Mode::Explore);
+            let help = |ui: &mut Ui, remedy: &diagnosis::Remedy| {
+                let pressed = ui.button(&remedy.offer).on_hover_text(&remedy.words).clicked();
+                pressed.then(|| Action::Edit(remedy.edits, remedy.scene.clone()))
+            };
+            if let Some(remedy) = remedy.as_ref().filter(|_| !is_low) {
+                chip(palette.error_chip).show(ui, |ui| {
+                    ui.horizontal_wrapped(|ui| {
+                        ui.colored_label(palette.error, &remedy.words);
+                        actions.extend(help(ui, remedy));
+                    });
+                });
+            }
+            let tint = if bad { palette.error_chip } else { palette.panel };
+            chip(tint).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.colored_label(if bad { palette.error } else { palette.text }, words);
+                    if let Some(remedy) = remedy.as_ref().filter(|_| is_low) {
+                        actions.extend(help(ui, remedy));
+                    }
+                    if diagnosis::is_stale(&input) && ui.button(tr("Step now")).clicked() {
+                        actions.push(Action::Step);
+                    }
+                    let why = ui.link(tr("why?"));
+                    if why.clicked() {
+                        actions.push(Action::Toggle(Toggle::Why));
+                    }
+                });
+            });
+        });
+    }
+
+    /// The progress of the background solve, with a button that cancels it.
+    fn show_work(&self, ui: &Ui, rect: Rect, actions: &mut Vec<Action>) {
+        let Some((scene, phase, seconds)) = self.desk.session.work() else { return };
+        let palette = Palette::new(ui.visuals());
+        let area = egui::Area::new(egui::Id::unique("work"))
+            .order(egui::Order::Middle)
+            .fixed_pos(rect.center_top() + egui::vec2(0.0, 52.0))
+            .pivot(egui::Align2::CENTER_TOP)
+            .constrain_to(rect);
+        area.show(ui.ctx(), |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    let text = format!("{}\u{2026} {seconds} s", status_bar::phase_text(scene, phase));
+                    ui.colored_label(palette.text, text);
+                    if ui.button(tr("Cancel")).on_hover_text(tr("Back to how it was (Esc)")).clicked() {
+                        actions.push(Action::Cancel);
+                    }
+                });
+            });
+        });
+    }
+}
+
+/// The pointer in this frame.
+fn press(ctx: &egui::Context) -> Press {
+    let double_click = ctx.options(|options| options.input_options.max_double_click_delay);
+    ctx.input(|i| Press {
+        now: i.time,
+        is_pressed: i.pointer.any_pressed(),
+        goes_on: i.pointer.any_down() || i.pointer.any_released(),
+        double_click,
+    })
+}
+
+/// The panel of plots under the body.
+fn drawer_panel(ui: &Ui) -> Panel {
+    let height = DRAWER_HEIGHT.min(DRAWER_SHARE * ui.ctx().content_rect().height());
+    Panel::bottom("drawer").exact_size(height).resizable(false).frame(unfilled(ui))
+}
+
+/// A panel's frame without its background: the body's pass has filled that.
+fn unfilled(ui: &Ui) -> egui::Frame {
+    egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
+}

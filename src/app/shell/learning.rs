@@ -1,0 +1,89 @@
+//! The mode Learn in the window: it has a desk of its own with the article's beam, and the user's comes back at the end.
+
+use crate::app::modes::learn::{self, Learn, Start};
+use crate::app::session::Session;
+use crate::app::shell::lab::{Desk, Lab, Lesson};
+use crate::app::view_options::{Drawer, Mode, ViewOptions};
+use crate::simulation::Simulation;
+
+impl Lab {
+    /// Enters or leaves Learn where the mode has changed.
+    pub(super) fn enter_or_leave(&mut self) {
+        match (self.desk.view.mode == Mode::Learn, self.lesson.take()) {
+            (true, None) => self.enter(),
+            (false, Some(lesson)) => self.leave(*lesson),
+            (_, same) => self.lesson = same,
+        }
+    }
+
+    fn enter(&mut self) {
+        let session = learn::article()
+            .and_then(|(source, scene)| Some(Session::new(source, scene.clone(), Simulation::new(&scene).ok()?)));
+        let own = &mut self.desk;
+        let (bars, narrow) = (own.view.bars, own.view.narrow);
+        own.view.mode = Mode::Explore;
+        let Some(session) = session else { return };
+        let mut desk = Desk::new(session);
+        desk.viewport.set_easing(own.viewport.eases());
+        desk.viewport.set_rect(own.viewport.rect());
+        // A card has the controls that it needs: the panel is folded away until it is asked for.
+        let (mode, panel, raw) = (Mode::Learn, false, true);
+        desk.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };
+        let aside = std::mem::replace(own, desk);
+        self.intro = None;
+        self.lesson = Some(Box::new(Lesson { learn: Learn::new(self.card), aside }));
+        self.set_card_up();
+    }
+
+    fn leave(&mut self, lesson: Lesson) {
+        let (mode, drawer) = (self.desk.view.mode, self.desk.view.drawer);
+        self.desk = lesson.aside;
+        let view = &mut self.desk.view;
+        view.mode = mode;
+        // Plots that were asked for on a card are shown.
+        view.drawer = drawer.map(|_| Drawer::of(self.desk.session.scene())).or(view.drawer);
+    }
+
+    /// Goes to the card of this number, from 0.
+    pub(super) fn go_to_card(&mut self, card: usize) {
+        if let Some(lesson) = &mut self.lesson {
+            lesson.learn.go_to(card);
+            self.card = card;
+            self.set_card_up();
+        }
+    }
+
+    /// Sets the card's scene and view up.
+    fn set_card_up(&mut self) {
+        let Some(setup) = self.lesson.as_ref().map(|lesson| lesson.learn.card().setup) else { return };
+        let Some((source, mut scene)) = learn::article() else { return };
+        (setup.edit)(&mut scene);
+        let reach = setup.reach.and_then(|reach| {
+            let mut scene = scene.clone();
+            reach(&mut scene);
+            let mut simulation = Simulation::new(&scene).ok()?;
+            simulation.solve();
+            Some(simulation)
+        });
+        // The article's beam has every card's scene.
+        if self.set_scene(scene).is_err() {
+            return;
+        }
+        if let Some(lesson) = &mut self.lesson {
+            lesson.learn.reach = reach;
+        }
+        let Desk { session, viewport, view, panel, .. } = &mut self.desk;
+        session.rebase(source);
+        panel.clear();
+        view.color_with(setup.field);
+        view.fixed_range = None;
+        (view.exact, view.rest_outline, view.ghost) = (setup.exact, setup.rest, false);
+        viewport.fit();
+        session.set_running(setup.start != Start::Waiting);
+        if setup.start != Start::Now {
+            self.reset();
+            let (viewport, content) = self.viewport_and_content();
+            viewport.expect_bending(&content);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Messages over the view: news of the session, and the progress of a recording.
+
+use std::time::Duration;
+
+use egui::{Align2, Painter, Rect, Sense, Ui};
+
+use crate::app::language::{fill, tr, translated};
+use crate::app::session::Notice;
+use crate::app::shell::lab::Lab;
+use crate::app::shell::toolbar;
+use crate::app::task::thread::POLL;
+use crate::app::widgets::text::boxed_text;
+use crate::words::engineering;
+
+/// Time for which a message is shown.
+const TOAST: Duration = Duration::from_secs(4);
+
+impl Lab {
+    /// Shows a message for a while.
+    pub fn say(&mut self, ctx: &egui::Context, message: String) {
+        self.toast = Some((message, ctx.input(|i| i.time) + TOAST.as_secs_f64()));
+    }
+
+    /// Shows the news of the session.
+    pub(super) fn show_notices(&mut self, ctx: &egui::Context) {
+        self.follow_session();
+        for (integrator, step) in self.desk.session.take_unstable() {
+            let integrator = tr(integrator.id());
+            let words = match step {
+                Some(step) => fill!(
+                    "%{integrator} is unstable: its longest stable step is %{step}",
+                    integrator = integrator,
+                    step = engineering(step, "s")
+                ),
+                None => fill!("%{integrator} is unstable: its steps fail", integrator = integrator),
+            };
+            self.say(ctx, words);
+        }
+        for notice in self.desk.session.take_notices() {
+            match notice {
+                Notice::Rejected { label: Some(label), message } => {
+                    self.desk.panel.messages.insert(label, message);
+                }
+                Notice::Rejected { label: None, message } => self.say(ctx, translated(&message)),
+                Notice::SolveDied => self.say(ctx, tr("The solve ended unexpectedly").to_owned()),
+                Notice::NoThread(error) => self.say(ctx, fill!("No thread for the solve: %{error}", error = error)),
+            }
+        }
+    }
+
+    /// Reports the first crossing of the outline of a document's body.
+    pub(super) fn report_crossing(&mut self, ui: &Ui) {
+        let is_shown = self.desk.view.bars && self.lesson.is_none() && self.intro.is_none() && self.toast.is_none();
+        let now = ui.input(|i| i.time);
+        let (viewport, content) = self.viewport_and_content();
+        if is_shown && viewport.finds_crossing(&content, now) {
+            self.say(ui.ctx(), tr("The body passes through itself: contact is not modelled").to_owned());
+        }
+    }
+
+    /// Paints the progress of the scene's recording.
+    pub(super) fn paint_recording(&self, ui: &Ui, painter: &Painter, rect: Rect) {
+        let Some(progress) = &self.recording else { return };
+        let place = rect.center_bottom() - egui::vec2(0.0, 48.0);
+        let color = ui.visuals().strong_text_color();
+        boxed_text(painter, place, Align2::CENTER_BOTTOM, progress, ui.visuals(), color, 400.0);
+        ui.ctx().request_repaint_after(POLL);
+    }
+
+    /// Paints the message, while it is shown.
+    pub(super) fn paint_toast(&mut self, ui: &Ui, painter: &Painter, rect: Rect) {
+        let Some((message, until)) = &self.toast else {
+            return;
+        };
+        let left = until - ui.input(|i| i.time);
+        if left <= 0.0 {
+            self.toast = None;
+            return;
+        }
+        boxed_text(
+            painter,
+            rect.center_bottom() - egui::vec2(0.0, 24.0),
+            Align2::CENTER_BOTTOM,
+            message,
+            ui.visuals(),
+            ui.visuals().strong_text_color(),
+            rect.width() - 48.0,
+        );
+        // A screen reader reads it, too.
+        let said = ui.interact(
+            Rect::from_center_size(rect.center_bottom(), egui::Vec2::ZERO),
+            egui::Id::unique("toast"),
+            Sense::empty(),
+        );
+        said.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, message));
+        ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));
+    }
+}
+
+/// Shows a message with its answers in a row under the toolbar.
+pub(super) fn banner(ctx: &egui::Context, id: &str, contents: impl FnOnce(&mut Ui)) {
+    let width = ctx.content_rect().width();
+    let area = egui::Area::new(egui::Id::unique(id))
+        .default_width(width - 24.0)
+        .anchor(Align2::CENTER_TOP, egui::vec2(0.0, toolbar::height(width) + 8.0));
+    area.show(ctx, |ui| egui::Frame::popup(ui.style()).show(ui, |ui| ui.horizontal_wrapped(contents)));
+}

@@ -1,0 +1,585 @@
+//! The view of one body: its camera, its drawn mesh, the pointer over it, and the overlays.
+
+use egui::{Align2, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
+use nalgebra::Vector2;
+
+use crate::app::diagnosis::Errors;
+use crate::app::session::{Session, has_mesh_of};
+use crate::app::view_options::ViewOptions;
+use crate::app::viewport::arrow::Forces;
+use crate::app::viewport::body_mesh::BodyMesh;
+use crate::app::viewport::camera_controller::CameraController;
+use crate::app::viewport::crossing::passes_through_itself;
+use crate::app::viewport::handle::Handle;
+use crate::app::viewport::overlay::{self, Overlay};
+use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Pointer, Target};
+use crate::app::viewport::probe;
+use crate::app::viewport::projection::{Projection, viewport};
+use crate::app::widgets::load_scale::OpeningLoads;
+use crate::mesh::{MaterialPoint, Mesh};
+use crate::render::{Camera, Frame, Margins, View};
+use crate::scene::MethodKind;
+use crate::simulation::{Field, PointValues, Simulation, Status};
+
+/// Space kept free around the body when the camera is fitted: for the load's arrow, the key above and the legend below.
+const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
+/// The same above a card, which leaves less of the view.
+const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
+/// The same on the left of a colour bar at the top.
+const BESIDE_MARGINS: Margins = Margins { sides: 284.0, top: 40.0, bottom: 30.0 };
+/// The same in a low view, with the status over it.
+const LOW_MARGINS: Margins = Margins { bottom: 84.0, ..CARD_MARGINS };
+
+/// Everything that the view shows.
+#[derive(Clone, Copy)]
+pub(crate) struct Content<'a> {
+    pub session: &'a Session,
+    pub options: &'a ViewOptions,
+    /// Direction of a force of zero, degrees.
+    pub direction: f64,
+    /// Body and linear solution of an animation, drawn in the place of the session's.
+    pub animation: Option<(&'a Simulation, Option<&'a Simulation>)>,
+    /// The card of Learn below the view.
+    pub card: Option<CardContent<'a>>,
+}
+
+/// Needs of a card of Learn.
+#[derive(Clone, Copy)]
+pub(crate) struct CardContent<'a> {
+    /// `true` if the elements are drawn apart: they cannot be grabbed then, and have no loads.
+    pub is_apart: bool,
+    /// The largest body that the card's slider reaches.
+    pub reach: Option<&'a Simulation>,
+}
+
+impl<'a> Content<'a> {
+    fn simulation(&self) -> &'a Simulation {
+        self.session.simulation()
+    }
+
+    fn mesh(&self) -> &'a Mesh {
+        self.simulation().system().mesh()
+    }
+
+    fn is_apart(&self) -> bool {
+        self.card.is_some_and(|card| card.is_apart)
+    }
+
+    /// The largest body that the slider of a card reaches, while the card has its own mesh.
+    fn reach(&self) -> Option<&'a Simulation> {
+        self.card?.reach.filter(|reach| has_mesh_of(reach.scene(), self.simulation().scene()))
+    }
+
+    /// The outline of the reference solution, m, where it is known of the displayed state.
+    fn exact(&self) -> &'a [Vec<Vector2<f64>>] {
+        let session = self.session;
+        let is_shown =
+            self.options.exact && !session.is_motion() && !session.iterates() && session.simulation().hand().is_none();
+        session.facts().reference.get().filter(|_| is_shown).map_or(&[], |reference| &reference.outline)
+    }
+
+    /// Displacement of the linear solution, m, if it is to be shown.
+    fn ghost(&self) -> Option<&'a [Vector2<f64>]> {
+        let is_wanted = self.options.ghost && self.simulation().method() != MethodKind::Linear;
+        let linear = match self.animation {
+            Some((_, linear)) => linear,
+            None => self.session.linear(),
+        };
+        linear.map(Simulation::displacement).filter(|_| is_wanted)
+    }
+}
+
+/// Checks of the body's outline for crossings.
+#[derive(Debug, Default)]
+struct Crossing {
+    is_reported: bool,
+    /// Time of the last check, s.
+    checked: f64,
+    /// Body mesh that the last check saw.
+    stamp: u64,
+}
+
+/// The view of one body.
+#[derive(Debug)]
+pub(crate) struct Viewport {
+    camera: CameraController,
+    margins: Margins,
+    /// `true` if the camera moves smoothly, as in a window.
+    eases: bool,
+    /// Place in the window, points.
+    rect: Rect,
+    pointer: Pointer,
+    /// The material point whose values are shown.
+    probe: Option<MaterialPoint>,
+    body: BodyMesh,
+    /// `true` while the last equilibrium is drawn in the place of a state that diverges.
+    shows_converged: bool,
+    /// Box of everything that a body in motion has swept, m.
+    swept: Option<[Vector2<f64>; 2]>,
+    crossing: Crossing,
+}
+
+impl Viewport {
+    /// A view of a body at rest.
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        Self {
+            camera: CameraController::new(mesh.bounds().into()),
+            margins: FIT_MARGINS,
+            eases: false,
+            rect: Rect::from_min_size(Pos2::ZERO, egui::vec2(1.0, 1.0)),
+            pointer: Pointer::default(),
+            probe: None,
+            body: BodyMesh::default(),
+            shows_converged: false,
+            swept: None,
+            crossing: Crossing::default(),
+        }
+    }
+
+    /// Lets the camera move smoothly, as in a window, or at once, as in pictures.
+    pub(crate) fn set_easing(&mut self, eases: bool) {
+        self.eases = eases;
+    }
+
+    pub(crate) fn eases(&self) -> bool {
+        self.eases
+    }
+
+    pub(crate) fn rect(&self) -> Rect {
+        self.rect
+    }
+
+    pub(crate) fn set_rect(&mut self, rect: Rect) {
+        self.rect = rect;
+    }
+
+    pub(crate) fn camera(&self) -> Camera {
+        self.camera.camera()
+    }
+
+    pub(crate) fn body(&self) -> &BodyMesh {
+        &self.body
+    }
+
+    /// `true` while the last equilibrium is drawn in the place of a state that diverges.
+    pub(crate) fn shows_converged(&self) -> bool {
+        self.shows_converged
+    }
+
+    /// The material point whose values are shown.
+    pub(crate) fn probe(&self) -> Option<MaterialPoint> {
+        self.probe
+    }
+
+    pub(crate) fn clear_probe(&mut self) {
+        self.probe = None;
+    }
+
+    /// Shows the whole body.
+    pub(crate) fn fit(&mut self) {
+        self.camera.fit();
+    }
+
+    /// Sets the camera, which does not follow the body then.
+    pub(crate) fn look(&mut self, camera: Camera) {
+        self.camera.look(camera);
+    }
+
+    /// Shows another mesh. A camera that the user has chosen is kept.
+    pub(crate) fn set_mesh(&mut self, mesh: &Mesh) {
+        self.camera.set_body(mesh.bounds().into());
+        self.probe = None;
+    }
+
+    /// Shows the body of another document.
+    pub(crate) fn start(&mut self, mesh: &Mesh) {
+        self.camera = CameraController::new(mesh.bounds().into());
+        self.probe = None;
+        self.crossing = Crossing::default();
+    }
+
+    /// Forgets the places that a motion has swept.
+    pub(crate) fn clear_swept(&mut self) {
+        self.swept = None;
+    }
+
+    /// The drawn body, as of the last [`Self::update`].
+    pub(crate) fn frame<'a>(&'a self, content: &Content<'a>) -> Frame<'a> {
+        self.body.frame(content.session.geometry(), content.options.wireframe)
+    }
+
+    /// The drawn body with its camera and its place in pixels.
+    pub(crate) fn view<'a>(&'a self, content: &Content<'a>, pixels_per_point: f32) -> View<'a> {
+        let viewport = viewport(self.rect, pixels_per_point);
+        View { viewport, frame: self.frame(content), camera: self.camera() }
+    }
+
+    fn projection(&self) -> Projection {
+        Projection { camera: self.camera(), rect: self.rect }
+    }
+
+    /// Reads the pointer. A press hits the targets of the last frame, which the user has seen.
+    pub(crate) fn interact(&mut self, ui: &mut Ui, content: &Content<'_>) -> (Response, Interaction) {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let projection = self.projection();
+        let handles = self.handles(content, &projection);
+        let targets = HitTargets {
+            camera: projection.camera,
+            mesh: (!content.is_apart()).then_some(content.mesh()),
+            positions: &self.body.nodes,
+            outline: &content.session.geometry().boundary,
+            handles: &handles,
+            scales: self.camera.scales([rect.width(), rect.height()].map(f64::from)),
+        };
+        self.rect = rect;
+        let body = if content.session.is_in_background() { Target::Visible } else { Target::Grabbable };
+        let interaction = self.pointer.follow(ui, &response, &targets, body);
+        (response, interaction)
+    }
+
+    /// Updates the drawn mesh to the present state.
+    pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
+        self.shows_converged = self.hides_divergence(content);
+        let simulation = content.animation.map_or_else(|| self.shown(content), |(simulation, _)| simulation);
+        // A range of colours that changed from frame to frame would hide the motion.
+        let played = self.swept.is_some().then(|| content.session.playback().played());
+        self.body.update(simulation, content.session.geometry(), content.options, played);
+        self.body.color(visuals, content.options.field);
+    }
+
+    /// Moves the drawn points.
+    pub(crate) fn displace(&mut self, place: impl FnOnce(&mut [Vector2<f64>])) {
+        self.body.displace(place);
+    }
+
+    /// `true` where the last equilibrium is to be drawn in the place of a state that diverges. A card of Learn shows the
+    /// latter.
+    fn hides_divergence(&self, content: &Content<'_>) -> bool {
+        let simulation = content.simulation();
+        if content.card.is_some() || content.session.converged().is_none() {
+            return false;
+        }
+        match simulation.status() {
+            Status::Diverged(_) => true,
+            // A search under the pointer may still converge.
+            Status::Running if !self.pointer.holds() || content.session.is_motion() => false,
+            Status::Running | Status::NotConverged(_) => {
+                let projection = self.projection();
+                let mut places = content.mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+                let leaves = |place| !self.rect.contains(projection.point(place));
+                simulation.residual() > 1.0 || self.camera.shows_whole() && places.any(leaves)
+            }
+            _ => false,
+        }
+    }
+
+    /// The drawn body, an animation aside.
+    fn shown<'a>(&self, content: &Content<'a>) -> &'a Simulation {
+        content.session.converged().filter(|_| self.shows_converged).unwrap_or(content.simulation())
+    }
+
+    /// Moves the camera by the pointer, and keeps or drops the material point that was clicked.
+    pub(crate) fn take(&mut self, interaction: &Interaction, response: &Response, content: &Content<'_>) {
+        match interaction.camera {
+            CameraMove::None => {}
+            CameraMove::To(camera) => self.camera.look(camera),
+            CameraMove::Fit => self.camera.fit(),
+        }
+        // On a card a click takes a triangle.
+        let clicked = interaction.clicked.flatten().filter(|_| content.card.is_none());
+        if let (Some(point), Some(click)) = (clicked, response.interact_pointer_pos()) {
+            let kept = self.probe.and_then(|kept| self.in_view(content, kept));
+            self.probe = (!kept.is_some_and(|kept| probe::is_on(kept, click))).then_some(point);
+        }
+    }
+
+    /// The loads of the last frame's arrows.
+    fn forces<'a>(&'a self, content: &Content<'a>) -> Forces<'a> {
+        let simulation = content.simulation();
+        Forces {
+            scene: simulation.scene(),
+            system: simulation.system(),
+            positions: &self.body.nodes,
+            time: simulation.state().time(),
+            direction: content.direction,
+            opening: OpeningLoads::of(&content.session.document().original),
+        }
+    }
+
+    fn handles(&self, content: &Content<'_>, projection: &Projection) -> Vec<Handle> {
+        if content.is_apart() { Vec::new() } else { self.forces(content).handles(projection) }
+    }
+
+    /// The arrows of the loads, as of the last frame.
+    pub(crate) fn arrows(&self, content: &Content<'_>) -> Vec<Handle> {
+        self.handles(content, &self.projection())
+    }
+
+    /// The place of a material point in the window.
+    fn in_view(&self, content: &Content<'_>, point: MaterialPoint) -> Option<Pos2> {
+        let place = probe::place(content.mesh(), &self.body.nodes, point)?;
+        Some(self.projection().point(place))
+    }
+
+    /// The value of the displayed field at a material point.
+    fn field_at(&self, content: &Content<'_>, point: MaterialPoint) -> (Field, Option<f64>) {
+        let field = content.options.field;
+        let value = if content.options.raw && !field.is_of_elements() {
+            self.shown(content).point_state(point, PointValues::Raw).and_then(|state| state.field(field))
+        } else {
+            self.body.value_at(content.options, content.mesh(), point)
+        };
+        (field, value)
+    }
+
+    /// Shows the values under the pointer, and those at the point that is kept.
+    pub(crate) fn show_values(&mut self, ui: &Ui, painter: &Painter, content: &Content<'_>) {
+        if content.is_apart() {
+            return;
+        }
+        let shown = self.shown(content);
+        if let Some((point, at)) = self.pointer.over_body()
+            && let Some(u) = probe::place(content.mesh(), shown.displacement(), point)
+        {
+            probe::paint_hover(ui, painter, at, self.field_at(content, point), u);
+        }
+        let Some(point) = self.probe else { return };
+        let values = if content.options.raw { PointValues::Raw } else { PointValues::Recovered };
+        let (Some(state), Some(at)) = (shown.point_state(point, values), self.in_view(content, point)) else { return };
+        if probe::show_card(ui, painter, self.rect, at, content.options.field, &state) {
+            self.probe = None;
+        }
+    }
+
+    /// Fits the camera to the body at rest and now, unless the user has moved it. A state that has not converged may be
+    /// anywhere, and is not followed.
+    pub(crate) fn follow(&mut self, ui: &Ui, content: &Content<'_>) {
+        // A camera that moved with the body would move the place under a pointer that holds it.
+        if self.pointer.holds() {
+            return;
+        }
+        let size = self.size();
+        let (session, is_motion) = (content.session, content.session.is_motion());
+        let status = session.simulation().status();
+        let is_sound =
+            if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() || self.shows_converged };
+        if is_sound {
+            let (mut low, mut high) = content.mesh().bounds();
+            if let (Some([swept_low, swept_high]), true) = (self.swept, is_motion) {
+                (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
+            }
+            let mut include = |points: &mut dyn Iterator<Item = Vector2<f64>>| {
+                for p in points {
+                    (low, high) = (low.inf(&p), high.sup(&p));
+                }
+            };
+            include(&mut self.body.points().iter().copied());
+            if content.animation.is_some() {
+                // The animation ends at the session's body.
+                for body in std::iter::once(session.simulation()).chain(session.linear()) {
+                    include(&mut positions(body));
+                }
+            }
+            include(&mut content.exact().iter().flatten().copied());
+            if let Some(reach) = content.reach() {
+                include(&mut positions(reach));
+            }
+            self.swept = Some([low, high]).filter(|_| is_motion);
+            self.camera.follow([low, high]);
+            let least = least_margins(content, [low, high], size);
+            self.margins = self.with_room_for_arrows(content, least, [low, high], size);
+        }
+        let [low, high] = self.camera.whole();
+        let fitted = self.fitted(content, low, high, size);
+        let dt = f64::from(ui.input(|i| i.stable_dt));
+        if self.camera.aim(fitted, self.eases.then_some(dt)) {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// Leaves room for a beam that is going to bend, and for its arrow.
+    pub(crate) fn expect_bending(&mut self, content: &Content<'_>) {
+        let (low, high) = content.mesh().bounds();
+        let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
+        self.camera.follow([low, high]);
+        let least = least_margins(content, [low, high], self.size());
+        let arrow = f64::from(0.25 * self.rect.height()).clamp(30.0, 120.0);
+        self.margins = Margins { bottom: least.bottom + arrow, ..least };
+    }
+
+    /// Width and height, points.
+    fn size(&self) -> [f64; 2] {
+        [self.rect.width(), self.rect.height()].map(f64::from)
+    }
+
+    /// Returns the camera that shows a box, m, and the linear solution, in a view of this size, points.
+    pub(crate) fn fitted(
+        &self,
+        content: &Content<'_>,
+        mut low: Vector2<f64>,
+        mut high: Vector2<f64>,
+        view: [f64; 2],
+    ) -> Camera {
+        if let Some(linear) = content.ghost() {
+            // The linear solution of a large load is absurdly long; the body must not shrink to a dot for it.
+            const LARGEST: f64 = 1.5;
+            let size = (high - low).norm();
+            let ghost = content.mesh().nodes().iter().zip(linear).map(|(x, u)| x + u);
+            let (ghost_low, ghost_high) = ghost.fold((low, high), |(low, high), p| (low.inf(&p), high.sup(&p)));
+            if (ghost_high - ghost_low).norm() < LARGEST * size {
+                (low, high) = (ghost_low, ghost_high);
+            }
+        }
+        Camera::fit(low, high, view, self.margins)
+    }
+
+    /// Returns the margins around a box, m: the least ones, and the room that arrows need beyond them.
+    fn with_room_for_arrows(
+        &self,
+        content: &Content<'_>,
+        least: Margins,
+        [low, high]: [Vector2<f64>; 2],
+        view: [f64; 2],
+    ) -> Margins {
+        /// Space beyond a tip for the number of its force, points.
+        const BEYOND: f32 = 36.0;
+        if content.is_apart() {
+            return least;
+        }
+        let size = egui::vec2(view[0] as f32, view[1] as f32);
+        let camera = Camera::fit(low, high, view, least);
+        let projection = Projection { camera, rect: Rect::from_min_size(Pos2::ZERO, size) };
+        let mut arrows = self.forces(content).arrows(&projection);
+        if let Some(reach) = content.reach() {
+            let positions: Vec<_> = positions(reach).collect();
+            let own = self.forces(content);
+            let forces = Forces { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
+            arrows.extend(forces.arrows(&projection));
+        }
+        let on_top = overlay::has_legend_on_top(size.y);
+        arrows.iter().fold(least, |margins, arrow| {
+            let tip = arrow.tip();
+            // A tip stands beside the colour bar, not on it.
+            let bar = if tip.x > size.x - overlay::LEGEND_WIDTH { overlay::LEGEND_HEIGHT } else { 0.0 };
+            let above = if on_top && arrow.way.y < 0.0 { bar } else { 0.0 };
+            let below = if on_top { 0.0 } else { bar };
+            let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
+            Margins {
+                sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x))),
+                top: margins.top.max(least.top + beyond(above - tip.y)),
+                bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y + below)),
+            }
+        })
+    }
+
+    /// Paints the overlays; `warning` is a message over the body.
+    pub(crate) fn paint(
+        &self,
+        painter: &Painter,
+        visuals: &Visuals,
+        content: &Content<'_>,
+        errors: Errors,
+        warning: Option<&str>,
+    ) {
+        let (session, is_animated) = (content.session, content.animation.is_some());
+        let simulation = session.simulation();
+        let shown = content.animation.map_or(simulation, |(simulation, _)| simulation);
+        let moves_support = simulation.problem().supports().move_the_body();
+        let reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
+        let overlay = Overlay {
+            scene: shown.scene(),
+            system: shown.system(),
+            drawing: session.geometry(),
+            options: content.options,
+            camera: self.camera(),
+            positions: &self.body.nodes,
+            apart: content.is_apart(),
+            ghost: content.ghost(),
+            exact: if is_animated { &[] } else { content.exact() },
+            errors: if is_animated { Errors::default() } else { errors },
+            time: shown.state().time(),
+            direction: content.direction,
+            opening: OpeningLoads::of(&session.document().original),
+            hot: self.pointer.hot_handle(),
+            hand: simulation.hand(),
+            playback: session.playback(),
+            reactions: &reactions,
+            color_range: self.body.range,
+            warning,
+        };
+        overlay::paint(painter, self.rect, &overlay, visuals);
+    }
+
+    /// Returns corner, place and largest width of a message over the view: at the lower left, beside the tips of arrows
+    /// that it would hide, or in another corner.
+    pub(crate) fn message_place(
+        &self,
+        content: &Content<'_>,
+        view: Rect,
+        above: f32,
+        widest: f32,
+    ) -> (Align2, Pos2, f32) {
+        const SIDE: f32 = 14.0;
+        /// Height of two messages, points.
+        const HEIGHT: f32 = 100.0;
+        const CLEAR: f32 = 18.0;
+        const NARROWEST: f32 = 220.0;
+        let lower_left = view.left_bottom() + egui::vec2(SIDE, -above);
+        let covered = Rect::from_min_max(lower_left - egui::vec2(0.0, HEIGHT), lower_left + egui::vec2(widest, 0.0));
+        let covered = covered.expand(CLEAR);
+        let hidden = self.arrows(content).into_iter().map(|arrow| arrow.tip()).filter(|tip| covered.contains(*tip));
+        let columns: Vec<f32> = hidden.map(|tip| tip.x).collect();
+        let first = columns.iter().copied().fold(f32::INFINITY, f32::min);
+        let last = columns.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let (left, right) = (first - CLEAR - lower_left.x, view.right() - SIDE - last - CLEAR);
+        if left >= NARROWEST {
+            return (Align2::LEFT_BOTTOM, lower_left, left.min(widest));
+        }
+        if right >= NARROWEST {
+            let low = view.right_bottom() - egui::vec2(SIDE, overlay::LEGEND_HEIGHT + 10.0);
+            return (Align2::RIGHT_BOTTOM, low, right.min(widest));
+        }
+        (Align2::LEFT_TOP, view.left_top() + egui::vec2(SIDE, 44.0), widest)
+    }
+
+    /// Checks a sound state for crossings of the outline at `now`, s; returns `true` at the first one of a document.
+    pub(crate) fn finds_crossing(&mut self, content: &Content<'_>, now: f64) -> bool {
+        /// Time between two checks of a body that moves, s.
+        const EVERY: f64 = 0.1;
+        let session = content.session;
+        let is_due = !session.iterates() || now - self.crossing.checked >= EVERY;
+        let is_sound = match session.simulation().status() {
+            Status::Converged | Status::Accepted => true,
+            Status::Running | Status::Finished => session.is_motion(),
+            _ => false,
+        };
+        let is_another = self.crossing.stamp != self.body.stamp();
+        if self.crossing.is_reported || !(is_due && is_sound && is_another) {
+            return false;
+        }
+        (self.crossing.checked, self.crossing.stamp) = (now, self.body.stamp());
+        self.crossing.is_reported =
+            passes_through_itself(content.mesh(), &session.geometry().boundary, &self.body.nodes);
+        self.crossing.is_reported
+    }
+}
+
+/// Returns the margins around a box, m, whatever the loads.
+fn least_margins(content: &Content<'_>, [low, high]: [Vector2<f64>; 2], view: [f64; 2]) -> Margins {
+    let has_legend_on_top = overlay::has_legend_on_top(view[1] as f32);
+    if content.card.is_some() && has_legend_on_top {
+        // Under the colour bar or beside it, whichever shows more.
+        let scale = |margins: &Margins| Camera::fit(low, high, view, *margins).scale;
+        return if scale(&BESIDE_MARGINS) > scale(&CARD_MARGINS) { BESIDE_MARGINS } else { CARD_MARGINS };
+    }
+    match (content.card.is_some(), has_legend_on_top) {
+        (true, _) => CARD_MARGINS,
+        (false, true) => LOW_MARGINS,
+        (false, false) => FIT_MARGINS,
+    }
+}
+
+/// Positions of a body's nodes, m.
+fn positions(simulation: &Simulation) -> impl Iterator<Item = Vector2<f64>> + '_ {
+    simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u)
+}
