@@ -492,7 +492,7 @@ fn the_budget_is_in_chinese() {
 #[test]
 fn every_card_is_in_chinese() {
     let mut harness = settled("article", [1280.0, 800.0]);
-    for card in 1..=9 {
+    for card in 1..=warpbeam::app::card_count() {
         harness.state_mut().show_card(card);
         harness.run();
         wait(&mut harness, |lab| !lab.is_searching());
@@ -521,7 +521,7 @@ fn nothing_is_clipped_in_windows_of_any_size() {
             assert!(label.as_ref().is_some_and(|label| !label.is_empty()), "{size:?}: no name at {rect:?}");
             assert!(rect.left() >= 0.0 && rect.right() <= size[0], "{size:?}: {label:?} at {rect:?}");
         }
-        for card in 1..=9 {
+        for card in 1..=warpbeam::app::card_count() {
             harness.state_mut().show_card(card);
             harness.run();
             for name in ["‹ Back", "Next ›", "Leave"] {

@@ -131,7 +131,7 @@ fn every_card_can_be_read_and_left_in_a_small_window() {
     for size in [[1280.0, 800.0], [800.0, 600.0], [640.0, 480.0]] {
         let mut harness = harness(size);
         let window = egui::Rect::from_min_size(Pos2::ZERO, size.into());
-        for card in 1..=9 {
+        for card in 1..=warpbeam::app::card_count() {
             harness.state_mut().show_card(card);
             harness.run();
             for name in ["\u{2039} Back", "Next \u{203a}", "Leave"] {

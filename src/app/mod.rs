@@ -25,6 +25,8 @@ mod window;
 
 pub use language::Language;
 pub use modes::compare::{MotionPane, MotionPaneSetting, Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
+#[doc(hidden)]
+pub use modes::learn::card_count;
 pub use offscreen::record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
 pub use panel::PANEL_WIDTH;

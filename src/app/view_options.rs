@@ -32,7 +32,7 @@ pub(crate) const MODES: &[ModeEntry] = &[
     ModeEntry {
         mode: Mode::Learn,
         name: "Learn",
-        about: "The article's method, walked through on nine cards; your own scene comes back at the end",
+        about: "The article's method, walked through on cards; your own scene comes back at the end",
     },
     ModeEntry {
         mode: Mode::Compare,

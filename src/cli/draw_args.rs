@@ -33,9 +33,9 @@ pub(super) struct ShotArgs {
     /// With error against time, measured now.
     #[arg(long, conflicts_with = "curve")]
     pub study: bool,
-    /// A card of the window's mode Learn, 1 to 9: each shows the article's beam, whatever the scene. Card 9 with --study
+    /// A card of the window's mode Learn, from 1: each shows the article's beam, whatever the scene. The last one with --study
     /// has its table.
-    #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=9), conflicts_with_all = ["curve", "motion"])]
+    #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(app::card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "motion"])]
     pub learn: Option<u8>,
     /// Of a scene in time: with the plot of its energy, and the same motion under other integrators beside.
     #[arg(long, value_name = "INTEGRATOR", num_args = 0.., value_parser = parse_integrator, conflicts_with_all = ["curve", "study"])]

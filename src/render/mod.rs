@@ -1,4 +1,4 @@
-//! DisplayGeometry with wgpu: the body's multisampled pass, the camera, the colour map, offscreen pictures.
+//! Drawing with wgpu: the body's multisampled pass, the camera, the colour map, offscreen pictures.
 //!
 //! The renderer borrows a [`Frame`] (positions, triangles, a value a triangle), never the simulation. The window and the
 //! offscreen picture go through the same calls.

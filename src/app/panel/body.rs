@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::action::MOST_ITERATIONS;
 use crate::app::language::{count, fill, joined, tr};
-use crate::app::panel::{Action, PanelState, number_row};
+use crate::app::panel::{Action, NumberRow, PanelState, number_rows};
 use crate::app::readout::Readout;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
@@ -28,6 +28,60 @@ const PRESETS: [Preset; 4] = [
     Preset { name: "Aluminium", young: 7e10, range: 6.5e10..=7.5e10, poisson: 0.33, density: 2700.0 },
     Preset { name: "Steel", young: 2.1e11, range: 1.9e11..=2.2e11, poisson: 0.3, density: 7850.0 },
 ];
+
+/// Returns the rows of the material: the limit of the Poisson ratio depends on the kind of plane.
+fn material_rows(plane: Plane) -> [NumberRow; 4] {
+    [
+        NumberRow {
+            field: NumberField {
+                label: "Young E",
+                tooltip: "Young's modulus, Pa: the stiffness. Rubber 1e6, wood 1e10, steel 2e11.",
+                limit: limits::YOUNG,
+                slider: 1e3..=1e12,
+                scale: SliderScale::Logarithmic(1e3),
+                whole: false,
+            },
+            get: |s| s.material.young,
+            set: |s, v| s.material.young = v,
+        },
+        NumberRow {
+            field: NumberField {
+                label: "Poisson ν",
+                tooltip: "Poisson ratio: how much it thins when pulled. 0.5 keeps the volume; plane strain stops before it.",
+                limit: plane.poisson_limit(),
+                slider: -0.5..=0.499,
+                scale: SliderScale::Linear,
+                whole: false,
+            },
+            get: |s| s.material.poisson,
+            set: |s, v| s.material.poisson = v,
+        },
+        NumberRow {
+            field: NumberField {
+                label: "Density ρ",
+                tooltip: "Density, kg/m³: weight, and inertia in motion.",
+                limit: limits::DENSITY,
+                slider: 0.0..=20_000.0,
+                scale: SliderScale::Logarithmic(1.0),
+                whole: false,
+            },
+            get: |s| s.material.density,
+            set: |s, v| s.material.density = v,
+        },
+        NumberRow {
+            field: NumberField {
+                label: "Thickness t",
+                tooltip: "Thickness out of the plane, m: stiffness and weight grow with it.",
+                limit: limits::THICKNESS,
+                slider: 1e-3..=10.0,
+                scale: SliderScale::Logarithmic(1e-3),
+                whole: false,
+            },
+            get: |s| s.material.thickness,
+            set: |s, v| s.material.thickness = v,
+        },
+    ]
+}
 
 /// The material in a few words: `rubber, 1 MPa`.
 pub(super) fn material_summary(scene: &Scene) -> String {
@@ -129,58 +183,8 @@ pub(super) fn material(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState,
             }
         }
     });
-    let mut row = |field: NumberField, get: fn(&Scene) -> f64, set: fn(&mut Scene, f64)| {
-        number_row(ui, input, state, actions, (field, get), set);
-    };
+    number_rows(ui, input, state, actions, material_rows(scene.material.plane));
     let m = &scene.material;
-    row(
-        NumberField {
-            label: "Young E",
-            tooltip: "Young's modulus, Pa: the stiffness. Rubber 1e6, wood 1e10, steel 2e11.",
-            limit: limits::YOUNG,
-            slider: 1e3..=1e12,
-            scale: SliderScale::Logarithmic(1e3),
-            whole: false,
-        },
-        |s| s.material.young,
-        |s, v| s.material.young = v,
-    );
-    row(
-        NumberField {
-            label: "Poisson ν",
-            tooltip: "Poisson ratio: how much it thins when pulled. 0.5 keeps the volume; plane strain stops before it.",
-            limit: m.plane.poisson_limit(),
-            slider: -0.5..=0.499,
-            scale: SliderScale::Linear,
-            whole: false,
-        },
-        |s| s.material.poisson,
-        |s, v| s.material.poisson = v,
-    );
-    row(
-        NumberField {
-            label: "Density ρ",
-            tooltip: "Density, kg/m³: weight, and inertia in motion.",
-            limit: limits::DENSITY,
-            slider: 0.0..=20_000.0,
-            scale: SliderScale::Logarithmic(1.0),
-            whole: false,
-        },
-        |s| s.material.density,
-        |s, v| s.material.density = v,
-    );
-    row(
-        NumberField {
-            label: "Thickness t",
-            tooltip: "Thickness out of the plane, m: stiffness and weight grow with it.",
-            limit: limits::THICKNESS,
-            slider: 1e-3..=10.0,
-            scale: SliderScale::Logarithmic(1e-3),
-            whole: false,
-        },
-        |s| s.material.thickness,
-        |s, v| s.material.thickness = v,
-    );
     ui.horizontal(|ui| {
         ui.label(tr("Plane"));
         for (plane, word, tip) in [

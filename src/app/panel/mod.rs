@@ -157,20 +157,28 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
     });
 }
 
-/// A row that edits a number of the scene.
-fn number_row(
+/// A row of the panel that edits a number of the scene.
+struct NumberRow {
+    field: NumberField,
+    get: fn(&Scene) -> f64,
+    set: fn(&mut Scene, f64),
+}
+
+/// Shows the rows of a table.
+fn number_rows(
     ui: &mut Ui,
     input: &Readout<'_>,
     state: &mut PanelState,
     actions: &mut Vec<Action>,
-    (field, get): (NumberField, fn(&Scene) -> f64),
-    set: fn(&mut Scene, f64),
+    rows: impl IntoIterator<Item = NumberRow>,
 ) {
-    let original = Some(get(input.original));
-    if let Some(new) = field.show_beside(ui, &mut state.messages, get(input.scene), original) {
-        let mut scene = Box::new(input.scene.clone());
-        set(&mut scene, new);
-        actions.push(Action::Edit(field.label, scene));
+    for NumberRow { field, get, set } in rows {
+        let original = Some(get(input.original));
+        if let Some(new) = field.show_beside(ui, &mut state.messages, get(input.scene), original) {
+            let mut scene = Box::new(input.scene.clone());
+            set(&mut scene, new);
+            actions.push(Action::Edit(field.label, scene));
+        }
     }
 }
 

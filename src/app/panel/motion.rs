@@ -3,17 +3,69 @@
 use egui::Ui;
 
 use crate::app::language::{fill, joined, tr};
-use crate::app::panel::{Action, PanelState, number_row, picker};
+use crate::app::panel::{Action, NumberRow, PanelState, number_rows, picker};
 use crate::app::readout::Readout;
 use crate::app::session::clock::{fraction, speed_of_period};
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
 use crate::dynamics::INTEGRATORS;
-use crate::scene::{Scene, limits};
+use crate::scene::limits;
 use crate::words::{engineering, three_digits};
 
 /// Speeds that can be chosen, with their words.
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
+
+/// Time step, solves and damping.
+const TIME: [NumberRow; 4] = [
+    NumberRow {
+        field: NumberField {
+            label: "Time step",
+            tooltip: "Length of a step, s. Half of it: twice the work, a quarter of the error at second order.",
+            limit: limits::TIME_STEP,
+            slider: 1e-4..=0.1,
+            scale: SliderScale::Logarithmic(1e-4),
+            whole: false,
+        },
+        get: |s| s.dynamics.time_step,
+        set: |s, v| s.dynamics.time_step = v,
+    },
+    NumberRow {
+        field: NumberField {
+            label: "Solves",
+            tooltip: "Solves a stage; 0: as many as the tolerance needs.",
+            limit: limits::Limit { unit: "", min: 0.0, max: 20.0 },
+            slider: 0.0..=4.0,
+            scale: SliderScale::Linear,
+            whole: true,
+        },
+        get: |s| f64::from(s.dynamics.iterations),
+        set: |s, v| s.dynamics.iterations = v as u32,
+    },
+    NumberRow {
+        field: NumberField {
+            label: "Air a",
+            tooltip: "Damping by mass, 1/s: slows everything down, as air does. Velocities fall by a factor e in 2/a seconds.",
+            limit: limits::MASS_DAMPING,
+            slider: 0.0..=10.0,
+            scale: SliderScale::Logarithmic(1e-3),
+            whole: false,
+        },
+        get: |s| s.dynamics.damping.mass,
+        set: |s, v| s.dynamics.damping.mass = v,
+    },
+    NumberRow {
+        field: NumberField {
+            label: "Inner b",
+            tooltip: "Damping by stiffness, s: stops vibrations inside the body, the fast ones first; turning is not damped.",
+            limit: limits::STIFFNESS_DAMPING,
+            slider: 0.0..=1.0,
+            scale: SliderScale::Logarithmic(1e-5),
+            whole: false,
+        },
+        get: |s| s.dynamics.damping.stiffness,
+        set: |s, v| s.dynamics.damping.stiffness = v,
+    },
+];
 
 /// Integrator and time step in a few words.
 pub(super) fn summary(input: &Readout<'_>) -> String {
@@ -67,57 +119,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
             }
         }
     });
-    let mut row = |field: NumberField, get: fn(&Scene) -> f64, set: fn(&mut Scene, f64)| {
-        number_row(ui, input, state, actions, (field, get), set);
-    };
-    row(
-        NumberField {
-            label: "Time step",
-            tooltip: "Length of a step, s. Half of it: twice the work, a quarter of the error at second order.",
-            limit: limits::TIME_STEP,
-            slider: 1e-4..=0.1,
-            scale: SliderScale::Logarithmic(1e-4),
-            whole: false,
-        },
-        |s| s.dynamics.time_step,
-        |s, v| s.dynamics.time_step = v,
-    );
-    row(
-        NumberField {
-            label: "Solves",
-            tooltip: "Solves a stage; 0: as many as the tolerance needs.",
-            limit: limits::Limit { unit: "", min: 0.0, max: 20.0 },
-            slider: 0.0..=4.0,
-            scale: SliderScale::Linear,
-            whole: true,
-        },
-        |s| f64::from(s.dynamics.iterations),
-        |s, v| s.dynamics.iterations = v as u32,
-    );
-    row(
-        NumberField {
-            label: "Air a",
-            tooltip: "Damping by mass, 1/s: slows everything down, as air does. Velocities fall by a factor e in 2/a seconds.",
-            limit: limits::MASS_DAMPING,
-            slider: 0.0..=10.0,
-            scale: SliderScale::Logarithmic(1e-3),
-            whole: false,
-        },
-        |s| s.dynamics.damping.mass,
-        |s, v| s.dynamics.damping.mass = v,
-    );
-    row(
-        NumberField {
-            label: "Inner b",
-            tooltip: "Damping by stiffness, s: stops vibrations inside the body, the fast ones first; turning is not damped.",
-            limit: limits::STIFFNESS_DAMPING,
-            slider: 0.0..=1.0,
-            scale: SliderScale::Logarithmic(1e-5),
-            whole: false,
-        },
-        |s| s.dynamics.damping.stiffness,
-        |s, v| s.dynamics.damping.stiffness = v,
-    );
+    number_rows(ui, input, state, actions, TIME);
     if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {
         let words = fill!("The longest stable step about rest is %{step}.", step = engineering(critical, "s"));
         if settings.time_step > critical {

@@ -146,7 +146,7 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
         None => UNKNOWN.to_owned(),
     };
     let tip = "Simulated seconds a second; a machine that cannot keep up slows the motion down";
-    row("RealTimeClock", factor, tip);
+    row("Pace", factor, tip);
     let counts = motion.counts();
     let halvings = (counts.halvings > 0).then(|| count(counts.halvings, "halving"));
     row(

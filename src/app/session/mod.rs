@@ -9,6 +9,8 @@ pub(crate) mod history;
 pub(crate) mod past;
 pub(crate) mod playback;
 pub(crate) mod recovery;
+#[cfg(test)]
+mod tests;
 pub(crate) mod undo;
 
 use std::io;
@@ -34,7 +36,7 @@ use crate::timings::Timings;
 /// A change of the model that can be undone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Edit {
-    /// Change the scene by the control of this label. UndoHistory by one control during one press are one step.
+    /// Change the scene by the control of this label. Edits by one control during one press are one step.
     Scene(&'static str, Box<Scene>),
     /// Use the scene of a measured setting, with its iterations a displayed frame.
     Setting(Box<Scene>, u32),

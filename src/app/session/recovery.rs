@@ -84,7 +84,7 @@ impl Unsaved {
 #[derive(Debug)]
 pub struct Recovery {
     place: Place,
-    /// UndoHistory that the file has.
+    /// Edits that the file has.
     written: Option<Unsaved>,
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,

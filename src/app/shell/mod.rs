@@ -1,5 +1,6 @@
 //! The window's contents: bars, dialogs, shortcuts, and the dispatch of actions.
 
+mod api;
 mod dispatch;
 pub(crate) mod file_dialog;
 mod files;

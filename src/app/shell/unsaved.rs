@@ -1,4 +1,4 @@
-//! UndoHistory that no file has: the question that is asked before they are lost, and the offer of those that a crashed window
+//! Edits that no file has: the question that is asked before they are lost, and the offer of those that a crashed window
 //! has left.
 
 use egui::{Context, Event, Id, Key, Modal, RichText};

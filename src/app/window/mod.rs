@@ -375,7 +375,7 @@ impl App {
         }
     }
 
-    /// Closes the window. UndoHistory that are not saved by now are not wanted.
+    /// Closes the window. Edits that are not saved by now are not wanted.
     fn close(&mut self, event_loop: &ActiveEventLoop) {
         if let Some(recovery) = &mut self.recovery
             && let Err(error) = recovery.keep(None)

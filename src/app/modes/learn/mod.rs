@@ -489,6 +489,12 @@ fn not_triangles(ui: &mut Ui, words: &str, learn: &Learn, actions: &mut Vec<Acti
     });
 }
 
+/// Number of cards.
+#[must_use]
+pub fn card_count() -> usize {
+    CARDS.len()
+}
+
 /// The article's scene.
 pub(crate) fn article() -> Option<(Source, Scene)> {
     let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
@@ -534,7 +540,6 @@ mod tests {
 
     #[test]
     fn every_card_sets_up_a_scene_and_says_something() {
-        assert_eq!(CARDS.len(), 9);
         for card in CARDS {
             let (_, mut scene) = article().unwrap();
             (card.setup.edit)(&mut scene);

@@ -1,0 +1,183 @@
+//! A session without a user interface: edits, undo history, background solves, files, motions and grabs.
+
+use std::fs;
+use std::path::PathBuf;
+
+use nalgebra::Vector2;
+
+use super::*;
+use crate::scene::MethodKind;
+
+fn cantilever(force: f64) -> Scene {
+    Scene::beam(4.0, 1.0).with_cells(8, 2).clamp("left").force("right", [0.0, force]).probe("tip", "right")
+}
+
+fn session(scene: Scene) -> Session {
+    let simulation = Simulation::new(&scene).unwrap();
+    Session::new(Source { name: "-".into(), assignments: Vec::new() }, scene, simulation)
+}
+
+fn with_force(session: &Session, force: f64) -> Edit {
+    let mut scene = session.scene().clone();
+    scene.set_force(0, [0.0, force]).unwrap();
+    Edit::Scene("Force", Box::new(scene))
+}
+
+fn tip(session: &Session) -> f64 {
+    session.simulation().probe("tip").unwrap().y
+}
+
+/// Polls until the background work is done.
+fn wait(session: &mut Session) {
+    while session.is_working() {
+        session.poll();
+        std::thread::yield_now();
+    }
+}
+
+#[test]
+fn edits_change_the_solution_and_are_undone_and_redone() {
+    let mut session = session(cantilever(-100.0));
+    session.solve(false);
+    let first = tip(&session);
+    let changed = session.apply(with_force(&session, -200.0)).unwrap();
+    assert_eq!(changed, Changed { scene: true, ..Changed::default() });
+    assert!(session.is_edited() && session.iterates());
+    session.solve(false);
+    let second = tip(&session);
+    assert!(second < 1.5 * first, "twice the force: {first} and {second} m");
+    session.apply(Edit::Undo).unwrap();
+    session.solve(false);
+    assert!((tip(&session) - first).abs() < 1e-6 * first.abs() && !session.is_edited());
+    assert!(!session.can_undo() && session.can_redo());
+    session.apply(Edit::Redo).unwrap();
+    session.solve(false);
+    assert!((tip(&session) - second).abs() < 1e-6 * second.abs());
+}
+
+#[test]
+fn a_refused_edit_leaves_the_session_unchanged() {
+    let mut session = session(cantilever(-100.0));
+    session.solve(false);
+    let (scene, first) = (session.scene().clone(), tip(&session));
+    session.take_changed();
+    let mut wrong = scene.clone();
+    wrong.material.poisson = 0.9;
+    assert!(session.apply(Edit::Scene("Poisson ν", Box::new(wrong))).is_err());
+    assert!(*session.scene() == scene && tip(&session) == first && !session.can_undo());
+    assert_eq!(session.take_changed(), Changed::default());
+    assert!(session.apply(Edit::Open(Source { name: "nowhere.toml".into(), assignments: Vec::new() })).is_err());
+    assert!(*session.scene() == scene && !session.can_undo());
+}
+
+#[test]
+fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back() {
+    let mut session = session(cantilever(-100.0));
+    session.solve(false);
+    let first = tip(&session);
+    session.set_most_unknowns(0.0);
+    session.apply(with_force(&session, -200.0)).unwrap();
+    assert!(session.is_working() && session.work().is_some());
+    wait(&mut session);
+    assert!(session.simulation().status().is_success() && tip(&session) < 1.5 * first);
+    assert_eq!(session.simulation().scene(), session.scene());
+    // Another mesh is made in the background, too.
+    let second = tip(&session);
+    let finer = Edit::Scene("Cells along", Box::new(session.scene().clone().with_cells(64, 16)));
+    session.take_changed();
+    session.apply(finer.clone()).unwrap();
+    assert!(session.is_working() && !session.take_changed().mesh, "the display keeps the last model");
+    session.cancel();
+    wait(&mut session);
+    assert_eq!(session.scene().beam.as_ref().unwrap().cells, [8, 2]);
+    assert!(tip(&session) == second && session.work().is_none());
+    session.apply(Edit::Undo).unwrap();
+    wait(&mut session);
+    assert!((tip(&session) - first).abs() < 1e-6 * first.abs(), "the cancelled edit is no step");
+    session.apply(finer).unwrap();
+    wait(&mut session);
+    assert!(session.take_changed().mesh && session.simulation().system().mesh().element_count() == 2 * 64 * 16);
+}
+
+#[test]
+fn a_model_that_is_refused_in_the_background_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = session(cantilever(-100.0));
+    session.solve(false);
+    session.set_most_unknowns(0.0);
+    let first = session.scene().clone();
+    let file = folder.path().join("none.msh").to_str().unwrap().to_owned();
+    let mut wrong = first.clone();
+    (wrong.beam, wrong.mesh) = (None, Some(crate::scene::MeshFile { file, element: None, scale: None, text: None }));
+    let edited = session.apply(Edit::Scene("Mesh", Box::new(wrong)));
+    wait(&mut session);
+    let notices = session.take_notices();
+    let is_reported = matches!(notices.as_slice(), [Notice::Rejected { label: Some("Mesh"), .. }]);
+    assert!(edited.is_err() || is_reported, "{notices:?}");
+    assert_eq!(*session.scene(), first);
+}
+
+#[test]
+fn a_scene_is_saved_and_read_again_when_its_file_has_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path: PathBuf = folder.path().join("scene.toml");
+    let mut session = session(cantilever(-100.0));
+    session.apply(with_force(&session, -200.0)).unwrap();
+    session.save(&path).unwrap();
+    assert!(!session.is_edited() && session.document().path() == Some(path.as_path()));
+    session.check_file();
+    assert!(!session.is_outdated());
+    let other = cantilever(-50.0).to_toml().unwrap();
+    fs::write(&path, other).unwrap();
+    let later = fs::metadata(&path).unwrap().modified().unwrap() + std::time::Duration::from_secs(2);
+    fs::File::options().write(true).open(&path).unwrap().set_modified(later).unwrap();
+    session.check_file();
+    assert!(session.is_outdated());
+    let changed = session.apply(Edit::Open(Source { name: path, assignments: Vec::new() })).unwrap();
+    assert!(changed.document && !session.is_outdated() && *session.scene() == session.document().original);
+    assert!(session.scene().loads == cantilever(-50.0).loads && session.can_undo());
+}
+
+#[test]
+fn a_motion_steps_with_the_clock_and_is_grabbed_and_released() {
+    let scene = Scene::beam(2.0, 0.5).clamp("left").probe("tip", "right").gravity([0.0, -9.81]);
+    let mut session = session(scene.moving(IntegratorKind::ImplicitEuler, 0.01));
+    session.advance(0.0);
+    (1..=20).for_each(|frame| _ = session.advance(f64::from(frame) / 60.0));
+    let time = session.simulation().state().time();
+    assert!(time > 0.1 && tip(&session) < 0.0, "{time} s");
+    let point = session.simulation().system().mesh().locate(Vector2::new(2.0, 0.25)).unwrap();
+    let target = Vector2::new(2.0, 1.5);
+    session.grab(Grab { start: Some(point), target: Some(target), release: false });
+    assert!(session.simulation().hand().is_some());
+    let before = tip(&session);
+    (0..40).for_each(|_| session.iterate(1));
+    assert!(tip(&session) > before, "the pull lifts the tip");
+    assert_eq!(session.simulation().hand().map(|(hand, _)| hand.target()), Some(target));
+    session.grab(Grab { release: true, ..Grab::default() });
+    assert!(session.simulation().hand().is_none());
+    session.show_moment(0.05);
+    let shown = session.simulation().state().time();
+    assert!(!session.is_running() && (shown - 0.05).abs() < 0.02, "{shown} s");
+    session.reset();
+    assert_eq!(session.simulation().state().time(), 0.0);
+}
+
+#[test]
+fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
+    let mut session = session(cantilever(-100.0));
+    assert!(!session.request_facts(true, false), "the body is not at rest yet");
+    session.solve(true);
+    assert!(!session.request_facts(true, false));
+    let facts = session.facts();
+    assert!(facts.reference.get().is_some() && facts.curve.get().is_some());
+    // The reference solution does not depend on the method, but on the load.
+    let mut scene = session.scene().clone();
+    scene.solver.method = MethodKind::Warped;
+    session.apply(Edit::Scene("Method", Box::new(scene))).unwrap();
+    assert!(!session.facts().reference.is_pending() && session.facts().curve.is_pending());
+    session.apply(with_force(&session, -150.0)).unwrap();
+    assert!(session.facts().reference.is_pending() && session.facts().reference.latest().is_some());
+    session.solve(false);
+    assert!(session.facts().reference.get().is_some());
+}

@@ -1,0 +1,354 @@
+//! Reading and setting the lab from outside: by the window, screenshots, recordings and tests.
+
+use std::path::Path;
+
+use egui::Rect;
+use nalgebra::Vector2;
+
+use crate::app::ThemeChoice;
+use crate::app::language::{self, Language, tr};
+use crate::app::modes::compare::{MotionPane, Pane, PaneSetting};
+use crate::app::modes::learn::{self};
+use crate::app::shell::intro::Intro;
+use crate::app::shell::settings::Settings;
+use crate::app::view_options::{Drawer, Mode, ViewOptions};
+use crate::app::viewport::handle::Handle;
+use crate::app::widgets::palette;
+use crate::mesh::MaterialPoint;
+use crate::render::{Camera, Frame, View};
+use crate::scene::{IntegratorKind, Scene, Source};
+use crate::simulation::{Simulation, SimulationError};
+use crate::state::State;
+use crate::study::{MotionStudy, Study};
+
+use crate::app::shell::lab::{Desk, Lab};
+
+impl Lab {
+    /// Sets the name of the graphics adapter.
+    pub fn set_adapter(&mut self, adapter: String) {
+        self.adapter = adapter;
+    }
+
+    /// Shows or hides the panel and the bars: without them the view is all of the picture.
+    pub fn set_panel(&mut self, shown: bool) {
+        self.desk.view.bars = shown;
+    }
+
+    /// Animates the growth of the load when the window opens. Nothing waits for it, and any input ends it.
+    pub(crate) fn introduce(&mut self) {
+        self.intro = Intro::new(self.desk.session.simulation());
+    }
+
+    /// Shows the load curve under the body.
+    pub fn show_curve(&mut self) {
+        self.desk.view.drawer = Some(Drawer::Curve);
+    }
+
+    /// Shows the plots of a motion under the body.
+    pub fn show_motion_plots(&mut self) {
+        self.desk.view.drawer = Some(Drawer::Motion);
+    }
+
+    /// Shows a card of the mode Learn, which count from 1. The present scene comes back at the end of the mode.
+    pub fn show_card(&mut self, number: usize) {
+        let card = number.saturating_sub(1).min(learn::CARDS.len() - 1);
+        if self.lesson.is_some() {
+            self.go_to_card(card);
+        } else {
+            self.card = card;
+            self.desk.view.mode = Mode::Learn;
+            self.enter_or_leave();
+        }
+    }
+
+    /// The number of the card that is shown, from 1, and of how many; `None` in other modes.
+    #[must_use]
+    pub fn card(&self) -> Option<(usize, usize)> {
+        self.lesson.as_ref().map(|_| (self.card + 1, learn::CARDS.len()))
+    }
+
+    /// Shows a study under the body.
+    pub fn show_study(&mut self, study: Study) {
+        if self.lesson.is_none() {
+            self.desk.view.mode = Mode::Budget;
+        }
+        self.desk.budget.set(self.desk.session.scene(), study);
+    }
+
+    /// Shows panes side by side, one a setting, under the same load: two to four. A scene in motion is not compared so.
+    pub fn show_comparison(&mut self, settings: &[PaneSetting]) {
+        if self.desk.session.is_motion() {
+            return;
+        }
+        self.desk.view.mode = Mode::Compare;
+        self.desk.compare.set(settings);
+    }
+
+    /// The panes that are compared.
+    #[must_use]
+    pub fn panes(&self) -> &[Pane] {
+        self.desk.compare.panes()
+    }
+
+    /// The panes in which motions are compared.
+    #[must_use]
+    pub fn motion_panes(&self) -> &[MotionPane] {
+        self.desk.motions.panes()
+    }
+
+    /// Equilibria that the comparison has traced under the present kind of load: the setting; the load, and both components
+    /// of the first probe's displacement, m.
+    #[must_use]
+    pub fn traced(&self) -> Vec<(PaneSetting, [f64; 3])> {
+        self.desk.compare.traced()
+    }
+
+    /// The measurements of the scene, and `true` if more are being made.
+    #[must_use]
+    pub fn study(&self) -> (Option<&Study>, bool) {
+        (self.desk.budget.study(), self.desk.budget.runs())
+    }
+
+    /// Measurements of the scene's motion.
+    #[must_use]
+    pub fn motion_study(&self) -> Option<&MotionStudy> {
+        self.desk.budget.motion_study()
+    }
+
+    /// Iterations a displayed frame.
+    #[must_use]
+    pub fn iterations(&self) -> u32 {
+        self.desk.session.iterations()
+    }
+
+    /// Displays a state; returns `false` if it does not fit the mesh.
+    pub(crate) fn restore(&mut self, state: &State) -> bool {
+        self.desk.session.restore(state)
+    }
+
+    /// Fixes the camera and the range of colours.
+    pub(crate) fn fix_view(&mut self, camera: Camera, range: [f64; 2]) {
+        self.desk.viewport.look(camera);
+        self.desk.view.fixed_range = Some(range);
+    }
+
+    /// Returns the camera that shows a box, m, and the linear solution, in a view of this size, points.
+    pub(crate) fn fit(&self, low: Vector2<f64>, high: Vector2<f64>, view: [f64; 2]) -> Camera {
+        self.desk.viewport.fitted(&self.content(), low, high, view)
+    }
+
+    /// Shows or hides the outlines at rest and of the linear solution.
+    pub fn set_outlines(&mut self, shown: bool) {
+        let view = &mut self.desk.view;
+        (view.rest_outline, view.ghost, view.exact) = (shown, shown, shown);
+    }
+
+    /// The scene, with its edits.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        self.desk.session.scene()
+    }
+
+    /// Place that the scene comes from.
+    pub(crate) fn source(&self) -> &Source {
+        &self.desk.session.document().source
+    }
+
+    /// The displayed simulation.
+    #[must_use]
+    pub fn simulation(&self) -> &Simulation {
+        self.desk.session.simulation()
+    }
+
+    /// Linear theory's solution of the scene, where there is one.
+    #[must_use]
+    pub fn linear(&self) -> Option<&Simulation> {
+        self.desk.session.linear()
+    }
+
+    /// Displacement of the linear solution, m, where there is one.
+    #[must_use]
+    pub fn linear_displacement(&self) -> Option<&[Vector2<f64>]> {
+        self.linear().map(Simulation::displacement)
+    }
+
+    /// The view's place in the window, points.
+    #[must_use]
+    pub fn view_rect(&self) -> Rect {
+        self.desk.viewport.rect()
+    }
+
+    /// Tips of the loads' arrows in the window, points, with the number of each among the scene's loads.
+    #[must_use]
+    pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
+        let arrows = self.desk.viewport.arrows(&self.content());
+        arrows.iter().map(|arrow| (arrow.load(), arrow.tip())).collect()
+    }
+
+    /// Feet of the arrows of forces, and centres of those of moments, in the window, points.
+    #[must_use]
+    pub fn arrow_feet(&self) -> Vec<egui::Pos2> {
+        self.desk.viewport.arrows(&self.content()).iter().map(Handle::foot).collect()
+    }
+
+    /// The camera of the last [`Self::ui`].
+    #[must_use]
+    pub fn camera(&self) -> Camera {
+        match self.desk.view.mode {
+            Mode::Compare if self.desk.session.is_motion() => self.desk.motions.camera(),
+            Mode::Compare => self.desk.compare.camera(),
+            _ => self.desk.viewport.camera(),
+        }
+    }
+
+    /// Title of the window: the scene's name, a star where it has been edited, and the name of its file.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let session = &self.desk.session;
+        let edited = if session.is_edited() { "*" } else { "" };
+        language::speak(self.settings.language);
+        let file = session.document().path().and_then(Path::file_name);
+        let file = file.map_or_else(String::new, |file| format!(" ({})", file.to_string_lossy()));
+        format!("{}{edited}{file} \u{2013} warpbeam", tr(&session.scene().name))
+    }
+
+    /// `true` if there is an edit to undo.
+    #[must_use]
+    pub fn can_undo(&self) -> bool {
+        self.desk.session.can_undo()
+    }
+
+    /// `true` if there is an undone edit to do again.
+    #[must_use]
+    pub fn can_redo(&self) -> bool {
+        self.desk.session.can_redo()
+    }
+
+    /// Lets the camera move smoothly, as in a window, or at once, as in pictures.
+    pub fn set_easing(&mut self, eases: bool) {
+        self.desk.viewport.set_easing(eases);
+    }
+
+    /// The material point whose values are shown over the body.
+    #[must_use]
+    pub fn probed(&self) -> Option<MaterialPoint> {
+        self.desk.viewport.probe()
+    }
+
+    /// Sets the size, in unknowns, above which a model is meshed and solved in the background.
+    pub fn set_most_unknowns(&mut self, most: f64) {
+        self.desk.session.set_most_unknowns(most);
+    }
+
+    /// `true` while a model is meshed or solved in the background.
+    #[must_use]
+    pub fn is_working(&self) -> bool {
+        self.desk.session.is_working()
+    }
+
+    /// Changes the scene under the body, which continues from its present state if it can. A large model is set up in the
+    /// background; errors of its mesh are shown then.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; the lab is unchanged.
+    pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
+        self.desk.session.set_scene(scene)?;
+        self.follow_session();
+        Ok(())
+    }
+
+    /// Shows the same motion under another integrator as an outline, or no longer.
+    pub fn compare_with(&mut self, integrator: IntegratorKind) {
+        self.desk.session.toggle_companion(integrator);
+    }
+
+    /// Sets the speed of a motion, simulated seconds per second: 1, or slow motion.
+    pub fn set_speed(&mut self, speed: f64) {
+        self.desk.session.set_speed(speed);
+    }
+
+    /// `true` while something that is shown of the scene is being computed in the background.
+    #[must_use]
+    pub fn is_searching(&self) -> bool {
+        let Desk { session, view, .. } = &self.desk;
+        let facts = session.facts();
+        let plots = match view.drawer {
+            Some(Drawer::Curve) => facts.curve.is_pending(),
+            Some(Drawer::Motion) => facts.frequency.is_pending(),
+            _ => false,
+        };
+        let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_looking());
+        let at_rest = !session.is_motion() && (facts.reference.is_pending() || facts.jump.is_pending());
+        session.is_working() || plots || learns || at_rest
+    }
+
+    /// Restores the saved settings.
+    pub fn set_settings(&mut self, ctx: &egui::Context, settings: Settings) {
+        palette::install(ctx);
+        if let Some(theme) = settings.theme {
+            ctx.set_theme(egui::Theme::from(theme));
+        }
+        let view = &mut self.desk.view;
+        view.panel = settings.panel;
+        view.drawer = settings.drawer;
+        view.color_with(settings.color());
+        self.settings = settings;
+        if let Some(path) = self.desk.session.document().path() {
+            self.settings.add_recent(path);
+        }
+    }
+
+    /// Sets the language of every text.
+    pub fn set_language(&mut self, language: Language) {
+        self.settings.language = language;
+    }
+
+    /// The language of every text.
+    #[must_use]
+    pub fn language(&self) -> Language {
+        self.settings.language
+    }
+
+    /// Notes the size of the window, points.
+    pub fn set_window_size(&mut self, size: [f32; 2]) {
+        self.settings.set_size(size);
+    }
+
+    /// The settings to be saved.
+    #[must_use]
+    pub fn settings(&self, ctx: &egui::Context) -> Settings {
+        let theme = match ctx.options(|options| options.theme_preference) {
+            egui::ThemePreference::Dark => Some(ThemeChoice::Dark),
+            egui::ThemePreference::Light => Some(ThemeChoice::Light),
+            egui::ThemePreference::System => None,
+        };
+        // The cards have a view of their own, which is not saved.
+        let desk = self.lesson.as_ref().map_or(&self.desk, |lesson| &lesson.aside);
+        let ViewOptions { panel, drawer, field, .. } = desk.view;
+        let mut settings = self.settings.clone();
+        (settings.theme, settings.panel, settings.drawer) = (theme, panel, drawer);
+        settings.set_color(field);
+        settings
+    }
+
+    /// The drawn body, as of the last [`Self::ui`].
+    #[must_use]
+    pub fn frame(&self) -> Frame<'_> {
+        self.desk.viewport.frame(&self.content())
+    }
+
+    /// The drawn bodies, as of the last [`Self::ui`], at this number of pixels a point.
+    pub(crate) fn views(&self, pixels_per_point: f32) -> Vec<View<'_>> {
+        let Desk { view, session, compare, motions, .. } = &self.desk;
+        match view.mode {
+            Mode::Compare if session.is_motion() => motions.views(view.wireframe, pixels_per_point),
+            Mode::Compare => compare.views(view.wireframe, pixels_per_point),
+            _ => vec![self.desk.viewport.view(&self.content(), pixels_per_point)],
+        }
+    }
+
+    /// Shows the progress of the scene's recording; `None` once it has ended.
+    pub(crate) fn show_recording(&mut self, progress: Option<String>) {
+        self.recording = progress;
+    }
+}
