@@ -30,6 +30,8 @@ mod manual;
 mod progress;
 #[cfg(feature = "app")]
 mod record;
+mod scene_args;
+mod solved;
 mod text;
 #[cfg(feature = "app")]
 mod window;
