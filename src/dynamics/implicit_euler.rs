@@ -4,8 +4,8 @@
 //! even more energy, most of it where there is nothing to be lost: the first mode of a beam at 60 steps a second keeps
 //! 72 % of its energy a period.
 
-use super::stage::Stage;
-use super::step::{Booking, Solves, Step, StepError, combine, work};
+use super::stage::{Stage, Step};
+use super::step::{Booking, Solves, StepError, combine, work};
 use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
 use crate::scene::IntegratorKind;

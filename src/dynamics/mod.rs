@@ -24,8 +24,8 @@ pub use ledger::{Ledger, Momentum};
 pub(crate) use linear_theory::LinearTheory;
 pub use modes::{critical_step, lowest_frequency};
 pub use report::{MotionDecision, MotionReport};
-pub(crate) use stage::StageSolver;
-pub(crate) use step::{Booking, Memory, Solves, Step};
+pub(crate) use stage::{StageSolver, Step};
+pub(crate) use step::{Booking, Memory, Solves};
 pub use step::{Counts, StepError, StopReason};
 
 /// Which mass matrix an integrator moves.

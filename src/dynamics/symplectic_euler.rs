@@ -5,7 +5,8 @@
 
 use nalgebra::Vector2;
 
-use super::step::{Booking, Memory, Step, StepError, combine, work};
+use super::stage::Step;
+use super::step::{Booking, Memory, StepError, combine, work};
 use super::{Inertia, IntegratorEntry};
 use crate::assembly::Hand;
 use crate::element::StrainRate;

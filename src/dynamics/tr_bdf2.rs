@@ -4,8 +4,8 @@
 //! and Shampine 1996, *Analysis and implementation of TR-BDF2*. L-stable: what the step cannot resolve dies away, and
 //! nothing else does much. Both stages have the same matrix up to the state it is taken at.
 
-use super::stage::Stage;
-use super::step::{Booking, Step, StepError, combine};
+use super::stage::{Stage, Step};
+use super::step::{Booking, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::scene::IntegratorKind;
 use std::f64::consts::SQRT_2;
