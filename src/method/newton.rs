@@ -8,7 +8,8 @@
 //! Supports that move are put on with the load: the body is turned as a whole with them, and what is left of their way
 //! enters the first step of a load step as a force.
 
-use super::status::{LONGEST_STEP, ROUNDING, farthest};
+use super::iteration::ROUNDING;
+use super::status::{LONGEST_STEP, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
