@@ -13,6 +13,7 @@ pub(crate) mod parallel;
 mod pareto;
 pub mod path_chart;
 pub mod plot;
+mod progress;
 mod reference;
 mod report;
 mod scaling;
@@ -27,10 +28,11 @@ pub use load_path::{
     Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_words,
 };
 pub use motion::MotionStudy;
+pub use progress::{Extent, Observer, Progress, StudyError};
 #[cfg(feature = "cli")]
 pub(crate) use reference::MOST_CERTIFIED;
 pub use reference::{ProbeReference, Reference, ReferenceSource};
 pub use scaling::{Exponents, Scaling, ScalingPoint};
 pub use timing::times_from_rest;
-pub use trade::{ErrorSplit, Extent, Measurement, Observer, Progress, Setting, Study, StudyError};
+pub use trade::{ErrorSplit, Measurement, Setting, Study};
 pub use tune::{Demand, Tuning};

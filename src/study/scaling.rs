@@ -80,7 +80,7 @@ impl Scaling {
         for (&unknowns, element) in unknowns.iter().flat_map(|n| ElementKind::all().map(move |e| (n, e))) {
             let cells = cells(element, beam.length / beam.height, unknowns);
             let now = super::trade::mesh_words(element, Some(cells));
-            if observe(Progress { fraction: done / all, now: &now, so_far: None }).is_break() {
+            if observe(Progress { fraction: done / all, now: &now }).is_break() {
                 study.is_partial = true;
                 break;
             }
