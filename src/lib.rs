@@ -38,9 +38,10 @@
 //!
 //! Data flows one way, and the modules say so; each imports only from its left:
 //!
-//! [`words`], [`timings`], [`scene`], [`lanes`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
-//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`study`] → the commands and the
-//! window. [`truth`] needs the scene only; [`article`] stands beside.
+//! [`words`], [`timings`], the scene's data (`model`), [`lanes`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] →
+//! [`solver`], [`scene`] (reads scenes and mesh files, and re-exports their data), [`state`] → [`assembly`] → [`method`] for equilibria,
+//! [`dynamics`] for motions, [`stress`] → [`simulation`] → [`truth`] → [`study`] → the window → the commands. [`article`] needs elements and
+//! rotations only.
 //!
 //! The feature `app` (on by default) is the window and the commands; `cli` is the commands alone, without a GPU or a
 //! window. With neither the library names no GPU, window or command line crate.
@@ -70,6 +71,7 @@ pub mod lanes;
 pub mod material;
 pub mod mesh;
 pub mod method;
+mod model;
 #[cfg(feature = "cli")]
 pub mod picture;
 #[cfg(feature = "app")]

@@ -7,8 +7,8 @@ use nalgebra::{Matrix2, Vector2};
 use crate::displacement::Compensated;
 use crate::lanes::{LANES, Lanes, Number, one_plus};
 use crate::material::Lame;
+use crate::model::ElementKind;
 use crate::rotation::{Rotation, polar_or_else};
-use crate::scene::ElementKind;
 
 pub mod cell;
 mod connectivity;

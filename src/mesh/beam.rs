@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use super::{Mesh, MeshError, Segment};
-use crate::scene::{Beam, Diagonals};
+use crate::model::{Beam, Diagonals};
 
 impl Mesh {
     /// The rectangle [0, length] × [−height/2, height/2], or the arch it is bent to, two triangles or one quadrilateral a cell, with the edges `left`, `right`,

@@ -11,8 +11,8 @@ use thiserror::Error;
 use super::{Mesh, MeshError, Segment, side_key};
 use crate::element::cell::{SQUARE, TRIANGLE};
 use crate::element::{ELEMENTS, ElementType};
-use crate::scene::ElementKind;
-use crate::scene::limits::{COORDINATE, TOTAL_CELLS};
+use crate::model::ElementKind;
+use crate::model::limits::{COORDINATE, TOTAL_CELLS};
 use crate::words::number;
 
 /// Why a mesh file cannot be used.

@@ -9,15 +9,11 @@ use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
-use super::error::{Invalid, SceneError};
-use super::{Scene, registry, required, units};
-use crate::mesh::{GmshError, Mesh};
+use super::mesh::read_mesh;
+use super::{Invalid, Scene, SceneError, registry, required, units};
 
 /// Scene files are small; anything larger is refused before it is read.
 const MAX_FILE_BYTES: u64 = 4 << 20;
-
-/// Room for the largest mesh that is solved.
-const MAX_MESH_BYTES: u64 = 256 << 20;
 
 /// The name of a scene that is read from standard input.
 pub const STANDARD_INPUT: &str = "-";
@@ -174,28 +170,6 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     let valid = scene.validate().and_then(|()| folder.map_or(Ok(()), |folder| read_mesh(&mut scene, folder)));
     valid.map_err(|invalid| blame(text, file, assignments, invalid))?;
     Ok(scene)
-}
-
-/// Reads the mesh file of a scene, relative to the scene's own folder; the meshes of built-in scenes are built in.
-pub(super) fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
-    const KEY: &str = "mesh.file";
-    let Some(mesh) = &mut scene.mesh else { return Ok(()) };
-    let path = folder.join(&mesh.file);
-    let text = match (registry::mesh(&mesh.file), path.is_file()) {
-        (Some(text), false) => text.to_owned(),
-        _ => {
-            let failed = |reason: String| Invalid::new(KEY, format!("{}: {reason}", path.display()));
-            let size = std::fs::metadata(&path).map_err(|e| failed(e.to_string()))?.len();
-            if size > MAX_MESH_BYTES {
-                return Err(failed(format!("expected at most {MAX_MESH_BYTES} bytes, got {size}")));
-            }
-            let bytes = std::fs::read(&path).map_err(|e| failed(e.to_string()))?;
-            String::from_utf8(bytes).map_err(|_| failed(GmshError::NotText.to_string()))?
-        }
-    };
-    mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&text));
-    mesh.text = Some(text.into());
-    Ok(())
 }
 
 /// What is wrong, with the `--set` that made it so, else with its line.

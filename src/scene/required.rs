@@ -2,8 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::error::Invalid;
-use super::units;
+use super::{Invalid, units};
 
 /// Every key that has no default, without its places in lists, and in words what it holds where that is no number in a
 /// unit. The parser looks for the scene's own last.
