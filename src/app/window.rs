@@ -23,7 +23,7 @@ use super::recorder::RecorderError;
 use super::recovery::Recovery;
 use super::settings::Settings;
 use super::shot::picture;
-use super::size::{MOST_ALONE, unknowns};
+use super::size::MOST_ALONE;
 use super::stage::Stage;
 use super::{AppError, NoName, free_name};
 use crate::render::{Gpu, RenderError};
@@ -73,7 +73,7 @@ impl Display {
 /// Whether a scene is so large that the window does not wait for its mesh.
 #[must_use]
 pub fn opens_beside(scene: &Scene) -> bool {
-    unknowns(scene) > MOST_ALONE
+    scene.unknowns() > MOST_ALONE
 }
 
 /// Opens the window and returns when it is closed. Without a simulation the scene is meshed beside the window, which shows

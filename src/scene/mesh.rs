@@ -27,6 +27,15 @@ impl Scene {
         let (any, own) = (self.mesh.is_none(), self.element().entry());
         ElementKind::all().filter(move |e| any || e.entry().shares_cell(own))
     }
+
+    /// Unknowns of its mesh, those that supports fix included, without meshing it: two a node, see [`Mesh::beam_nodes`] and
+    /// [`Mesh::gmsh_nodes`]. 0 where the mesh is the caller's.
+    #[must_use]
+    pub fn unknowns(&self) -> u64 {
+        let file = |mesh: &MeshFile| mesh.text.as_deref().map_or(0, |text| Mesh::gmsh_nodes(text, self.element()));
+        let nodes = self.beam.as_ref().map(Mesh::beam_nodes).or(self.mesh.as_ref().map(file));
+        nodes.unwrap_or(0).saturating_mul(2)
+    }
 }
 
 /// Reads the mesh file of a scene, relative to the scene's own folder; the meshes of built-in scenes are built in.

@@ -18,7 +18,7 @@ use crate::app::overlay::Projection;
 use crate::app::pointer::Pointer;
 use crate::app::probe;
 use crate::app::shape::Shape;
-use crate::app::size::{MOST_UNKNOWNS, unknowns};
+use crate::app::size::MOST_UNKNOWNS;
 use crate::assembly::System;
 use crate::render::Camera;
 use crate::scene::{Beam, MeshFile, Scene};
@@ -368,7 +368,7 @@ impl Pane {
         self.from_rest = simulation.is_none();
         let system = Equations::of(equations, &scene);
         let task = Task { simulation, scene, system, from_rest: false, most_iterations: self.setting.iterations };
-        self.is_large = unknowns(&task.scene) > MOST_UNKNOWNS;
+        self.is_large = task.scene.unknowns() > MOST_UNKNOWNS;
         if self.is_large {
             self.send(task);
         } else {

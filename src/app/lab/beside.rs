@@ -16,7 +16,7 @@ use crate::app::job::Heard;
 use crate::app::language::{fill, tr, translated};
 use crate::app::palette::Palette;
 use crate::app::quality::Quality;
-use crate::app::size::{MOST_ALONE, unknowns};
+use crate::app::size::MOST_ALONE;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::Status;
 
@@ -24,7 +24,7 @@ use crate::simulation::Status;
 #[derive(Debug)]
 pub(super) struct Beside {
     /// More unknowns than this are not solved between two frames.
-    most_unknowns: f64,
+    most_unknowns: u64,
     errand: Option<Errand>,
     /// What an errand has brought back that is not to be shown.
     back: Option<(Bodies, Option<Drawing>)>,
@@ -69,7 +69,7 @@ struct Before {
 
 impl Lab {
     /// More unknowns than this are meshed and solved beside the window, fewer between two frames.
-    pub fn set_most_unknowns(&mut self, most: f64) {
+    pub fn set_most_unknowns(&mut self, most: u64) {
         self.beside.most_unknowns = most;
     }
 
@@ -83,7 +83,7 @@ impl Lab {
     /// equilibrium. Motions take their steps between frames.
     pub(super) fn goes_beside(&self, scene: &Scene) -> bool {
         let is_search = scene.analysis == Analysis::Static && self.simulation.motion().is_none();
-        unknowns(scene) > self.beside.most_unknowns && (is_search || !has_mesh_of(scene, self.simulation.scene()))
+        scene.unknowns() > self.beside.most_unknowns && (is_search || !has_mesh_of(scene, self.simulation.scene()))
     }
 
     /// Whether what is shown is solved beside the window.
