@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
+use super::memory::PeakMemory;
 use super::progress::Watch;
 use super::solved::{Solved, Spent};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
@@ -16,8 +17,8 @@ use crate::simulation::{Deformation, Simulation, Status, StressResult};
 use crate::stress::strain_warning;
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MotionStudy, PathSummary, Reference, Scaling, Study,
-    StudyError, Tuning, extremes, heat_map, motion_heat_map, moved_points, parallel, path_chart, plot,
+    Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MemoryMeter, MotionStudy, PathSummary, Reference,
+    Scaling, Study, StudyError, Tuning, extremes, heat_map, motion_heat_map, moved_points, parallel, path_chart, plot,
 };
 use crate::words::count;
 
@@ -233,7 +234,9 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
 pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
     let watch = Watch::new();
-    let study = Scaling::new(&scene, extent(out), &mut |progress| watch.observe(&progress));
+    let memory = PeakMemory::watch();
+    let meter = memory.as_ref().map(|memory| memory as &dyn MemoryMeter);
+    let study = Scaling::new(&scene, extent(out), meter, &mut |progress| watch.observe(&progress));
     drop(watch);
     let study = match study {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),

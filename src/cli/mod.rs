@@ -27,6 +27,7 @@ mod draw_args;
 mod driver;
 mod json;
 mod manual;
+mod memory;
 mod progress;
 #[cfg(feature = "app")]
 mod record;

@@ -15,7 +15,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::EnergyMomentum,
     id: "energy-momentum",
     about: "Energy–momentum: second order, keeps energy, momentum and angular momentum; iterates to the tolerance always.",
-    colors: [[0, 100, 180], [90, 200, 250]],
     order: 2,
     stages: 1,
     always_iterates: true,

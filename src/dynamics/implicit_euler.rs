@@ -14,7 +14,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::ImplicitEuler,
     id: "implicit-euler",
     about: "Implicit Euler, the article's and the games' way: never unstable, one solve a step, but motion dies away.",
-    colors: [[190, 20, 30], [255, 105, 97]],
     order: 1,
     stages: 1,
     always_iterates: false,

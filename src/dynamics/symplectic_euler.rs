@@ -18,7 +18,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::SymplecticEuler,
     id: "symplectic-euler",
     about: "Symplectic Euler: explicit, solves nothing, cheap a step, but explodes beyond its critical step.",
-    colors: [[200, 90, 0], [240, 150, 60]],
     order: 1,
     stages: 0,
     always_iterates: false,

@@ -14,7 +14,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::TrBdf2,
     id: "tr-bdf2",
     about: "TR-BDF2: second order, damps only what the step cannot resolve; one solve for each of its two stages will do.",
-    colors: [[0, 120, 80], [110, 220, 140]],
     order: 2,
     stages: 2,
     always_iterates: false,

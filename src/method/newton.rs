@@ -20,7 +20,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Newton,
     id: "newton",
     about: "Newton with the exact tangent A + G: an exact, stable equilibrium in a few solves, also under large loads.",
-    colors: [[0, 100, 180], [90, 200, 250]],
     start: || Box::<Newton>::default(),
 };
 

@@ -1,6 +1,7 @@
 //! Measurements over many solves.
 
 mod chart;
+mod colors;
 mod convergence;
 pub mod extremes;
 pub mod figure;
@@ -21,6 +22,7 @@ mod timing;
 mod trade;
 mod tune;
 
+pub use colors::color;
 pub use fine::{Effort, MovedPoint, moved_points};
 pub use heat_map::{heat_map, motion_heat_map};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
@@ -32,7 +34,7 @@ pub use progress::{Extent, Observer, Progress, StudyError};
 #[cfg(feature = "cli")]
 pub(crate) use reference::MOST_CERTIFIED;
 pub use reference::{ProbeReference, Reference, ReferenceSource};
-pub use scaling::{Exponents, Scaling, ScalingPoint};
+pub use scaling::{Exponents, MemoryMeter, Scaling, ScalingPoint};
 pub use timing::times_from_rest;
 pub use trade::{ErrorSplit, Measurement, Setting, Study};
 pub use tune::{Demand, Tuning};
