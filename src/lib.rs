@@ -66,7 +66,6 @@ pub mod displacement;
 pub mod dynamics;
 pub mod element;
 pub mod export;
-mod lanczos;
 pub mod lanes;
 pub mod material;
 pub mod mesh;
