@@ -14,7 +14,7 @@ mod place;
 pub mod units;
 
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
-pub use error::{Invalid, SceneError};
+pub use error::{Invalid, ReadError, SceneError};
 pub use limits::OutOfRange;
 pub use place::{Axis, Load, Place, Probe, Support, TableError};
 

@@ -13,6 +13,6 @@ pub use open::{STANDARD_INPUT, Source, locate, open};
 
 pub use crate::model::{
     Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
-    MeshFile, MethodKind, OutOfRange, Place, Plane, Probe, Pulse, Scene, SceneError, SolverSettings, Start, Support,
-    TableError, limits, units,
+    MeshFile, MethodKind, OutOfRange, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError, SolverSettings, Start,
+    Support, TableError, limits, units,
 };
