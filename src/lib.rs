@@ -50,8 +50,8 @@
 //!
 //! - M. Müller, M. Gross, *Interactive Virtual Materials*, Graphics Interface 2004: warped stiffness.
 //! - "实时物理模拟之 Warped Stiffness 方法" (*the article*): the equation numbers in these pages are its own. Its errata
-//!   are documented where they matter: [`rotation::polar`], [`article::decomposition::polar3`],
-//!   [`article::decomposition::Polar::left`], [`article::decomposition::polar_from_svd`].
+//!   are documented where they matter: [`rotation::polar`], and those of formulas that the solver does not need in
+//!   `tests/article`.
 //! - faer for sparse Cholesky, nalgebra for small matrices.
 
 #![forbid(unsafe_code)]
