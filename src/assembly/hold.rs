@@ -40,7 +40,7 @@ pub(super) fn axes(support: &Support) -> [bool; 2] {
 pub(super) struct Hold {
     /// Parts that share no nodes.
     parts: usize,
-    /// Those of them that can still move freely.
+    /// Parts that can still move freely.
     loose: usize,
     /// A node at which a part hangs that can turn about it.
     hinge: Option<u32>,
@@ -141,7 +141,7 @@ fn loose_hinge(mesh: &Mesh, fixed: &[bool], parts: usize, of_node: &[Vec<u32>]) 
     hinges.max_by(|a, b| turns(a).total_cmp(&turns(b))).map(|node| node as u32)
 }
 
-/// Whether the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of the three
+/// `true` if the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of the three
 /// rigid modes, restricted to them, is regular.
 fn is_held(nodes: &[(Vector2<f64>, &[bool])]) -> bool {
     const SINGULAR: f64 = 1e-12;

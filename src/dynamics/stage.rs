@@ -88,7 +88,7 @@ pub(crate) struct Step<'a> {
     pub state: &'a mut State,
     /// A state between the two, for integrators that need one.
     pub middle: &'a mut State,
-    /// Whether the ledger is kept.
+    /// `true` if the ledger is kept.
     pub books: bool,
 }
 

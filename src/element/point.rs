@@ -61,7 +61,7 @@ impl<const N: usize> QuadraturePoint<N> {
 }
 
 impl<const N: usize> QuadraturePoint<N, Lanes> {
-    /// Those of several elements.
+    /// Points of several elements.
     pub(super) fn side_by_side(own: [QuadraturePoint<N>; LANES]) -> Self {
         Self {
             gradients: std::array::from_fn(|a| side_by_side(own.map(|point| point.gradients[a]))),
@@ -69,7 +69,7 @@ impl<const N: usize> QuadraturePoint<N, Lanes> {
         }
     }
 
-    /// That of the element in this lane.
+    /// The point of the element in this lane.
     #[inline(always)]
     pub(super) fn lane(&self, of: usize) -> QuadraturePoint<N> {
         let mut gradients = [zero_vector(); N];
@@ -93,7 +93,7 @@ impl<const N: usize, T: Number> QuadraturePoint<N, T> {
         h
     }
 
-    /// What this point's part of a tangent is made of; `trace` is that of the strain.
+    /// Moduli of this point's part of a tangent; `trace` is that of the strain.
     ///
     /// With g = R ∇Nₐ and h = R ∇N_b, the block of R Ke Rᵀ is K_ab = v (λ g hᵀ + μ (g·h) I + μ h gᵀ): turning the
     /// gradients is cheaper than turning the matrix, and gives the same.

@@ -178,7 +178,7 @@ impl Headers {
         headers
     }
 
-    /// Of the file's elements, the one with the most nodes.
+    /// The element with the most nodes; `None` where the file has none of ours.
     fn own(&self) -> Option<&'static ElementType> {
         self.elements.iter().map(|(entry, _)| *entry).max_by_key(|entry| entry.nodes.len())
     }

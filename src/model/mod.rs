@@ -30,7 +30,7 @@ pub struct Scene {
     /// One sentence for the scene list.
     #[serde(default)]
     pub about: String,
-    /// What is computed.
+    /// Equilibrium or motion.
     #[serde(default)]
     pub analysis: Analysis,
     /// The meshed rectangle …
@@ -44,10 +44,10 @@ pub struct Scene {
     /// Where nodes are fixed.
     #[serde(rename = "support", default)]
     pub supports: Vec<Support>,
-    /// What pulls.
+    /// Forces, moments and gravity.
     #[serde(rename = "load", default)]
     pub loads: Vec<Load>,
-    /// What is measured.
+    /// Places whose displacements are measured.
     #[serde(rename = "probe", default)]
     pub probes: Vec<Probe>,
     /// How the equilibrium is found.
@@ -61,7 +61,7 @@ pub struct Scene {
     pub start: Start,
 }
 
-/// What is computed.
+/// Kinds of results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -87,10 +87,10 @@ pub struct Beam {
     pub rise: f64,
     /// Cells along and across; each is a quadrilateral, or is cut into two triangles.
     pub cells: [u32; 2],
-    /// What every cell, or each of its triangles, becomes.
+    /// Element that every cell, or each of its triangles, becomes.
     #[serde(default)]
     pub element: ElementKind,
-    /// Which way cells are cut into triangles; quadrilaterals are not cut.
+    /// Direction in which cells are cut into triangles; quadrilaterals are not cut.
     #[serde(default)]
     pub diagonals: Diagonals,
 }
@@ -108,7 +108,7 @@ pub struct MeshFile {
     /// Metres per unit of the file; 1 where it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
-    /// What is in the file; read when the scene is opened.
+    /// Contents of the file; read when the scene is opened.
     #[serde(skip)]
     pub text: Option<Arc<str>>,
 }
@@ -127,7 +127,7 @@ pub enum ElementKind {
     Q4,
 }
 
-/// Which way the cells of a beam are cut.
+/// Directions in which the cells of a beam are cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -158,7 +158,7 @@ pub struct Material {
     pub plane: Plane,
 }
 
-/// Whether nothing is said by writing it.
+/// `true` for a default value, which files leave out.
 fn is_zero<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
@@ -171,7 +171,7 @@ fn default_thickness() -> f64 {
     1.0
 }
 
-/// What happens out of the plane.
+/// Conditions out of the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Plane {

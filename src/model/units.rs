@@ -440,7 +440,7 @@ mod tests {
                 );
             }
         }
-        // What was typed in radians, and what no one types.
+        // A value typed in radians, and a value that no one types.
         assert_eq!(
             (editable(0.123_f64.to_radians().to_degrees(), "°").as_str(), editable(1.0 / 60.0, "s").as_str()),
             ("0.123°", "16.67 ms")

@@ -78,7 +78,7 @@ impl StudyError {
 pub struct Progress<'a> {
     /// Fraction that is done, 0 to 1: of the time that is expected, from sizes and from what has been timed so far.
     pub fraction: f64,
-    /// What is measured now.
+    /// Setting being measured.
     pub now: &'a str,
 }
 
@@ -99,7 +99,7 @@ pub(super) fn check(flow: ControlFlow<()>) -> Result<(), StudyError> {
     if flow.is_break() { Err(StudyError::Cancelled) } else { Ok(()) }
 }
 
-/// What has come of all items of [`parallel::map`], or of the first that failed or was called off.
+/// Results of all items of [`super::parallel::map`], or the error of the first that failed or was called off.
 pub(super) fn all_done<T>(results: Vec<Option<Result<T, StudyError>>>) -> Result<Vec<T>, StudyError> {
     results.into_iter().map(|result| result.ok_or(StudyError::Cancelled)?).collect()
 }
