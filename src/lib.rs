@@ -38,9 +38,10 @@
 //!
 //! Data flows one way, and the modules say so; each imports only from its left:
 //!
-//! [`words`], [`timings`], [`scene`], [`lanes`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
-//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`study`] → the commands and the
-//! window. [`truth`] needs the scene only; [`article`] stands beside.
+//! [`words`], [`timings`], the scene's data (`model`), [`lanes`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] →
+//! [`solver`], [`scene`] (reads scenes and mesh files, and re-exports their data), [`state`] → [`assembly`] → [`method`] for equilibria,
+//! [`dynamics`] for motions, [`stress`] → [`simulation`] → [`truth`] → [`study`] → the window → the commands. [`article`] needs elements and
+//! rotations only.
 //!
 //! The feature `app` (on by default) is the window and the commands; `cli` is the commands alone, without a GPU or a
 //! window. With neither the library names no GPU, window or command line crate.
@@ -49,8 +50,8 @@
 //!
 //! - M. Müller, M. Gross, *Interactive Virtual Materials*, Graphics Interface 2004: warped stiffness.
 //! - "实时物理模拟之 Warped Stiffness 方法" (*the article*): the equation numbers in these pages are its own. Its errata
-//!   are documented where they matter: [`rotation::polar`], [`article::decomposition::polar3`],
-//!   [`article::decomposition::Polar::left`], [`article::decomposition::polar_from_svd`].
+//!   are documented where they matter: [`rotation::polar`], and those of formulas that the solver does not need in
+//!   `tests/article`.
 //! - faer for sparse Cholesky, nalgebra for small matrices.
 
 #![forbid(unsafe_code)]
@@ -65,11 +66,11 @@ pub mod displacement;
 pub mod dynamics;
 pub mod element;
 pub mod export;
-mod lanczos;
 pub mod lanes;
 pub mod material;
 pub mod mesh;
 pub mod method;
+mod model;
 #[cfg(feature = "cli")]
 pub mod picture;
 #[cfg(feature = "app")]

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Matrix3};
 
 use crate::lanes::Number;
-use crate::scene::{Material, Plane};
+use crate::model::{Material, Plane};
 
 /// Lamé constants of the plane problem, Pa; times a thickness, N/m.
 #[derive(Clone, Copy, Debug, PartialEq)]

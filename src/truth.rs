@@ -15,7 +15,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector2};
 
-use crate::scene::{Analysis, Axis, Load, Place, Plane, Scene, Support};
+use crate::model::{Analysis, Axis, Load, Place, Plane, Scene, Support};
 
 /// A clamped beam and its loads. Any consistent units.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,7 +21,7 @@ fn harness(id: &str) -> Harness<'static, Lab> {
     let scene = scene(id);
     let simulation = Simulation::new(&scene).unwrap();
     let mut lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
-    lab.set_most_unknowns(0.0);
+    lab.set_most_unknowns(0);
     let builder = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400);
     let mut harness = builder.build_ui_state(
         |ui, lab: &mut Lab| {
@@ -251,7 +251,7 @@ fn a_dropped_lab_ends_its_worker() {
         let simulation = Simulation::new(&scene).unwrap();
         Lab::new(Source { name: "cantilever".into(), assignments: Vec::new() }, scene, simulation)
     };
-    lab.set_most_unknowns(0.0);
+    lab.set_most_unknowns(0);
     lab.solve();
     let system = Arc::downgrade(lab.simulation().system());
     let mut heavy = lab.scene().clone();
@@ -272,7 +272,7 @@ fn solve_waits_for_the_worker() {
     let scene = scene("cantilever");
     let simulation = Simulation::new(&scene).unwrap();
     let mut lab = Lab::new(Source { name: "cantilever".into(), assignments: Vec::new() }, scene.clone(), simulation);
-    lab.set_most_unknowns(0.0);
+    lab.set_most_unknowns(0);
     lab.set_scene(scene.with_cells(24, 3)).unwrap();
     lab.solve();
     assert!(!lab.is_working());

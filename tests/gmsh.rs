@@ -3,10 +3,12 @@
 
 mod common;
 
+use std::collections::BTreeSet;
 use std::fs;
 
-use common::{stderr, stdout, warpbeam};
+use common::{scene, scene_ids, stderr, stdout, warpbeam};
 use nalgebra::Vector2;
+use warpbeam::assembly::System;
 use warpbeam::mesh::{GmshError, Mesh, MeshError};
 use warpbeam::{ElementKind, Scene, Simulation};
 
@@ -147,15 +149,43 @@ fn damaged_files_never_panic() {
     let text = SQUARE;
     for end in 0..text.len() {
         let _ = Mesh::from_gmsh(&text[..end], ElementKind::T6);
+        let _ = Mesh::gmsh_nodes(&text[..end], ElementKind::T6);
     }
     for at in 0..text.len() {
         for with in ["9", "-", " ", "\n", "$", "e", "999999999999999999999"] {
             let damaged = format!("{}{with}{}", &text[..at], &text[at + 1..]);
+            let _ = Mesh::gmsh_nodes(&damaged, ElementKind::T6);
             if let Ok(mesh) = Mesh::from_gmsh(&damaged, ElementKind::T6) {
                 assert!(mesh.nodes().iter().all(|x| x.x.is_finite() && x.y.is_finite()));
             }
         }
     }
+}
+
+/// Before a scene is meshed its unknowns are known: exactly of beams and of files with their own element, but for the holes of the body with
+/// another element.
+#[test]
+fn unknowns_are_known_before_a_scene_is_meshed() {
+    let mut files = 0;
+    for id in scene_ids() {
+        let own = scene(id);
+        for element in own.elements() {
+            let scene = own.clone().with_element(element);
+            let mesh = System::new(&scene).unwrap().mesh().clone();
+            let nodes = mesh.nodes().len();
+            let exact = scene.beam.is_some() || element == own.element();
+            // V − E + F = 1 − holes of one part.
+            let corners = element.entry().cell.corners.len();
+            let vertices: BTreeSet<u32> = mesh.elements().flat_map(|nodes| nodes[..corners].to_vec()).collect();
+            let sides: BTreeSet<[u32; 2]> =
+                mesh.elements().flat_map(|nodes| mesh.sides(nodes).map(|s| s.key())).collect();
+            let holes = 1 + sides.len() - vertices.len() - mesh.element_count();
+            let off = scene.unknowns().abs_diff(2 * nodes as u64) as usize;
+            assert!(off <= if exact { 0 } else { 2 * holes }, "{id} of {}: off by {off} of {nodes}", element.id());
+            files += usize::from(!exact);
+        }
+    }
+    assert!(files >= 2, "files with another element than their own: {files}");
 }
 
 #[test]

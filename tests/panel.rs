@@ -811,7 +811,7 @@ fn no_text_has_letters_that_the_fonts_lack() {
     }
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut texts = Vec::new();
-    for folder in ["app", "method", "element", "scene", "simulation"] {
+    for folder in ["app", "method", "element", "model", "scene", "simulation"] {
         sources(&root.join("src").join(folder), &mut texts);
     }
     let about = common::scene_ids().into_iter().map(|id| scene(id).about);

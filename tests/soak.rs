@@ -5,6 +5,9 @@
 
 mod common;
 
+use std::ops::Range;
+
+use allocation_counter::measure;
 use common::pictures::lab;
 use common::scene;
 use egui_kittest::Harness;
@@ -27,8 +30,18 @@ impl Random {
     }
 }
 
-/// Resident memory, bytes; `None` where the system does not say.
-fn memory() -> Option<u64> {
+/// Fails where `work` leaves more bytes allocated than `most`; on Linux, where the process has grown by more, other threads included.
+fn assert_keeps_no_more(most: u32, of: &str, work: impl FnOnce()) {
+    let before = resident();
+    let kept = measure(work).bytes_current;
+    assert!(kept < i64::from(most), "{of}: {kept} bytes are left");
+    if let (Some(before), Some(after)) = (before, resident()) {
+        assert!(after < before + u64::from(most), "{of}: from {before} to {after} bytes");
+    }
+}
+
+/// Resident memory, bytes; `None` where the system does not tell.
+fn resident() -> Option<u64> {
     const PAGE: u64 = 4096;
     let text = std::fs::read_to_string("/proc/self/statm").ok()?;
     Some(text.split_whitespace().nth(1)?.parse::<u64>().ok()? * PAGE)
@@ -47,31 +60,28 @@ fn a_swing_goes_on() {
         let tip = simulation.system().mesh().locate(Vector2::new(0.98, 0.0)).unwrap();
         let mut place = Vector2::zeros();
         let steps = 10_000 * longer();
-        let mut after_a_while = None;
-        for step in 0..steps {
-            match step % 600 {
-                400 => assert!(simulation.grab(tip)),
-                401..460 => {
-                    if step % 20 == 1 {
-                        place = Vector2::new(0.6, -0.4) + Vector2::new(random.next(), random.next()) * 0.3;
+        let mut go_on = |steps: Range<u32>| {
+            for step in steps {
+                match step % 600 {
+                    400 => assert!(simulation.grab(tip)),
+                    401..460 => {
+                        if step % 20 == 1 {
+                            place = Vector2::new(0.6, -0.4) + Vector2::new(random.next(), random.next()) * 0.3;
+                        }
+                        simulation.pull_to(place).unwrap();
                     }
-                    simulation.pull_to(place).unwrap();
+                    460 => simulation.release(),
+                    _ => {}
                 }
-                460 => simulation.release(),
-                _ => {}
+                simulation.step();
             }
-            simulation.step();
-            if step == steps / 10 {
-                after_a_while = memory();
-            }
-        }
+        };
+        go_on(0..steps / 10);
+        assert_keeps_no_more(16 << 20, &format!("{integrator:?}"), || go_on(steps / 10..steps));
         assert!(!matches!(simulation.status(), Status::Stopped(_)), "{integrator:?}: {:?}", simulation.status());
         assert!(simulation.state().is_finite());
         let ledger = simulation.motion().unwrap().ledger();
         assert!(ledger.imbalance().abs() < 1e-10 * ledger.throughput, "{integrator:?}: {ledger:?}");
-        if let (Some(before), Some(after)) = (after_a_while, memory()) {
-            assert!(after < before + (16 << 20), "{integrator:?}: from {before} to {after} bytes");
-        }
     }
 }
 
@@ -95,30 +105,28 @@ fn a_window_is_played_with() {
             lab(id),
         );
         let mut random = Random(11);
-        let (mut held, mut memory_then) = (0, None);
+        let mut held = 0;
         let frames = 240 * longer();
-        for frame in 0..frames {
-            let rect = harness.state().view_rect();
-            let reach = 0.45 * rect.size();
-            let place = rect.center() + egui::vec2(random.next() as f32 * reach.x, random.next() as f32 * reach.y);
-            match frame % 12 {
-                0 => {
-                    let node = on_the_body(harness.state(), 0.5 + 0.5 * random.next());
-                    harness.drag_at(node + egui::vec2(random.next() as f32 * 20.0, random.next() as f32 * 20.0));
+        let mut play = |frames: Range<u32>| {
+            for frame in frames {
+                let rect = harness.state().view_rect();
+                let reach = 0.45 * rect.size();
+                let place = rect.center() + egui::vec2(random.next() as f32 * reach.x, random.next() as f32 * reach.y);
+                match frame % 12 {
+                    0 => {
+                        let node = on_the_body(harness.state(), 0.5 + 0.5 * random.next());
+                        harness.drag_at(node + egui::vec2(random.next() as f32 * 20.0, random.next() as f32 * 20.0));
+                    }
+                    8 => harness.drop_at(place),
+                    _ => harness.hover_at(place),
                 }
-                8 => harness.drop_at(place),
-                _ => harness.hover_at(place),
+                harness.step();
+                held += u32::from(harness.state().simulation().hand().is_some());
+                assert!(harness.state().simulation().state().is_finite(), "{id}: frame {frame}");
             }
-            harness.step();
-            held += u32::from(harness.state().simulation().hand().is_some());
-            assert!(harness.state().simulation().state().is_finite(), "{id}: frame {frame}");
-            if frame == frames / 2 {
-                memory_then = memory();
-            }
-        }
+        };
+        play(0..frames / 2);
+        assert_keeps_no_more(32 << 20, id, || play(frames / 2..frames));
         assert!(id == "article" || held > 0, "{id}: nothing was ever held");
-        if let (Some(before), Some(after)) = (memory_then, memory()) {
-            assert!(after < before + (32 << 20), "{id}: from {before} to {after} bytes");
-        }
     }
 }

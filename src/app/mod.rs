@@ -16,7 +16,6 @@ mod panel;
 mod readout;
 mod session;
 mod shell;
-mod size;
 mod task;
 mod view_options;
 mod viewport;

@@ -8,6 +8,8 @@
 mod dissection;
 mod edge;
 mod hand;
+mod hold;
+mod kinematics;
 mod loads;
 mod mass;
 mod matrix;
@@ -20,6 +22,7 @@ mod system;
 
 pub use edge::{Edge, NodeWeights};
 pub use hand::Hand;
+pub use kinematics::Kinematics;
 pub use loads::Loads;
 pub use mass::Mass;
 pub use matrix::Matrix;
@@ -28,4 +31,4 @@ pub use probe::NodalProbe;
 pub use problem::{Change, Forces, Problem};
 pub(crate) use supports::LARGEST_TURN;
 pub use supports::{NodalSupport, Supports};
-pub use system::{Kinematics, System, SystemError};
+pub use system::{System, SystemError};

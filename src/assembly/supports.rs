@@ -3,45 +3,17 @@
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
+use nalgebra::Vector2;
 
-use super::edge::{no_such_edge, node_at};
+use super::hold::{axes, nodes_of};
 use super::{Kinematics, Matrix, NodeWeights, System};
 use crate::displacement::Displacement;
 use crate::element::{MatrixSum, Rotations, Tangent};
 use crate::mesh::Mesh;
 use crate::rotation::Rotation;
-use crate::scene::{Analysis, Axis, Invalid, Material, Place, Support};
+use crate::scene::{Invalid, Material, Place, Support};
 use crate::state::State;
 use crate::words::number;
-
-/// The unknowns (2 · node + axis) that supports fix.
-pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bool>, Invalid> {
-    let mut fixed = vec![false; 2 * mesh.nodes().len()];
-    for (i, support) in supports.iter().enumerate() {
-        for node in nodes_of(support, mesh, &format!("support.{i}"))? {
-            for (fixed, fixes) in fixed[2 * node as usize..].iter_mut().zip(axes(support)) {
-                *fixed |= fixes;
-            }
-        }
-    }
-    if fixed.iter().all(|&f| f) {
-        return Err(Invalid::new("support", "expected some node that can move, got supports that fix them all"));
-    }
-    Ok(fixed)
-}
-
-fn nodes_of(support: &Support, mesh: &Mesh, key: &str) -> Result<Vec<u32>, Invalid> {
-    match &support.place {
-        Place::Edge(name) => mesh.edge_nodes(name).ok_or_else(|| no_such_edge(mesh, name, key)),
-        Place::At(at) => Ok(vec![node_at(mesh, *at, key)?]),
-    }
-}
-
-/// Whether x and y are fixed.
-fn axes(support: &Support) -> [bool; 2] {
-    [Axis::X, Axis::Y].map(|axis| support.fix.contains(&axis))
-}
 
 /// A support on the nodes of a mesh: what it holds, and where it takes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,11 +105,13 @@ impl Supports {
                         continue;
                     };
                     *own = false;
-                    agree(&all[first], &new, mesh.node(node), axis, system.size()).map_err(|there| {
+                    let x = mesh.node(node);
+                    if !agree(&all[first], &new, x, axis, system.size()) {
+                        let there = format!("({}, {})", number(x.x), number(x.y));
                         let message =
                             format!("expected what support.{first} does to the node at {there}, which both fix");
-                        Invalid::new(&key, message)
-                    })?;
+                        return Err(Invalid::new(&key, message));
+                    }
                 }
                 new.nodes.push((node, own));
             }
@@ -290,146 +264,12 @@ impl Supports {
     }
 }
 
-/// Whether two supports take a component of a node that both fix to the same place on all of their way; where the node
-/// is if not.
-fn agree(first: &NodalSupport, second: &NodalSupport, x: Vector2<f64>, axis: usize, size: f64) -> Result<(), String> {
-    /// Of the size of the body, what is rounding.
+/// `true` if two supports take a component of a node that both fix to the same place on all of their path.
+fn agree(first: &NodalSupport, second: &NodalSupport, x: Vector2<f64>, axis: usize, size: f64) -> bool {
+    /// Rounding, over the size of the body.
     const SAME: f64 = 1e-12;
-    let same = [0.5, 1.0].iter().all(|&factor| {
+    [0.5, 1.0].iter().all(|&factor| {
         let [a, b] = [first, second].map(|support| support.take(x, factor, Kinematics::Corotated)[axis]);
         (a - b).abs() <= SAME * (size + a.abs())
-    });
-    if same { Ok(()) } else { Err(format!("({}, {})", number(x.x), number(x.y))) }
-}
-
-/// How the supports hold a body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Hold {
-    /// Parts that share no nodes.
-    parts: usize,
-    /// Those of them that can still move freely.
-    loose: usize,
-    /// A node at which a part hangs that can turn about it.
-    hinge: Option<u32>,
-}
-
-/// Refuses to look for the equilibrium of a body that is not held; in motion it may be free.
-pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<(), Invalid> {
-    if analysis == Analysis::Dynamic {
-        return Ok(());
-    }
-    if let (0, Some(node)) = (hold.loose, hold.hinge) {
-        let (x, name) = (mesh.node(node), mesh.node_name(node));
-        let message = format!(
-            "expected elements that share sides, got a part that hangs on node {} at ({}, {}) and can turn about it",
-            name.map_or_else(|| "?".to_owned(), |name| name.to_string()),
-            number(x.x),
-            number(x.y)
-        );
-        return Err(Invalid::new("mesh", message));
-    }
-    if hold.loose == 0 {
-        return Ok(());
-    }
-    if hold.parts > 1 {
-        let Hold { parts, loose, .. } = hold;
-        let message = format!(
-            "expected one connected body, got {parts} parts that share no nodes; supports leave {loose} of them free to move"
-        );
-        return Err(Invalid::new("mesh", message));
-    }
-    Err(Invalid::new(
-        "support",
-        "expected supports that hold the body in both directions and against turning: it can still move freely",
-    ))
-}
-
-impl Hold {
-    /// `is_grid` for a rectangle of cells, which has no hinges.
-    pub(super) fn of(mesh: &Mesh, fixed: &[bool], is_grid: bool) -> Self {
-        let (parts, part_of) = mesh.parts();
-        let mut held_nodes = vec![Vec::new(); parts];
-        for ((x, fixed), &part) in mesh.nodes().iter().zip(fixed.chunks_exact(2)).zip(&part_of) {
-            // Nodes without an element are in no part.
-            if let (true, Some(nodes)) = (fixed.contains(&true), held_nodes.get_mut(part as usize)) {
-                nodes.push((*x, fixed));
-            }
-        }
-        let loose = held_nodes.iter().filter(|nodes| !is_held(nodes)).count();
-        let hinged = if is_grid { None } else { mesh.hinged_parts() };
-        let hinge = hinged.and_then(|(parts, of_node)| loose_hinge(mesh, fixed, parts, &of_node));
-        Self { parts, loose, hinge }
-    }
-}
-
-/// A hinge between parts that can move against each other although supports hold the body: the Gram matrix of the constraints
-/// that supports and hinges put on the parts' rigid motions is singular. Of the nodes at which parts meet, the one about which
-/// they turn most.
-fn loose_hinge(mesh: &Mesh, fixed: &[bool], parts: usize, of_node: &[Vec<u32>]) -> Option<u32> {
-    const SINGULAR: f64 = 1e-10;
-    let (low, high) = mesh.bounds();
-    let (centre, size) = ((low + high) * 0.5, (high - low).norm());
-    // The displacement of a node by the two translations and the rotation of a part.
-    let modes = |node: usize| {
-        let arm = (mesh.nodes()[node] - centre) / size;
-        [Vector3::new(1.0, 0.0, -arm.y), Vector3::new(0.0, 1.0, arm.x)]
-    };
-    let mut gram = DMatrix::<f64>::zeros(3 * parts, 3 * parts);
-    let mut add = |terms: &[(u32, f64)], mode: &Vector3<f64>| {
-        for &(a, x) in terms {
-            for &(b, y) in terms {
-                let mut block = gram.fixed_view_mut::<3, 3>(3 * a as usize, 3 * b as usize);
-                block += mode * mode.transpose() * (x * y);
-            }
-        }
-    };
-    for (node, own) in of_node.iter().enumerate() {
-        for (axis, mode) in modes(node).iter().enumerate() {
-            if let (Some(&first), true) = (own.first(), fixed[2 * node + axis]) {
-                add(&[(first, 1.0)], mode);
-            }
-            for &other in own.iter().skip(1) {
-                add(&[(own[0], 1.0), (other, -1.0)], mode);
-            }
-        }
-    }
-    let eigen = gram.symmetric_eigen();
-    let (least, value) = eigen.eigenvalues.argmin();
-    if value > SINGULAR * eigen.eigenvalues.max() {
-        return None;
-    }
-    let motion = eigen.eigenvectors.column(least);
-    let turns = |node: &usize| {
-        let rotations = of_node[*node].iter().map(|&part| motion[3 * part as usize + 2]);
-        let (low, high) = rotations.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), r| (l.min(r), h.max(r)));
-        high - low
-    };
-    let hinges = (0..of_node.len()).filter(|&node| of_node[node].len() > 1);
-    hinges.max_by(|a, b| turns(a).total_cmp(&turns(b))).map(|node| node as u32)
-}
-
-/// Whether the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of the three
-/// rigid modes, restricted to them, is regular.
-fn is_held(nodes: &[(Vector2<f64>, &[bool])]) -> bool {
-    const SINGULAR: f64 = 1e-12;
-    // Seen from the fixed nodes themselves: a clamp stays a clamp however long the body.
-    if nodes.is_empty() {
-        return false;
-    }
-    let centre = nodes.iter().map(|(x, _)| x).sum::<Vector2<f64>>() / nodes.len() as f64;
-    let size = nodes.iter().map(|(x, _)| (x - centre).norm()).fold(0.0, f64::max);
-    if size == 0.0 {
-        return false;
-    }
-    let mut gram = Matrix3::zeros();
-    for (node, fixed) in nodes {
-        let arm = (node - centre) / size;
-        for (axis, mode) in [Vector3::new(1.0, 0.0, -arm.y), Vector3::new(0.0, 1.0, arm.x)].iter().enumerate() {
-            if fixed[axis] {
-                gram += mode * mode.transpose();
-            }
-        }
-    }
-    let eigenvalues = gram.symmetric_eigenvalues();
-    eigenvalues.min() > SINGULAR * eigenvalues.max()
+    })
 }

@@ -6,24 +6,15 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::edge::no_such_edge;
+use super::hold::{Hold, check_held, fixed_unknowns};
 use super::ordering::analyse;
-use super::supports::{Hold, check_held, fixed_unknowns};
-use super::{Edge, Pattern};
+use super::{Edge, Kinematics, Pattern};
 use crate::element::Elements;
 use crate::mesh::{Mesh, Recovery};
 use crate::rotation::Rotation;
 use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
 use crate::solver::Symbolic;
 use crate::state::{State, StateError};
-
-/// How a state is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kinematics {
-    /// Strains are measured after turning elements back.
-    Corotated,
-    /// Strains are those of linear theory.
-    Linear,
-}
 
 /// Why a scene gives no equations.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -6,79 +6,21 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
+use super::memory::PeakMemory;
 use super::progress::Watch;
+use super::solved::{Solved, Spent};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
 use crate::export::{self, ExportError, Format, MotionWriter};
-use crate::mesh::Mesh;
 use crate::picture::draw_svg;
 use crate::scene::{self, Analysis, Scene};
-use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult};
+use crate::simulation::{Deformation, Simulation, Status, StressResult};
 use crate::stress::strain_warning;
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MotionStudy, PathSummary, Reference, Scaling, Study,
-    StudyError, Tuning, extremes, heat_map, motion_heat_map, moved_points, parallel, path_chart, plot,
+    Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MemoryMeter, MotionStudy, PathSummary, Reference,
+    Scaling, Study, StudyError, Tuning, extremes, heat_map, motion_heat_map, moved_points, parallel, path_chart, plot,
 };
-use crate::timings::Timings;
 use crate::words::count;
-
-/// Durations of the parts of a solve.
-pub(super) struct Spent {
-    /// The whole, by the clock.
-    wall: Duration,
-    /// Reading, meshing, the order of elimination.
-    set_up: Duration,
-    /// The solve.
-    stages: Timings,
-    /// Recovering stresses, and estimating the mesh's error from them.
-    stress: Duration,
-    /// Finding the reference solution.
-    reference: Duration,
-}
-
-impl Spent {
-    /// The whole, by the clock.
-    pub(super) fn wall(&self) -> Duration {
-        self.wall
-    }
-
-    /// The four stages of the solve.
-    pub(super) fn solve(&self) -> Duration {
-        self.stages.total().saturating_sub(self.stages.certify)
-    }
-
-    /// The parts that sum to the whole, each with the name it has in JSON.
-    pub(super) fn parts(&self) -> [(&'static str, Duration); 9] {
-        let Self { wall, set_up, stages, stress, reference } = *self;
-        let Timings { rotate, assemble, factorize, solve, certify } = stages;
-        let other = wall.saturating_sub(set_up + stages.total() + stress + reference);
-        [
-            ("rotate", rotate),
-            ("assemble", assemble),
-            ("factorize", factorize),
-            ("solve", solve),
-            ("certify", certify),
-            ("set_up", set_up),
-            ("stress", stress),
-            ("reference", reference),
-            ("other", other),
-        ]
-    }
-}
-
-/// A result with everything that `solve` finds out about it.
-pub(super) struct Solved<'a> {
-    pub scene: &'a Scene,
-    pub mesh: &'a Mesh,
-    pub solution: &'a Solution,
-    pub stress: &'a StressResult,
-    /// Jumps and buckling on the load path to the result; `None` where that is not known.
-    pub path: Option<PathSummary>,
-    pub reference: Option<&'a Reference>,
-    /// Sentences about what limits the result.
-    pub warnings: &'a [String],
-    pub spent: &'a Spent,
-}
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let began = Instant::now();
@@ -292,7 +234,9 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
 pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
     let watch = Watch::new();
-    let study = Scaling::new(&scene, extent(out), &mut |progress| watch.observe(&progress));
+    let memory = PeakMemory::watch();
+    let meter = memory.as_ref().map(|memory| memory as &dyn MemoryMeter);
+    let study = Scaling::new(&scene, extent(out), meter, &mut |progress| watch.observe(&progress));
     drop(watch);
     let study = match study {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),

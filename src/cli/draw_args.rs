@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use thiserror::Error;
 
-use super::args::{NumberError, parse_number};
+use super::scene_args::{NumberError, RequiredSceneArgs, parse_number};
 use crate::app;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;
@@ -17,7 +17,7 @@ pub(super) const DEFAULT_PICTURE: &str = "warpbeam.png";
 #[derive(Debug, Args)]
 pub(super) struct ShotArgs {
     #[command(flatten)]
-    pub scene: super::args::RequiredSceneArgs,
+    pub scene: RequiredSceneArgs,
     /// The picture to write.
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
@@ -76,7 +76,7 @@ Ctrl-C leaves a shorter, valid recording, and exit code 1.
 #[derive(Debug, Args)]
 pub(super) struct RecordArgs {
     #[command(flatten)]
-    pub scene: super::args::RequiredSceneArgs,
+    pub scene: RequiredSceneArgs,
     /// The file, or the folder, to write.
     #[arg(short, long, value_name = "OUT.gif|OUT.png|FOLDER")]
     pub output: PathBuf,

@@ -5,7 +5,7 @@ use std::time::Duration;
 use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
-use super::commands::Solved;
+use super::solved::Solved;
 use crate::scene::{Place, Scene, Support};
 use crate::simulation::{MotionResult, ProbeResult, ProbeStress, SupportReaction};
 use crate::stress::PlaneTensor;

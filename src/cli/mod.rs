@@ -27,9 +27,12 @@ mod draw_args;
 mod driver;
 mod json;
 mod manual;
+mod memory;
 mod progress;
 #[cfg(feature = "app")]
 mod record;
+mod scene_args;
+mod solved;
 mod text;
 #[cfg(feature = "app")]
 mod window;

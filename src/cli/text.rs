@@ -6,7 +6,7 @@ use std::io::{ErrorKind, Write as _};
 use nalgebra::Vector2;
 
 use super::CliError;
-use super::commands::Solved;
+use super::solved::Solved;
 use crate::export::csv_field;
 use crate::method::{Certificate, floor_words, rho_words};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};

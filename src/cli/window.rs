@@ -4,9 +4,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use super::args::{ReferenceEffort, RequiredSceneArgs, SetArgs, SolveArgs};
+use super::args::{ReferenceEffort, SolveArgs};
 use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
 use super::progress::Watch;
+use super::scene_args::{RequiredSceneArgs, SetArgs};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, simulate, text};
 use crate::app;
 use crate::scene::{self, registry};

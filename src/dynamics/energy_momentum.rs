@@ -5,8 +5,8 @@
 //! form: [`crate::element::Elements::linearize_between`]. Energy, momentum and angular momentum are kept as exactly as
 //! the step is solved; each half of a step that is halved keeps them too.
 
-use super::stage::Stage;
-use super::step::{Booking, Solves, Step, StepError, combine};
+use super::stage::{Stage, Step};
+use super::step::{Booking, Solves, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
 use crate::scene::IntegratorKind;
@@ -15,7 +15,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::EnergyMomentum,
     id: "energy-momentum",
     about: "Energy–momentum: second order, keeps energy, momentum and angular momentum; iterates to the tolerance always.",
-    colors: [[0, 100, 180], [90, 200, 250]],
     order: 2,
     stages: 1,
     always_iterates: true,

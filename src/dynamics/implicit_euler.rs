@@ -4,8 +4,8 @@
 //! even more energy, most of it where there is nothing to be lost: the first mode of a beam at 60 steps a second keeps
 //! 72 % of its energy a period.
 
-use super::stage::Stage;
-use super::step::{Booking, Solves, Step, StepError, combine, work};
+use super::stage::{Stage, Step};
+use super::step::{Booking, Solves, StepError, combine, work};
 use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
 use crate::scene::IntegratorKind;
@@ -14,7 +14,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::ImplicitEuler,
     id: "implicit-euler",
     about: "Implicit Euler, the article's and the games' way: never unstable, one solve a step, but motion dies away.",
-    colors: [[190, 20, 30], [255, 105, 97]],
     order: 1,
     stages: 1,
     always_iterates: false,

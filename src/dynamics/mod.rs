@@ -24,8 +24,8 @@ pub use ledger::{Ledger, Momentum};
 pub(crate) use linear_theory::LinearTheory;
 pub use modes::{critical_step, lowest_frequency};
 pub use report::{MotionDecision, MotionReport};
-pub(crate) use stage::StageSolver;
-pub(crate) use step::{Booking, Memory, Solves, Step};
+pub(crate) use stage::{StageSolver, Step};
+pub(crate) use step::{Booking, Memory, Solves};
 pub use step::{Counts, StepError, StopReason};
 
 /// Which mass matrix an integrator moves.
@@ -46,8 +46,6 @@ pub struct IntegratorEntry {
     pub id: &'static str,
     /// One sentence for lists and tooltips.
     pub about: &'static str,
-    /// Its colour in pictures, red, green and blue: on a light ground, and on a dark one.
-    pub colors: [[u8; 3]; 2],
     /// The power of the step that its error goes with.
     pub order: u32,
     /// Stages a step, each of one solve or more; 0 for an explicit integrator, which solves nothing.
@@ -61,12 +59,6 @@ pub struct IntegratorEntry {
 }
 
 impl IntegratorEntry {
-    /// Its colour on a dark or a light ground.
-    #[must_use]
-    pub fn color(&self, dark: bool) -> [u8; 3] {
-        self.colors[usize::from(dark)]
-    }
-
     /// Whether it solves nothing, and is stable below a critical step only.
     #[must_use]
     pub fn is_explicit(&self) -> bool {

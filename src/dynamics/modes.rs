@@ -4,9 +4,9 @@ use nalgebra::Vector2;
 
 use crate::assembly::{Forces, Mass, Matrix, Problem};
 use crate::element::Tangent;
-use crate::lanczos::extreme_eigenvalues;
 use crate::scene::Damping;
 use crate::solver::Factor;
+use crate::solver::lanczos::extreme_eigenvalues;
 
 /// Lanczos steps for the lowest frequency, which stands well apart from the next …
 const LOWEST: usize = 24;

@@ -76,6 +76,22 @@ pub(crate) struct StageSolver<'a> {
     pub timings: &'a mut Timings,
 }
 
+/// A step from one state to the next.
+#[derive(Debug)]
+pub(crate) struct Step<'a> {
+    pub solver: StageSolver<'a>,
+    /// Length of the step, s.
+    pub h: f64,
+    /// Where it begins.
+    pub start: &'a State,
+    /// Where it ends; at first a copy of where it begins.
+    pub state: &'a mut State,
+    /// A state between the two, for integrators that need one.
+    pub middle: &'a mut State,
+    /// `true` if the ledger is kept.
+    pub books: bool,
+}
+
 impl StageSolver<'_> {
     /// Solves a stage from where `state` is, whose rotations are those of its displacement.
     ///

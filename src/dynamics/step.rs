@@ -4,7 +4,6 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::correction::Corrector;
-use super::stage::StageSolver;
 use crate::assembly::{Forces, System};
 use crate::element::Tangent;
 use crate::solver::SolverError;
@@ -135,22 +134,6 @@ impl Memory {
             scratch: [zero.clone(), zero],
         })
     }
-}
-
-/// A step from one state to the next.
-#[derive(Debug)]
-pub(crate) struct Step<'a> {
-    pub solver: StageSolver<'a>,
-    /// Length of the step, s.
-    pub h: f64,
-    /// Where it begins.
-    pub start: &'a State,
-    /// Where it ends; at first a copy of where it begins.
-    pub state: &'a mut State,
-    /// A state between the two, for integrators that need one.
-    pub middle: &'a mut State,
-    /// Whether the ledger is kept.
-    pub books: bool,
 }
 
 /// Product of nodal vectors.

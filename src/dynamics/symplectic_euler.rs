@@ -5,7 +5,8 @@
 
 use nalgebra::Vector2;
 
-use super::step::{Booking, Memory, Step, StepError, combine, work};
+use super::stage::Step;
+use super::step::{Booking, Memory, StepError, combine, work};
 use super::{Inertia, IntegratorEntry};
 use crate::assembly::Hand;
 use crate::element::StrainRate;
@@ -17,7 +18,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::SymplecticEuler,
     id: "symplectic-euler",
     about: "Symplectic Euler: explicit, solves nothing, cheap a step, but explodes beyond its critical step.",
-    colors: [[200, 90, 0], [240, 150, 60]],
     order: 1,
     stages: 0,
     always_iterates: false,

@@ -4,8 +4,8 @@
 //! and Shampine 1996, *Analysis and implementation of TR-BDF2*. L-stable: what the step cannot resolve dies away, and
 //! nothing else does much. Both stages have the same matrix up to the state it is taken at.
 
-use super::stage::Stage;
-use super::step::{Booking, Step, StepError, combine};
+use super::stage::{Stage, Step};
+use super::step::{Booking, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::scene::IntegratorKind;
 use std::f64::consts::SQRT_2;
@@ -14,7 +14,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::TrBdf2,
     id: "tr-bdf2",
     about: "TR-BDF2: second order, damps only what the step cannot resolve; one solve for each of its two stages will do.",
-    colors: [[0, 120, 80], [110, 220, 140]],
     order: 2,
     stages: 2,
     always_iterates: false,

@@ -5,12 +5,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use nalgebra::{Matrix2, Matrix4, Matrix4x2, SimdPartialOrd, SimdValue, Vector2};
 
 use super::connectivity::Connectivity;
-use super::isoparametric::{SMALLEST_STRETCH_TRACE, add_forces, at_nodes};
+use super::isoparametric::{add_forces, at_nodes};
 use super::matrix::ElementMatrix;
+use super::point::{QuadraturePoint, SMALLEST_STRETCH_TRACE};
 use super::rounding::{Rounded, RoundedPoint, UNIT};
 use super::{
-    DiscreteGradient, ElementType, Elements, MatrixSum, QuadraturePoint, Rotations, StrainRate, StrainVisitor, Tangent,
-    rotations_at, warped_strain,
+    DiscreteGradient, ElementType, Elements, MatrixSum, Rotations, StrainRate, StrainVisitor, Tangent, rotations_at,
+    warped_strain,
 };
 use crate::displacement::Compensated;
 use crate::lanes::{LANES, Lanes, Number, apply, filled, one_plus, product, sum_of_lanes, zero_vector};

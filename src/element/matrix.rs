@@ -2,18 +2,9 @@
 
 use nalgebra::Vector2;
 
-use super::QuadraturePoint;
+use super::point::{PointTangent, QuadraturePoint};
 use crate::lanes::Number;
 use crate::rotation::Rotation;
-
-/// Moduli of a point's tangent, times its area, N m; see [`QuadraturePoint::tangent`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PointTangent<T> {
-    pub axial: T,
-    pub lambda: T,
-    pub plus: T,
-    pub minus: T,
-}
 
 impl<T: Number> PointTangent<T> {
     /// What all blocks K_ab of a node b have in common, for its turned gradient h: the factors of the two components of

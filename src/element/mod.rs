@@ -7,8 +7,8 @@ use nalgebra::{Matrix2, Vector2};
 use crate::displacement::Compensated;
 use crate::lanes::{LANES, Lanes, Number, one_plus};
 use crate::material::Lame;
+use crate::model::ElementKind;
 use crate::rotation::{Rotation, polar_or_else};
-use crate::scene::ElementKind;
 
 pub mod cell;
 mod connectivity;
@@ -16,6 +16,7 @@ mod discrete_gradient;
 mod incompatible;
 mod isoparametric;
 mod matrix;
+mod point;
 mod q4;
 mod rounding;
 mod side;
@@ -25,7 +26,8 @@ mod t6;
 pub use cell::{Cell, Lattice};
 pub use discrete_gradient::DiscreteGradient;
 pub use incompatible::IncompatibleQuads;
-pub use isoparametric::{Isoparametric, QuadraturePoint};
+pub use isoparametric::Isoparametric;
+pub use point::QuadraturePoint;
 pub(crate) use rounding::UNIT;
 pub use side::side_weights;
 

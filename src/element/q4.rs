@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::cell::{SQUARE, bilinear};
 use super::{ElementType, IncompatibleQuads, RulePoint};
-use crate::scene::ElementKind;
+use crate::model::ElementKind;
 
 /// Gauss's two points on [−1, 1]: ±1/√3.
 const GAUSS: f64 = 0.577_350_269_189_625_8;

@@ -7,7 +7,8 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{QuadraturePoint, warped_strain};
+use super::point::QuadraturePoint;
+use super::warped_strain;
 use crate::displacement::Compensated;
 use crate::material::Lame;
 use crate::rotation::Rotation;

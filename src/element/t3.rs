@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::cell::TRIANGLE;
 use super::{ElementType, Isoparametric, RulePoint};
-use crate::scene::ElementKind;
+use crate::model::ElementKind;
 
 /// The element.
 pub(super) static T3: ElementType = ElementType {

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::cell::TRIANGLE;
 use super::{ElementType, Isoparametric, RulePoint};
-use crate::scene::ElementKind;
+use crate::model::ElementKind;
 
 /// Dunavant 1985, degree 4: six points in two groups of three.
 const NEAR: [f64; 2] = [0.445_948_490_915_965, 0.108_103_018_168_070];

@@ -5,9 +5,17 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use super::{Mesh, MeshError, Segment};
-use crate::scene::{Beam, Diagonals};
+use crate::model::{Beam, Diagonals};
 
 impl Mesh {
+    /// Number of nodes of [`Self::beam`].
+    #[must_use]
+    pub fn beam_nodes(beam: &Beam) -> u64 {
+        let pieces = beam.element.entry().sides[0].len() as u64 - 1;
+        let [columns, rows] = beam.cells.map(|cells| u64::from(cells) * pieces + 1);
+        columns.saturating_mul(rows)
+    }
+
     /// The rectangle [0, length] × [−height/2, height/2], or the arch it is bent to, two triangles or one quadrilateral a cell, with the edges `left`, `right`,
     /// `bottom` and `top`. Nodes are numbered column by column, from the left and from below.
     ///

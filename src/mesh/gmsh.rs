@@ -11,8 +11,8 @@ use thiserror::Error;
 use super::{Mesh, MeshError, Segment, side_key};
 use crate::element::cell::{SQUARE, TRIANGLE};
 use crate::element::{ELEMENTS, ElementType};
-use crate::scene::ElementKind;
-use crate::scene::limits::{COORDINATE, TOTAL_CELLS};
+use crate::model::ElementKind;
+use crate::model::limits::{COORDINATE, TOTAL_CELLS};
 use crate::words::number;
 
 /// Why a mesh file cannot be used.
@@ -125,18 +125,62 @@ impl Mesh {
     /// is lost. What is wrong with the file is said when it is read.
     #[must_use]
     pub fn gmsh_element(text: &str) -> Option<ElementKind> {
+        Headers::of(text).own().map(|entry| entry.kind)
+    }
+
+    /// Number of nodes that the mesh of a file has where its cells become `element`, by the headers of its blocks alone: exact if that is
+    /// the file's own element, else for a body of one part without holes.
+    #[must_use]
+    pub fn gmsh_nodes(text: &str, element: ElementKind) -> u64 {
+        let headers = Headers::of(text);
+        let Some(own) = headers.own() else { return 0 };
+        // N = V + E n + F m: vertices, sides with n nodes between their ends, faces with m nodes inside; and V − E + F = 1.
+        let faces: f64 = headers.elements.iter().map(|(_, count)| *count as f64).sum();
+        let nodes = headers.nodes as f64;
+        let [(n, m), (new_n, new_m)] = [own, element.entry()].map(|entry| {
+            let between = entry.sides[0].len() - 2;
+            let inside = entry.nodes.len() - entry.cell.corners.len() - entry.sides.len() * between;
+            (between as f64, inside as f64)
+        });
+        let vertices = (nodes - n * (faces - 1.0) - m * faces) / (1.0 + n);
+        (vertices + new_n * (vertices + faces - 1.0) + new_m * faces).round() as u64
+    }
+}
+
+/// Counts in the headers of a file's blocks.
+struct Headers {
+    nodes: u64,
+    /// The elements of every block that has some of ours.
+    elements: Vec<(&'static ElementType, u64)>,
+}
+
+impl Headers {
+    fn of(text: &str) -> Self {
         let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-        lines.find(|line| *line == "$Elements")?;
-        lines.next()?;
-        let mut own: Option<&'static ElementType> = None;
+        let mut headers = Self { nodes: 0, elements: Vec::new() };
+        let numbers = |line: &str| -> Option<[u64; 4]> {
+            let numbers: Option<Vec<u64>> = line.split_ascii_whitespace().map(|n| n.parse().ok()).collect();
+            numbers?.try_into().ok()
+        };
         while let Some(line) = lines.next() {
-            let block: Option<Vec<usize>> = line.split_ascii_whitespace().map(|n| n.parse().ok()).collect();
-            let Some([_, _, kind, count]) = block.as_deref() else { break };
-            let found = ELEMENTS.iter().copied().find(|e| e.gmsh_type as usize == *kind);
-            own = own.into_iter().chain(found).max_by_key(|e| e.nodes.len());
-            lines.by_ref().take(*count).for_each(drop);
+            match line {
+                "$Nodes" => headers.nodes = lines.next().and_then(numbers).map_or(0, |[_, count, ..]| count),
+                "$Elements" => break,
+                _ => {}
+            }
         }
-        own.map(|e| e.kind)
+        lines.next();
+        while let Some([_, _, kind, count]) = lines.next().and_then(numbers) {
+            let entry = ELEMENTS.iter().copied().find(|e| u64::from(e.gmsh_type) == kind);
+            headers.elements.extend(entry.map(|entry| (entry, count)));
+            lines.by_ref().take(usize::try_from(count).unwrap_or(usize::MAX)).for_each(drop);
+        }
+        headers
+    }
+
+    /// The element with the most nodes; `None` where the file has none of ours.
+    fn own(&self) -> Option<&'static ElementType> {
+        self.elements.iter().map(|(entry, _)| *entry).max_by_key(|entry| entry.nodes.len())
     }
 }
 

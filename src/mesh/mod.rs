@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::element::ElementType;
-use crate::scene::ElementKind;
+use crate::model::ElementKind;
 
 mod beam;
 mod gmsh;

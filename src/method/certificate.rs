@@ -3,7 +3,7 @@
 use super::iteration::{Workspace, assemble};
 use crate::assembly::{Forces, Kinematics, Matrix, Problem};
 use crate::element::Tangent;
-use crate::lanczos::extreme_eigenvalues;
+use crate::solver::lanczos::extreme_eigenvalues;
 use crate::state::State;
 
 /// What is known of a result whatever method found it.

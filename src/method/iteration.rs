@@ -3,7 +3,6 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::status::{LOOSEST_FLOOR, ROUNDING};
 use crate::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use crate::element::Tangent;
 use crate::solver::{Factor, SolverError};
@@ -64,6 +63,11 @@ pub struct Tolerances {
     /// Error relative to the displacement, for `auto`.
     pub error: f64,
 }
+
+/// A residual below this is small: one that no longer falls is near its end, not diverging, and may be rounding.
+pub(super) const ROUNDING: f64 = 1e-6;
+/// A bound of rounding above this says too little of a residual for its solve to be called done.
+const LOOSEST_FLOOR: f64 = 1e-5;
 
 /// What a method may use and change in one iteration.
 #[derive(Debug)]

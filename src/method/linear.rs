@@ -11,7 +11,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Linear,
     id: "linear",
     about: "Linear FEM: one solve, right only while rotations stay small; beams swell beyond.",
-    colors: [[200, 90, 0], [240, 150, 60]],
     start: || Box::<Linear>::default(),
 };
 

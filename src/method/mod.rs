@@ -34,18 +34,8 @@ pub struct MethodEntry {
     pub id: &'static str,
     /// One sentence for lists and tooltips.
     pub about: &'static str,
-    /// Its colour in pictures, red, green and blue: on a light ground, and on a dark one. All differ in brightness too.
-    pub colors: [[u8; 3]; 2],
     /// The method at rest.
     pub start: fn() -> Box<dyn Method>,
-}
-
-impl MethodEntry {
-    /// Its colour on a dark or a light ground.
-    #[must_use]
-    pub fn color(&self, dark: bool) -> [u8; 3] {
-        self.colors[usize::from(dark)]
-    }
 }
 
 macro_rules! registry {

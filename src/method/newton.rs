@@ -8,7 +8,8 @@
 //! Supports that move are put on with the load: the body is turned as a whole with them, and what is left of their way
 //! enters the first step of a load step as a force.
 
-use super::status::{LONGEST_STEP, ROUNDING, farthest};
+use super::iteration::ROUNDING;
+use super::status::{LONGEST_STEP, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
@@ -19,7 +20,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Newton,
     id: "newton",
     about: "Newton with the exact tangent A + G: an exact, stable equilibrium in a few solves, also under large loads.",
-    colors: [[0, 100, 180], [90, 200, 250]],
     start: || Box::<Newton>::default(),
 };
 

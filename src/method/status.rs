@@ -1,5 +1,6 @@
 //! When an iteration is over: converged, out of iterations, or going nowhere.
 
+use super::iteration::ROUNDING;
 use super::{Iteration, IterationError, Verdict};
 use crate::assembly::System;
 use crate::state::{State, largest};
@@ -71,10 +72,6 @@ pub fn floor_words(floor: f64, tolerance: f64) -> String {
 const PATIENCE: u32 = 30;
 /// A new best residual counts as progress if it is this much below the old one.
 const PROGRESS: f64 = 0.98;
-/// A residual below this is small: one that no longer falls is near its end, not diverging, and may be rounding.
-pub(super) const ROUNDING: f64 = 1e-6;
-/// A bound of rounding above this says too little of a residual for its solve to be called done.
-pub(super) const LOOSEST_FLOOR: f64 = 1e-5;
 /// A residual that is more than this part of the one before no longer falls as an iteration makes it.
 const FALLS: f64 = 0.5;
 /// Displacement over the size of the body beyond which nothing useful is to be expected. The linear solution of a

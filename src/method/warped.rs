@@ -15,7 +15,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Warped,
     id: "warped",
     about: "Warped stiffness: the article's iteration, every element seen turned back. Large rotations, but it diverges under large loads.",
-    colors: [[128, 50, 190], [202, 160, 255]],
     start: || Box::<Warped>::default(),
 };
 

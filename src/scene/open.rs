@@ -9,15 +9,11 @@ use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
-use super::error::{Invalid, SceneError};
-use super::{Scene, registry, required, units};
-use crate::mesh::{GmshError, Mesh};
+use super::mesh::read_mesh;
+use super::{Invalid, ReadError, Scene, SceneError, registry, required, units};
 
 /// Scene files are small; anything larger is refused before it is read.
 const MAX_FILE_BYTES: u64 = 4 << 20;
-
-/// Room for the largest mesh that is solved.
-const MAX_MESH_BYTES: u64 = 256 << 20;
 
 /// The name of a scene that is read from standard input.
 pub const STANDARD_INPUT: &str = "-";
@@ -83,12 +79,12 @@ impl Source {
 
     /// Text of a stream, kept for later calls.
     fn read_stream(&self) -> Result<String, SceneError> {
-        static TEXTS: Mutex<BTreeMap<PathBuf, Result<String, String>>> = Mutex::new(BTreeMap::new());
+        static TEXTS: Mutex<BTreeMap<PathBuf, Result<String, ReadError>>> = Mutex::new(BTreeMap::new());
         let is_input = self.name == Path::new(STANDARD_INPUT);
         let mut texts = TEXTS.lock().unwrap_or_else(PoisonError::into_inner);
         let text = texts.entry(self.name.clone()).or_insert_with(|| match is_input {
             true => read_to_limit(std::io::stdin().lock()),
-            false => std::fs::File::open(&self.name).map_err(|error| error.to_string()).and_then(read_to_limit),
+            false => std::fs::File::open(&self.name).map_err(ReadError::from).and_then(read_to_limit),
         });
         let name = if is_input { Path::new("standard input") } else { &self.name };
         text.clone().map_err(|reason| unreadable(name, reason))
@@ -96,20 +92,17 @@ impl Source {
 }
 
 /// Reads all text there is, but no more than a scene may have.
-fn read_to_limit(stream: impl Read) -> Result<String, String> {
+fn read_to_limit(stream: impl Read) -> Result<String, ReadError> {
     let mut text = String::new();
-    match stream.take(MAX_FILE_BYTES + 1).read_to_string(&mut text) {
-        Err(error) => Err(error.to_string()),
-        Ok(bytes) if bytes as u64 > MAX_FILE_BYTES => Err(too_large(bytes as u64)),
-        Ok(_) => Ok(text),
-    }
+    let bytes = stream.take(MAX_FILE_BYTES + 1).read_to_string(&mut text)? as u64;
+    if bytes > MAX_FILE_BYTES { Err(too_large(bytes)) } else { Ok(text) }
 }
 
-fn too_large(bytes: u64) -> String {
-    format!("{bytes} bytes, more than the {MAX_FILE_BYTES} a scene may have")
+fn too_large(bytes: u64) -> ReadError {
+    ReadError::TooLarge { bytes, most: MAX_FILE_BYTES }
 }
 
-fn unreadable(path: &Path, reason: String) -> SceneError {
+fn unreadable(path: &Path, reason: ReadError) -> SceneError {
     let built_in = registry::BUILT_IN.iter().map(|b| b.id).collect::<Vec<_>>().join(", ");
     SceneError::Read { path: path.to_owned(), reason, built_in }
 }
@@ -134,15 +127,15 @@ impl Scene {
 }
 
 fn read(path: &Path) -> Result<String, SceneError> {
-    let failed = |reason: String| unreadable(path, reason);
-    let metadata = std::fs::metadata(path).map_err(|e| failed(e.to_string()))?;
+    let failed = |reason: ReadError| unreadable(path, reason);
+    let metadata = std::fs::metadata(path).map_err(|e| failed(e.into()))?;
     if !metadata.is_file() {
-        return Err(failed("not a file".to_owned()));
+        return Err(failed(ReadError::NoFile));
     }
     if metadata.len() > MAX_FILE_BYTES {
         return Err(failed(too_large(metadata.len())));
     }
-    std::fs::read_to_string(path).map_err(|e| failed(e.to_string()))
+    std::fs::read_to_string(path).map_err(|e| failed(e.into()))
 }
 
 /// Reads a scene from the text of `file`, with assignments, and its mesh from `folder`.
@@ -152,7 +145,7 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     let text = plain.as_ref();
     let syntax = |e: toml::de::Error| {
         let (file, line) = (file.map(Path::to_owned), e.span().map(|span| line_of(text, span.start)));
-        match required::missing(e.message(), toml::from_str(text).ok()) {
+        match toml::from_str(text).ok().and_then(required::missing) {
             Some(invalid) => SceneError::Invalid { file, line, invalid },
             None => SceneError::Syntax { file, line, message: e.message().trim().replace('\n', ", ") },
         }
@@ -165,7 +158,7 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
             let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
             let (key, value) = assign(&mut table, assignment).map_err(|e| failed(e.to_string()))?;
             scene = Scene::deserialize_table(&table).map_err(|e| {
-                let missing = required::missing(e.message(), Some(table.clone())).map(|invalid| invalid.to_string());
+                let missing = required::missing(table.clone()).map(|invalid| invalid.to_string());
                 let message = missing.unwrap_or_else(|| e.message().trim().replace('\n', ", "));
                 failed(format!("{message} (got {key} = {value})"))
             })?;
@@ -174,28 +167,6 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     let valid = scene.validate().and_then(|()| folder.map_or(Ok(()), |folder| read_mesh(&mut scene, folder)));
     valid.map_err(|invalid| blame(text, file, assignments, invalid))?;
     Ok(scene)
-}
-
-/// Reads the mesh file of a scene, relative to the scene's own folder; the meshes of built-in scenes are built in.
-pub(super) fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
-    const KEY: &str = "mesh.file";
-    let Some(mesh) = &mut scene.mesh else { return Ok(()) };
-    let path = folder.join(&mesh.file);
-    let text = match (registry::mesh(&mesh.file), path.is_file()) {
-        (Some(text), false) => text.to_owned(),
-        _ => {
-            let failed = |reason: String| Invalid::new(KEY, format!("{}: {reason}", path.display()));
-            let size = std::fs::metadata(&path).map_err(|e| failed(e.to_string()))?.len();
-            if size > MAX_MESH_BYTES {
-                return Err(failed(format!("expected at most {MAX_MESH_BYTES} bytes, got {size}")));
-            }
-            let bytes = std::fs::read(&path).map_err(|e| failed(e.to_string()))?;
-            String::from_utf8(bytes).map_err(|_| failed(GmshError::NotText.to_string()))?
-        }
-    };
-    mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&text));
-    mesh.text = Some(text.into());
-    Ok(())
 }
 
 /// What is wrong, with the `--set` that made it so, else with its line.

@@ -1,9 +1,11 @@
 //! Keys that a scene cannot do without, and what is expected there.
 
+use serde::de::value::{MapDeserializer, SeqDeserializer};
+use serde::de::{Deserialize, Deserializer, IntoDeserializer, Visitor};
+use thiserror::Error;
 use toml::{Table, Value};
 
-use super::error::Invalid;
-use super::units;
+use super::{Invalid, Scene, units};
 
 /// Every key that has no default, without its places in lists, and in words what it holds where that is no number in a
 /// unit. The parser looks for the scene's own last.
@@ -23,10 +25,79 @@ const KEYS: &[(&str, &str)] = &[
     ("material", "the table [material]"),
 ];
 
-/// What is missing where the parser complains of a field that is.
-pub(super) fn missing(complaint: &str, table: Option<Table>) -> Option<Invalid> {
-    let field = complaint.strip_prefix("missing field `")?.strip_suffix('`')?;
-    let scene = Value::Table(table?);
+/// Why a table is no scene, with a key that is missing apart from everything else.
+#[derive(Debug, Error)]
+enum Refusal {
+    #[error("`{0}` is missing")]
+    Missing(&'static str),
+    #[error("{0}")]
+    Other(String),
+}
+
+impl serde::de::Error for Refusal {
+    fn custom<T: std::fmt::Display>(message: T) -> Self {
+        Self::Other(message.to_string())
+    }
+
+    fn missing_field(field: &'static str) -> Self {
+        Self::Missing(field)
+    }
+}
+
+/// A value of a scene file that is read with [`Refusal`] as the error.
+struct Node(Value);
+
+impl IntoDeserializer<'_, Refusal> for Node {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+impl<'de> Deserializer<'de> for Node {
+    type Error = Refusal;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+        match self.0 {
+            Value::String(text) => visitor.visit_string(text),
+            Value::Integer(number) => visitor.visit_i64(number),
+            Value::Float(number) => visitor.visit_f64(number),
+            Value::Boolean(flag) => visitor.visit_bool(flag),
+            Value::Datetime(time) => visitor.visit_string(time.to_string()),
+            Value::Array(items) => visitor.visit_seq(SeqDeserializer::new(items.into_iter().map(Self))),
+            Value::Table(table) => {
+                visitor.visit_map(MapDeserializer::new(table.into_iter().map(|(key, value)| (key, Self(value)))))
+            }
+        }
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        _variants: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Refusal> {
+        match self.0 {
+            Value::String(text) => visitor.visit_enum(text.into_deserializer()),
+            other => Self(other).deserialize_any(visitor),
+        }
+    }
+
+    serde::forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf unit unit_struct newtype_struct seq tuple
+        tuple_struct map struct identifier ignored_any
+    }
+}
+
+/// The key that a scene lacks, if that is the first thing wrong with it.
+pub(super) fn missing(table: Table) -> Option<Invalid> {
+    let scene = Value::Table(table);
+    let Err(Refusal::Missing(field)) = Scene::deserialize(Node(scene.clone())) else { return None };
     KEYS.iter().filter(|(key, _)| key.rsplit('.').next() == Some(field)).find_map(|(key, words)| {
         let parts: Vec<&str> = key.split('.').collect();
         let place = place_without(&scene, &parts)?;

@@ -5,7 +5,7 @@ use nalgebra::Matrix2;
 use crate::assembly::{Kinematics, Problem};
 use crate::scene::Material;
 use crate::state::State;
-use crate::stress::{Local, MeshError, NodalStress, visit_points};
+use crate::stress::{ErrorEstimate, Local, NodalStress, visit_points};
 
 /// A quantity that is known at every quadrature point, and, recovered, at every node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum Field {
     LargestStrain,
     /// Angle of the polar rotation, degrees.
     RotationAngle,
-    /// Where the mesh's own error lies: of elements, not of points; see [`MeshError::elements`], percent.
+    /// Where the mesh's own error lies: of elements, not of points; see [`ErrorEstimate::elements`], percent.
     MeshError,
 }
 
@@ -80,7 +80,7 @@ impl Field {
     pub fn values(self, problem: &Problem, state: &State, kinematics: Kinematics, values: &mut Vec<Option<f64>>) {
         values.clear();
         if self.is_of_elements() {
-            let error = MeshError::of(problem, state, &NodalStress::of(problem, state, kinematics));
+            let error = ErrorEstimate::of(problem, state, &NodalStress::of(problem, state, kinematics));
             let points = problem.system().elements().points_per_element();
             let own = error.elements.iter().flat_map(|&v| std::iter::repeat_n(v.is_finite().then_some(v), points));
             values.extend(own);

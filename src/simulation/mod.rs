@@ -16,7 +16,7 @@ use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::scene::{Analysis, Invalid, Material, MethodKind, Scene};
 use crate::solver::{Factor, SolverError};
 use crate::state::{State, StateError, is_finite};
-use crate::stress::{MeshError, NodalStress, RecoveryScratch};
+use crate::stress::{ErrorEstimate, NodalStress, RecoveryScratch};
 use crate::timings::Timings;
 
 mod field;
@@ -550,10 +550,10 @@ impl Simulation {
         NodalStress::of(&self.body.problem, &self.body.state, self.kinematics())
     }
 
-    /// The estimate of the mesh's own error in the current state; see [`MeshError`].
+    /// The estimate of the mesh's own error in the current state; see [`ErrorEstimate`].
     #[must_use]
-    pub fn mesh_error(&self, nodal: &NodalStress) -> MeshError {
-        MeshError::of(&self.body.problem, &self.body.state, nodal)
+    pub fn mesh_error(&self, nodal: &NodalStress) -> ErrorEstimate {
+        ErrorEstimate::of(&self.body.problem, &self.body.state, nodal)
     }
 
     /// How the current state is seen.

@@ -7,7 +7,7 @@ use crate::assembly::{Forces, Kinematics, Problem};
 use crate::rotation::polar;
 use crate::scene::Place;
 use crate::state::State;
-use crate::stress::{MeshError, NodalStress, PlaneTensor, Singularity};
+use crate::stress::{ErrorEstimate, NodalStress, PlaneTensor, Singularity};
 
 /// What a probe sees.
 #[derive(Clone, Debug, PartialEq)]
@@ -197,14 +197,14 @@ pub struct StressResult {
     pub singularity: Option<Singularity>,
     /// At every probe.
     pub probes: Vec<ProbeStress>,
-    /// The estimate of the mesh's own error in the energy norm, percent; see [`MeshError`].
+    /// The estimate of the mesh's own error in the energy norm, percent; see [`ErrorEstimate`].
     pub mesh_error_percent: Option<f64>,
 }
 
 impl StressResult {
     /// Of what has been recovered of a state.
     #[must_use]
-    pub fn of(problem: &Problem, nodal: &NodalStress, error: &MeshError) -> Self {
+    pub fn of(problem: &Problem, nodal: &NodalStress, error: &ErrorEstimate) -> Self {
         let (mesh, material) = (problem.system().mesh(), nodal.material());
         let probes = problem.probes().iter().map(|probe| {
             let local = nodal.mean(&probe.weights);

@@ -17,10 +17,10 @@ use crate::rotation::{Rotation, polar_or};
 use crate::scene::{Material, Plane};
 use crate::state::State;
 
-mod error;
+mod estimate;
 mod singularity;
 
-pub use error::MeshError;
+pub use estimate::ErrorEstimate;
 pub use singularity::Singularity;
 
 /// A symmetric tensor of second order without shear out of the plane: stress (Pa) or strain.

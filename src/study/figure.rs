@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use super::chart::{Margins, escape, shape};
+use super::colors::color;
 use crate::export::csv_field;
 use crate::scene::{ElementKind, Load, MethodKind, Scene};
 use crate::words::{number, prefix, ticks};
@@ -48,7 +49,7 @@ impl Ink {
     fn on_paper(self) -> [u8; 3] {
         match self {
             Self::Exact => [0x00, 0x7d, 0x73],
-            Self::Method(method) => method.entry().color(false),
+            Self::Method(method) => color(method.id(), false),
             Self::Unstable => [0xbe, 0x14, 0x1e],
             Self::Scene => [0x1c, 0x21, 0x28],
         }

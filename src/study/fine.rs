@@ -7,8 +7,7 @@ use nalgebra::Vector2;
 
 use super::StudyError;
 use super::convergence::remaining_error;
-use super::reference::finest_element;
-use super::trade::{Observer, Progress, check};
+use super::progress::{Observer, Progress, check};
 use crate::assembly::{Forces, System};
 use crate::element::ElementType;
 use crate::mesh::{Mesh, Segment, bent, straightened};
@@ -88,6 +87,11 @@ pub(super) struct Fine {
     pub is_polygon: bool,
     /// Unknowns of the finest mesh.
     pub unknowns: usize,
+}
+
+/// The element of fine solutions: six-node triangles, which converge fastest, or what the quadrilaterals of a file can be.
+pub(super) fn finest_element(scene: &Scene) -> ElementKind {
+    scene.elements().find(|&e| e == ElementKind::T6).unwrap_or_else(|| scene.element())
 }
 
 /// Refinements of the coarsest mesh of a beam, which has as many cells as make the finest about as large as the budget.
@@ -232,7 +236,7 @@ impl Search<'_> {
         let now = format!("the reference solution, {}", count(unknowns as u64, "unknown"));
         let fraction = (unknowns as f64 / self.effort.most_unknowns() as f64).min(1.0);
         while *simulation.status() == Status::Running && self.work <= self.effort.most_work() {
-            check((self.observe)(Progress { fraction, now: &now, so_far: None }))?;
+            check((self.observe)(Progress { fraction, now: &now }))?;
             simulation.step();
             self.work += unknowns as f64;
         }

@@ -1,6 +1,7 @@
 //! Measurements over many solves.
 
 mod chart;
+mod colors;
 mod convergence;
 pub mod extremes;
 pub mod figure;
@@ -13,6 +14,7 @@ pub(crate) mod parallel;
 mod pareto;
 pub mod path_chart;
 pub mod plot;
+mod progress;
 mod reference;
 mod report;
 mod scaling;
@@ -20,6 +22,7 @@ mod timing;
 mod trade;
 mod tune;
 
+pub use colors::color;
 pub use fine::{Effort, MovedPoint, moved_points};
 pub use heat_map::{heat_map, motion_heat_map};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
@@ -27,10 +30,11 @@ pub use load_path::{
     Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_words,
 };
 pub use motion::MotionStudy;
+pub use progress::{Extent, Observer, Progress, StudyError};
 #[cfg(feature = "cli")]
 pub(crate) use reference::MOST_CERTIFIED;
 pub use reference::{ProbeReference, Reference, ReferenceSource};
-pub use scaling::{Exponents, Scaling, ScalingPoint};
+pub use scaling::{Exponents, MemoryMeter, Scaling, ScalingPoint};
 pub use timing::times_from_rest;
-pub use trade::{ErrorSplit, Extent, Measurement, Observer, Progress, Setting, Study, StudyError};
+pub use trade::{ErrorSplit, Measurement, Setting, Study};
 pub use tune::{Demand, Tuning};

@@ -1,6 +1,7 @@
 //! The trade as a picture (SVG): error over time, both logarithmic, with the Pareto front.
 
 use super::chart::{Chart, Mark, Point};
+use super::colors::color;
 use super::motion::{MotionStudy, REAL_TIME};
 use super::trade::{Measurement, Study};
 use crate::dynamics::INTEGRATORS;
@@ -25,7 +26,7 @@ pub fn svg(study: &Study) -> String {
         time: m.milliseconds(),
         error: drawn_error(m),
         element: m.setting.element,
-        color: m.setting.method.entry().color(false),
+        color: color(m.setting.method.id(), false),
         faint: !m.converged,
         front: m.pareto,
         title: m.setting.to_string(),
@@ -35,7 +36,7 @@ pub fn svg(study: &Study) -> String {
         time_label: "time of a solve, ms",
         error_label: "error bound, % of the true displacement",
         points: study.measurements.iter().map(point).collect(),
-        legend: METHODS.iter().map(|m| (m.id, m.color(false))).collect(),
+        legend: METHODS.iter().map(|m| (m.id, color(m.id, false))).collect(),
         faint_label: None,
         mark: None,
     };
@@ -50,7 +51,7 @@ pub fn motion_svg(study: &MotionStudy) -> String {
             time: m.milliseconds,
             error: study.resolved(m.error?.bound()).clamp(SMALLEST_ERROR, LARGEST_ERROR),
             element: m.setting.element,
-            color: m.setting.integrator.entry().color(false),
+            color: color(m.setting.integrator.id(), false),
             faint: m.setting.method == MethodKind::Linear,
             front: m.pareto,
             title: m.setting.to_string(),
@@ -61,7 +62,7 @@ pub fn motion_svg(study: &MotionStudy) -> String {
         time_label: "time of computing a simulated second, ms",
         error_label: "error bound of the path, % of how far it leads",
         points: points.collect(),
-        legend: INTEGRATORS.iter().map(|i| (i.id, i.color(false))).collect(),
+        legend: INTEGRATORS.iter().map(|i| (i.id, color(i.id, false))).collect(),
         faint_label: Some("linear theory"),
         mark: Some(Mark { time: REAL_TIME, label: "real time" }),
     };

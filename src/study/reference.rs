@@ -8,9 +8,9 @@ use nalgebra::Vector2;
 
 use super::StudyError;
 use super::fine::{Effort, Fine, MovedPoint, fine};
-use super::trade::Observer;
+use super::progress::Observer;
 use crate::assembly::System;
-use crate::scene::{Analysis, ElementKind, MethodKind, Place, Scene};
+use crate::scene::{Analysis, MethodKind, Place, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
 use crate::truth::{BeamTruth, error_percent};
 use crate::words::{number, two_digits};
@@ -288,11 +288,6 @@ fn is_unstable(simulation: &Simulation) -> bool {
 fn probe(displacement: Vector2<f64>, error: f64, source: ReferenceSource) -> Option<ProbeReference> {
     let own_error_percent = 100.0 * error / displacement.norm();
     (own_error_percent <= LARGEST_OWN_ERROR).then_some(ProbeReference { displacement, own_error_percent, source })
-}
-
-/// The element of fine solutions: six-node triangles, which converge fastest, or what the quadrilaterals of a file can be.
-pub(super) fn finest_element(scene: &Scene) -> ElementKind {
-    scene.elements().find(|&e| e == ElementKind::T6).unwrap_or_else(|| scene.element())
 }
 
 /// The equations of a scene.

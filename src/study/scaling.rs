@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 use super::chart::{LogLog, Series};
+use super::colors::color;
 use super::timing::{Runs, median_time};
 use super::{Extent, Observer, Progress, StudyError};
 use crate::method::METHODS;
@@ -21,9 +22,19 @@ pub struct ScalingPoint {
     pub dofs: usize,
     /// Time of an iteration of `newton`, ms: the median of some.
     pub milliseconds: f64,
-    /// Most memory that meshing, setting up and iterating took, MiB; `None` where the system does not say (it is read from
-    /// Linux's `/proc`), or where it is too little to be seen.
+    /// Most memory that meshing, setting up and iterating took, MiB; `None` where it is not measured, or
+    /// too little to be seen.
     pub peak_mib: Option<f64>,
+}
+
+/// Measures the memory of the process.
+pub trait MemoryMeter {
+    /// Starts a measurement.
+    fn begin(&self);
+
+    /// Returns the most memory that the process has held since [`Self::begin`], over what it held before all measurements, MiB; `None`
+    /// where the system does not tell.
+    fn peak_mib(&self) -> Option<f64>;
 }
 
 /// A power law fitted to the larger half of an element's meshes.
@@ -62,11 +73,16 @@ const FEWEST: usize = 3;
 const RESOLVED: f64 = 1.0;
 
 impl Scaling {
-    /// Measures a scene with a beam at rest, alone on the machine. Called off, it keeps what it has.
+    /// Measures a scene with a beam at rest, alone on the machine; memory where there is a meter. Called off, it keeps what it has.
     ///
     /// # Errors
     /// [`StudyError`].
-    pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+    pub fn new(
+        scene: &Scene,
+        extent: Extent,
+        memory: Option<&dyn MemoryMeter>,
+        observe: Observer<'_>,
+    ) -> Result<Self, StudyError> {
         let Some(beam) = &scene.beam else { return Err(StudyError::NoBeam) };
         if scene.analysis == crate::scene::Analysis::Dynamic {
             return Err(StudyError::InMotion);
@@ -76,15 +92,14 @@ impl Scaling {
         let mut study = Self { scene: scene.name.clone(), points: Vec::new(), is_partial: false };
         let mut done = 0.0;
         // Small meshes first, of all elements: what the allocator keeps of one is no more than the next takes anyway.
-        let memory = PeakMemory::watch();
         for (&unknowns, element) in unknowns.iter().flat_map(|n| ElementKind::all().map(move |e| (n, e))) {
             let cells = cells(element, beam.length / beam.height, unknowns);
             let now = super::trade::mesh_words(element, Some(cells));
-            if observe(Progress { fraction: done / all, now: &now, so_far: None }).is_break() {
+            if observe(Progress { fraction: done / all, now: &now }).is_break() {
                 study.is_partial = true;
                 break;
             }
-            study.points.push(measure(scene, element, cells, memory.as_ref())?);
+            study.points.push(measure(scene, element, cells, memory)?);
             done += unknowns;
         }
         study.points.sort_by_key(|p| p.element as usize);
@@ -151,7 +166,7 @@ impl Scaling {
         let series = |element: ElementKind| Series {
             element,
             // Colours of methods, which differ in brightness too, serve for elements here.
-            color: METHODS[element as usize % METHODS.len()].color(false),
+            color: color(METHODS[element as usize % METHODS.len()].id, false),
             points: self.of(element).iter().map(|p| (p.dofs as f64, p.milliseconds)).collect(),
         };
         let plot = LogLog {
@@ -178,10 +193,10 @@ fn measure(
     scene: &Scene,
     element: ElementKind,
     cells: [u32; 2],
-    memory: Option<&PeakMemory>,
+    memory: Option<&dyn MemoryMeter>,
 ) -> Result<ScalingPoint, StudyError> {
     let setting = super::Setting { element, cells: Some(cells), method: MethodKind::Newton, iterations: 1 };
-    PeakMemory::begin();
+    memory.iter().for_each(|meter| meter.begin());
     let mut simulation = Simulation::new(&setting.apply(scene))?;
     // The first warms up.
     simulation.step();
@@ -190,38 +205,8 @@ fn measure(
         simulation.step();
     });
     let milliseconds = time.as_secs_f64() * 1e3;
-    let peak_mib = memory.and_then(PeakMemory::taken).filter(|&mib| mib >= RESOLVED);
+    let peak_mib = memory.and_then(MemoryMeter::peak_mib).filter(|&mib| mib >= RESOLVED);
     Ok(ScalingPoint { element, cells, dofs: simulation.system().dofs(), milliseconds, peak_mib })
-}
-
-/// The most memory that the process holds over what it has when this is made: Linux's `VmHWM`, set back by
-/// [`Self::begin`].
-struct PeakMemory {
-    before: f64,
-}
-
-impl PeakMemory {
-    fn watch() -> Option<Self> {
-        let memory = Self { before: status_mib("VmRSS:")? };
-        Self::begin().then_some(memory)
-    }
-
-    /// Sets the mark to what is held now; whether the system lets it.
-    fn begin() -> bool {
-        std::fs::write("/proc/self/clear_refs", "5").is_ok()
-    }
-
-    fn taken(&self) -> Option<f64> {
-        Some(status_mib("VmHWM:")? - self.before)
-    }
-}
-
-/// A size in `/proc/self/status`, MiB.
-fn status_mib(key: &str) -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix(key))?;
-    let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kib / 1024.0)
 }
 
 /// The slope of the line nearest to some points; `None` of fewer than two.

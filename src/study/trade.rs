@@ -9,18 +9,18 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector2;
 
-use super::fine::Effort;
+use super::fine::{Effort, finest_element};
 use super::parallel::{self, CalledOff};
 use super::pareto;
-use super::reference::{ProbeReference, Reference, end, finest_element, first_probe, system_of};
+use super::progress::{Extent, Observer, Progress, StudyError, all_done, check};
+use super::reference::{ProbeReference, Reference, end, first_probe, system_of};
 use super::timing::{expected_time, times_from_rest};
 use crate::assembly::System;
-use crate::dynamics::StopReason;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
-use crate::simulation::{Simulation, SimulationError, Status};
+use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
-use crate::words::{count, number, two_digits};
+use crate::words::count;
 
 /// What is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,96 +154,6 @@ pub struct Study {
     pub measurements: Vec<Measurement>,
 }
 
-/// Why a scene cannot be studied.
-#[derive(Clone, Debug, thiserror::Error, PartialEq)]
-#[non_exhaustive]
-pub enum StudyError {
-    /// The scene does not set up.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// A body in motion has no equilibrium to compare with.
-    #[error(
-        "expected a scene with analysis = \"static\": this measures solves of its equilibrium, and it is in motion"
-    )]
-    InMotion,
-    /// A body at rest has no path to compare with.
-    #[error("expected a scene with analysis = \"dynamic\": this measures the path of its motion, and it is at rest")]
-    AtRest,
-    /// The fine motion that would be the reference cannot go on.
-    #[error("no reference solution: the fine motion of the scene stops: {0}")]
-    NoPath(StopReason),
-    /// A mesh from a file cannot be made of other cells.
-    #[error("expected a scene with [beam]: this measures it on coarser and finer meshes")]
-    NoBeam,
-    /// Nothing to compare.
-    #[error("expected a scene with a probe that moves; errors are measured there")]
-    NoProbe,
-    /// A mesh from a file that has too many unknowns when it is refined.
-    #[error("no reference solution: the mesh of {elements} elements is too large to be refined")]
-    TooFine {
-        /// Elements of the mesh.
-        elements: usize,
-    },
-    /// The equilibrium is unstable: the body would not stay there.
-    #[error("no reference solution: the equilibrium is unstable")]
-    Unstable,
-    /// No equilibrium was found on fine meshes.
-    #[error("no reference solution: the fine solution of the scene does not converge")]
-    NoReference,
-    /// The solutions on finer and finer meshes do not approach each other, or too slowly.
-    #[error("no reference solution: solutions on finer and finer meshes do not approach each other")]
-    NoBound,
-    /// The reference solution is no better than what is asked of a result.
-    #[error(
-        "the reference solution's own error may be {} %, no less than the {} % asked",
-        number(two_digits(*own_percent)),
-        number(*asked_percent)
-    )]
-    NotKnown {
-        /// Bound of the reference's own error, percent.
-        own_percent: f64,
-        /// Error asked for, percent.
-        asked_percent: f64,
-    },
-    /// Called off.
-    #[error("called off")]
-    Cancelled,
-}
-
-impl StudyError {
-    /// `true` if there is nothing wrong with the scene, but no reference solution that is good enough.
-    #[must_use]
-    pub fn is_unknown(&self) -> bool {
-        matches!(
-            self,
-            Self::TooFine { .. } | Self::Unstable | Self::NoReference | Self::NoBound | Self::NotKnown { .. }
-        )
-    }
-}
-
-/// How far a study is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress<'a> {
-    /// Fraction that is done, 0 to 1: of the time that is expected, from sizes and from what has been timed so far.
-    pub fraction: f64,
-    /// What is measured now.
-    pub now: &'a str,
-    /// What has been measured so far, each time a mesh is done.
-    pub so_far: Option<&'a Study>,
-}
-
-/// Is told how far a study is, and calls it off with [`ControlFlow::Break`].
-pub type Observer<'a> = &'a mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
-
-/// How many meshes a study looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// Without the finer ones.
-    Quick,
-    /// Up to some five thousand unknowns.
-    Full,
-}
-
 /// The most iterations that are looked at, for methods that do not end before.
 const MOST_ITERATIONS: u32 = 20;
 /// The part of a study's time that goes by before anything is timed.
@@ -257,13 +167,25 @@ impl Study {
     /// # Errors
     /// [`StudyError`].
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+        Self::observed(scene, extent, &mut |progress, _| observe(progress))
+    }
+
+    /// [`Self::new`] whose observer also receives the study as far as it is, each time a mesh is done.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn observed(
+        scene: &Scene,
+        extent: Extent,
+        observe: &mut dyn FnMut(Progress<'_>, Option<&Self>) -> ControlFlow<()>,
+    ) -> Result<Self, StudyError> {
         let meshes = meshes(scene, extent);
-        let mut study = Self::begin(scene, observe)?;
+        let mut study = Self::begin(scene, &mut |progress| observe(progress, None))?;
         // What is not timed first, on all cores: the timed part is then alone on the machine.
         let ends = |mesh: &MeshChoice, _: &CalledOff| MeshEnds::find(scene, mesh);
         let ends = all_done(parallel::map(&meshes, ends, |done| {
             let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: "the ends of the methods", so_far: None })
+            observe(Progress { fraction, now: "the ends of the methods" }, None)
         }))?;
         let all: f64 = ends.iter().map(MeshEnds::expected_time).sum();
         // The likely answers first: those of the element that converges fastest.
@@ -274,13 +196,13 @@ impl Study {
             let time = ends.expected_time();
             let fraction = |part: f64| ENDS_SHARE + (1.0 - ENDS_SHARE) * (done + part * time) / all;
             study.measure(scene, mesh, ends, &mut |part, now| {
-                check(observe(Progress { fraction: fraction(part), now, so_far: None }))
+                check(observe(Progress { fraction: fraction(part), now }, None))
             })?;
             study.measurements.sort_by_key(|m| {
                 let of = |mesh: &MeshChoice| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
                 meshes.iter().position(of)
             });
-            check(observe(Progress { fraction: fraction(1.0), now: "", so_far: Some(&study) }))?;
+            check(observe(Progress { fraction: fraction(1.0), now: "" }, Some(&study)))?;
             done += time;
         }
         Ok(study)
@@ -292,8 +214,8 @@ impl Study {
     /// [`StudyError`]; [`StudyError::Cancelled`] where nothing has been measured.
     pub fn until_cancelled(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<(Self, bool), StudyError> {
         let mut partial = None;
-        let whole = Self::new(scene, extent, &mut |progress| {
-            partial = progress.so_far.filter(|study| !study.measurements.is_empty()).cloned().or(partial.take());
+        let whole = Self::observed(scene, extent, &mut |progress, so_far| {
+            partial = so_far.filter(|study| !study.measurements.is_empty()).cloned().or(partial.take());
             observe(progress)
         });
         match (whole, partial) {
@@ -393,16 +315,6 @@ impl Study {
     pub fn cheapest_within(&self, percent: f64) -> Option<&Measurement> {
         self.front().into_iter().find(|m| self.error_bound(m) <= percent)
     }
-}
-
-/// Goes on, or is called off.
-pub(super) fn check(flow: ControlFlow<()>) -> Result<(), StudyError> {
-    if flow.is_break() { Err(StudyError::Cancelled) } else { Ok(()) }
-}
-
-/// What has come of all items of [`parallel::map`], or of the first that failed or was called off.
-pub(super) fn all_done<T>(results: Vec<Option<Result<T, StudyError>>>) -> Result<Vec<T>, StudyError> {
-    results.into_iter().map(|result| result.ok_or(StudyError::Cancelled)?).collect()
 }
 
 /// A mesh to measure on.

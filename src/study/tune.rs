@@ -1,6 +1,7 @@
 //! The cheapest setting that is good enough and fast enough: element, mesh and method chosen for a demand.
 
-use super::trade::{Extent, Measurement, MeshChoice, MeshEnds, Observer, Progress, Study, StudyError, check, meshes};
+use super::progress::{Extent, Observer, Progress, StudyError, check};
+use super::trade::{Measurement, MeshChoice, MeshEnds, Study, meshes};
 use crate::scene::Scene;
 
 /// What is asked of a solve. What is left out is not asked.
@@ -104,7 +105,7 @@ impl Tuning {
             let ends = MeshEnds::find(scene, mesh)?;
             let measured = study.measure(scene, mesh, &ends, &mut |part, now| {
                 let fraction = (done + part * weight) / all;
-                check(observe(Progress { fraction, now, so_far: None }))
+                check(observe(Progress { fraction, now }))
             });
             is_partial = measured == Err(StudyError::Cancelled);
             if is_partial {

@@ -4,6 +4,7 @@ use libtest_mimic::Trial;
 use nalgebra::Vector2;
 use warpbeam::method::METHODS;
 use warpbeam::simulation::{Field, Simulation};
+use warpbeam::study::color;
 use warpbeam::{MethodKind, Scene, Status};
 
 use crate::common::{scene, scene_with};
@@ -33,7 +34,7 @@ fn its_id_is_the_word_of_scene_files(kind: MethodKind) {
 
 fn its_colours_are_its_own(kind: MethodKind) {
     for dark in [false, true] {
-        let same = METHODS.iter().filter(|m| m.color(dark) == kind.entry().color(dark));
+        let same = METHODS.iter().filter(|m| color(m.id, dark) == color(kind.id(), dark));
         assert_eq!(same.count(), 1);
     }
 }

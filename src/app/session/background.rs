@@ -6,10 +6,9 @@ use std::time::Instant;
 use crate::app::session::document::Document;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
-use crate::app::size::{MOST_ALONE, unknowns};
 use crate::app::task::quality::Quality;
 use crate::app::task::solve::{
-    BackgroundSolve, Bodies, Model, Phase, Rejected, Snapshot, SolveRequest, SolveUpdate, Solved, Start,
+    BackgroundSolve, Bodies, MOST_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, SolveUpdate, Solved, Start,
 };
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Scene};
@@ -19,7 +18,7 @@ use crate::simulation::{Simulation, Status};
 #[derive(Debug)]
 pub(super) struct Background {
     /// Larger models than this, in unknowns, are solved in the background.
-    most_unknowns: f64,
+    most_unknowns: u64,
     work: Work,
     /// Model of a solve that is not to be displayed: the next solve continues with it.
     returned: Option<(Bodies, Option<DisplayGeometry>)>,
@@ -66,7 +65,7 @@ struct Rollback {
 
 impl Default for Background {
     fn default() -> Self {
-        Self { most_unknowns: MOST_ALONE, work: Work::Idle, returned: None, start: Start::Present, iterations: None }
+        Self { most_unknowns: MOST_UNKNOWNS, work: Work::Idle, returned: None, start: Start::Present, iterations: None }
     }
 }
 
@@ -109,7 +108,7 @@ impl Work {
 
 impl Session {
     /// Sets the size, in unknowns, above which a model is meshed and solved in the background.
-    pub(crate) fn set_most_unknowns(&mut self, most: f64) {
+    pub(crate) fn set_most_unknowns(&mut self, most: u64) {
         self.background.most_unknowns = most;
     }
 
@@ -132,7 +131,7 @@ impl Session {
     /// their steps between frames.
     pub(super) fn is_for_background(&self, scene: &Scene) -> bool {
         let is_search = scene.analysis == Analysis::Static && self.simulation.motion().is_none();
-        unknowns(scene) > self.background.most_unknowns && (is_search || !has_mesh_of(scene, self.simulation.scene()))
+        scene.unknowns() > self.background.most_unknowns && (is_search || !has_mesh_of(scene, self.simulation.scene()))
     }
 
     /// `true` if the displayed model is solved in the background.

@@ -75,7 +75,7 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
     let mut session = session(cantilever(-100.0));
     session.solve(false);
     let first = tip(&session);
-    session.set_most_unknowns(0.0);
+    session.set_most_unknowns(0);
     session.apply(with_force(&session, -200.0)).unwrap();
     assert!(session.is_working() && session.work().is_some());
     wait(&mut session);
@@ -104,7 +104,7 @@ fn a_model_that_is_refused_in_the_background_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = session(cantilever(-100.0));
     session.solve(false);
-    session.set_most_unknowns(0.0);
+    session.set_most_unknowns(0);
     let first = session.scene().clone();
     let file = folder.path().join("none.msh").to_str().unwrap().to_owned();
     let mut wrong = first.clone();

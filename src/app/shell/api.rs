@@ -236,7 +236,7 @@ impl Lab {
     }
 
     /// Sets the size, in unknowns, above which a model is meshed and solved in the background.
-    pub fn set_most_unknowns(&mut self, most: f64) {
+    pub fn set_most_unknowns(&mut self, most: u64) {
         self.desk.session.set_most_unknowns(most);
     }
 

@@ -11,6 +11,11 @@ use crate::scene::{Analysis, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::State;
 
+/// Most unknowns of a model that is meshed and solved between two frames.
+pub(crate) const MOST_UNKNOWNS: u64 = 16_000;
+/// Most unknowns of a model that is solved between two frames in a pane, which is one of several.
+pub(crate) const MOST_PANE_UNKNOWNS: u64 = 4000;
+
 /// Time between two snapshots while a model is solved.
 const SNAPSHOT: Duration = Duration::from_millis(100);
 

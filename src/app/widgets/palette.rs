@@ -6,6 +6,7 @@ use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, 
 use crate::render::colormap::ColorMap;
 use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene};
 use crate::simulation::Field;
+use crate::study::color;
 
 /// Size of text that is read, points.
 pub(crate) const BODY: f32 = 14.0;
@@ -115,13 +116,13 @@ impl Palette {
 
     /// The one colour of a method: body, legend, plots.
     pub(crate) fn method(&self, method: MethodKind) -> Color32 {
-        let [r, g, b] = method.entry().color(self.dark);
+        let [r, g, b] = color(method.id(), self.dark);
         Color32::from_rgb(r, g, b)
     }
 
     /// The one colour of an integrator.
     pub(crate) fn integrator(&self, integrator: IntegratorKind) -> Color32 {
-        let [r, g, b] = integrator.entry().color(self.dark);
+        let [r, g, b] = color(integrator.id(), self.dark);
         Color32::from_rgb(r, g, b)
     }
 

@@ -24,7 +24,7 @@ use crate::app::offscreen::shot::picture;
 use crate::app::session::recovery::Recovery;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
-use crate::app::size::{MOST_ALONE, unknowns};
+use crate::app::task::solve::MOST_UNKNOWNS;
 use crate::app::task::thread::POLL;
 use crate::app::window::clipboard::Clipboard;
 use crate::app::{AppError, NoName, ThemeChoice, free_name};
@@ -75,7 +75,7 @@ impl Display {
 /// Whether a scene is so large that the window does not wait for its mesh.
 #[must_use]
 pub fn opens_beside(scene: &Scene) -> bool {
-    unknowns(scene) > MOST_ALONE
+    scene.unknowns() > MOST_UNKNOWNS
 }
 
 /// Opens the window and returns when it is closed. Without a simulation the scene is meshed beside the window, which shows

@@ -33,7 +33,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     id: "auto",
     about: "As little of the others as the asked accuracy needs: no solve where nothing changed, linear theory while it \
             serves, the old factor while it serves, load steps where nothing else does.",
-    colors: [[0, 120, 80], [110, 220, 140]],
     start: || Box::<Auto>::default(),
 };
 

@@ -10,11 +10,13 @@ use nalgebra::Vector2;
 use self::plan::{Job, MeshPlan, Plan, Samples, cells};
 pub use self::reference::MotionReference;
 use self::reference::fine_path;
+use super::fine::finest_element;
 use super::parallel::{self, CalledOff};
 use super::pareto;
-use super::reference::{finest_element, first_probe, system_of};
+use super::progress::{Extent, Observer, Progress, StudyError, all_done, check};
+use super::reference::{first_probe, system_of};
 use super::timing::{Runs, median_time};
-use super::trade::{Extent, Observer, Progress, Setting, StudyError, all_done, check, mesh_words};
+use super::trade::{Setting, mesh_words};
 use crate::assembly::{Mass, System};
 use crate::dynamics::{Counts, critical_step};
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
@@ -253,7 +255,7 @@ const OWN_SHARE: f64 = 0.1;
 const FIRST_RUNS_SHARE: f64 = 0.35;
 
 impl MotionStudy {
-    /// Measures a scene in motion. [`Progress::so_far`] is `None` throughout.
+    /// Measures a scene in motion.
     ///
     /// # Errors
     /// [`StudyError`].
@@ -268,7 +270,7 @@ impl MotionStudy {
         let own = |mesh: &MeshPlan, called_off: &CalledOff| Meshed::new(studied, mesh, called_off);
         let meshed = all_done(parallel::map(&meshes, own, |done| {
             let fraction = REFERENCE_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: "the meshes' own motions", so_far: None })
+            observe(Progress { fraction, now: "the meshes' own motions" })
         }))?;
         let mut study = Self {
             scene: scene.name.clone(),
@@ -284,9 +286,8 @@ impl MotionStudy {
         let mut done = 0.0;
         for (mesh, meshed) in meshes.iter().zip(&meshed) {
             let fraction = |part: f64| before + (1.0 - before) * (done + part * mesh.weight()) / all;
-            let measured = study.measure(studied, mesh, meshed, &mut |part, now| {
-                observe(Progress { fraction: fraction(part), now, so_far: None })
-            });
+            let measured = study
+                .measure(studied, mesh, meshed, &mut |part, now| observe(Progress { fraction: fraction(part), now }));
             match measured {
                 // What has been measured is worth keeping.
                 Err(StudyError::Cancelled) if !study.measurements.is_empty() => {

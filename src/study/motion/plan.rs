@@ -6,7 +6,7 @@ use super::MotionSetting;
 use crate::dynamics::{INTEGRATORS, IntegratorEntry};
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
-use crate::study::trade::Extent;
+use crate::study::progress::Extent;
 
 /// How much is looked at.
 pub(super) struct Plan {

@@ -10,9 +10,11 @@ use crate::assembly::System;
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
+use crate::study::fine::finest_element;
 use crate::study::parallel::{self, CalledOff};
-use crate::study::reference::{finest_element, system_of};
-use crate::study::trade::{Extent, Observer, Progress, StudyError, all_done, mesh_words};
+use crate::study::progress::{Extent, Observer, Progress, StudyError, all_done};
+use crate::study::reference::system_of;
+use crate::study::trade::mesh_words;
 
 /// The path of the first probe as the finest motion has it.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,11 +82,7 @@ impl MotionReference {
             fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, called_off)
         };
         let paths = all_done(parallel::map(&paths, follow, |done| {
-            observe(Progress {
-                fraction: done as f64 / paths.len() as f64,
-                now: "the reference solution",
-                so_far: None,
-            })
+            observe(Progress { fraction: done as f64 / paths.len() as f64, now: "the reference solution" })
         }))?;
         let [coarser, longer, best] = <[_; 3]>::try_from(paths).unwrap_or_default();
         let size = best.iter().map(|u| u.norm()).fold(0.0, f64::max);

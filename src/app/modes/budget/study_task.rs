@@ -85,14 +85,16 @@ impl Background {
 }
 
 fn work(scene: &Scene, extent: Extent, reporter: &Reporter<Said, Done>) -> Done {
-    let mut observe = |progress: Progress<'_>| {
-        reporter.report(match progress.so_far {
+    let observe = |progress: Progress<'_>, so_far: Option<&Study>| {
+        reporter.report(match so_far {
             Some(study) => Said::SoFar(Measured::Rest(study.clone())),
             None => Said::Now(progress.fraction as f32, progress.now.to_owned()),
         })
     };
     match scene.analysis {
-        Analysis::Static => Study::new(scene, extent, &mut observe).map(Measured::Rest),
-        Analysis::Dynamic => MotionStudy::new(scene, extent, &mut observe).map(Measured::Motion),
+        Analysis::Static => Study::observed(scene, extent, &mut { observe }).map(Measured::Rest),
+        Analysis::Dynamic => {
+            MotionStudy::new(scene, extent, &mut |progress| observe(progress, None)).map(Measured::Motion)
+        }
     }
 }

@@ -8,8 +8,9 @@ use egui::{Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
 
 use super::setting::PaneSetting;
-use crate::app::size::{MOST_UNKNOWNS, unknowns};
-use crate::app::task::solve::{BackgroundSolve, Bodies, Model, Phase, SolveRequest, SolveUpdate, Start};
+use crate::app::task::solve::{
+    BackgroundSolve, Bodies, MOST_PANE_UNKNOWNS, Model, Phase, SolveRequest, SolveUpdate, Start,
+};
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::Forces;
 use crate::app::viewport::body_mesh::BodyMesh;
@@ -362,7 +363,7 @@ impl Pane {
         self.from_rest = simulation.is_none();
         let system = Equations::of(equations, &scene);
         let model = PaneModel { simulation, system };
-        self.is_large = unknowns(&scene) > MOST_UNKNOWNS;
+        self.is_large = scene.unknowns() > MOST_PANE_UNKNOWNS;
         if self.is_large {
             self.send(scene, model, Start::Present);
         } else {

@@ -356,12 +356,12 @@ fn unit_of(key: &str) -> Option<&'static str> {
 }
 
 /// What `key` holds; `None` where that is no number with a unit.
-pub(super) fn quantity_of(key: &str) -> Option<Quantity> {
+pub(crate) fn quantity_of(key: &str) -> Option<Quantity> {
     unit_of(key).map(Quantity::in_unit)
 }
 
 /// A number that is typed as text for `key`; `None` where `key` holds no number with a unit.
-pub(super) fn number_for(key: &str, text: &str) -> Option<Result<f64, Invalid>> {
+pub(crate) fn number_for(key: &str, text: &str) -> Option<Result<f64, Invalid>> {
     let unit = unit_of(key)?;
     Some(parse(text, unit).map_err(|error| Invalid::new(key, error.to_string())))
 }
@@ -369,7 +369,7 @@ pub(super) fn number_for(key: &str, text: &str) -> Option<Result<f64, Invalid>> 
 /// The text of a TOML file with every number that is typed with its unit replaced by the plain number, line by line, so
 /// that the lines of later errors are those of the file. `rename` says which key of a scene a key of the text is. A text
 /// that is no TOML is left to whoever reads it.
-pub(super) fn plain<'a>(text: &'a str, rename: impl Fn(&str) -> String) -> Result<Cow<'a, str>, Invalid> {
+pub(crate) fn plain<'a>(text: &'a str, rename: impl Fn(&str) -> String) -> Result<Cow<'a, str>, Invalid> {
     // Most scenes have no unit in quotes; all of them have quotes.
     let Ok(table) = DeTable::parse(text) else { return Ok(Cow::Borrowed(text)) };
     let mut found = Vec::new();
@@ -421,4 +421,31 @@ fn collect(key: &str, value: &Spanned<DeValue<'_>>, found: &mut Found) -> Result
 
 fn toml_number(value: f64) -> String {
     if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse;
+    use crate::words::{editable, engineering};
+
+    #[test]
+    fn what_is_shown_reads_back() {
+        for unit in ["N", "Pa", "m", "m/s²", "N m", "s", "1/s", "°", "kg/m³", "", "%"] {
+            for value in [30_000.0, -0.25, 1e6, 0.016, 1234.5, 2.1e11, 1e-9, 9.81] {
+                let shown = editable(value, unit);
+                let read = parse(&shown, unit).unwrap_or(f64::NAN);
+                assert!(
+                    (read - value).abs() <= 1e-15 * value.abs(),
+                    "{value} {unit} is shown as {shown}, read as {read}"
+                );
+            }
+        }
+        // A value typed in radians, and a value that no one types.
+        assert_eq!(
+            (editable(0.123_f64.to_radians().to_degrees(), "°").as_str(), editable(1.0 / 60.0, "s").as_str()),
+            ("0.123°", "16.67 ms")
+        );
+        assert_eq!((editable(1e-3, "1/s"), editable(16.0, "ms")), ("0.001 1/s".to_owned(), "16 ms".to_owned()));
+        assert_eq!((engineering(-90.0, "°"), engineering(30.0, "%")), ("-90°".to_owned(), "30 %".to_owned()));
+    }
 }

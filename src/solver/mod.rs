@@ -15,6 +15,8 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
 use thiserror::Error;
 
+pub(crate) mod lanczos;
+
 /// Why there is no factor.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum SolverError {

@@ -25,7 +25,7 @@ use crate::state::State;
 /// A single row of four-node elements gives no estimate: in bending each of them has the same linear stress over the height as
 /// its neighbours, and the curvature of the true one is seen by none.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct MeshError {
+pub struct ErrorEstimate {
     /// 100 η / ‖u‖; `None` where nothing is deformed, for a single row of four-node elements, and where the arithmetic leaves the
     /// range of f64.
     pub percent: Option<f64>,
@@ -34,7 +34,7 @@ pub struct MeshError {
     pub elements: Vec<f64>,
 }
 
-impl MeshError {
+impl ErrorEstimate {
     /// Of a state and what has been recovered of it.
     #[must_use]
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {

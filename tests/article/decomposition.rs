@@ -51,6 +51,12 @@ pub const ORTHOGONALITY: f64 = 1e-9;
 /// Enough for condition numbers up to 1/ε: each iteration halves the largest singular value's distance at first.
 const MAX_ITERATIONS: usize = 128;
 
+/// F, or F over its largest entry where products of entries would leave the range of f64: Q does not depend on the size.
+fn of_ordinary_size<const N: usize>(f: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    let largest = f.amax();
+    if largest == 0.0 || (1e-60..1e60).contains(&largest) { *f } else { f / largest }
+}
+
 /// The departure from orthogonality ‖½(RᵀR − I)‖, article eq. (35).
 #[must_use]
 pub fn orthogonality_error(r: &Matrix3<f64>) -> f64 {
@@ -73,9 +79,8 @@ pub fn polar3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
     if largest == 0.0 {
         return Err(PolarError::Singular);
     }
-    // Ordinary matrices are iterated as they are, so that the counts are the article's; sizes at which a determinant
-    // would leave the range of f64 are brought to 1 first. Q does not depend on the size.
-    let mut r = if (1e-60..1e60).contains(&largest) { *f } else { f / largest };
+    // Ordinary matrices are iterated as they are, so that the counts are the article's.
+    let mut r = of_ordinary_size(f);
     for iteration in 0..MAX_ITERATIONS {
         if orthogonality_error(&r) < ORTHOGONALITY {
             return Ok(Polar::new(f, r, iteration));
@@ -124,7 +129,9 @@ where
     if !f.iter().all(|v| v.is_finite()) {
         return Err(PolarError::NotFinite);
     }
-    let svd = f.try_svd(true, true, f64::EPSILON, MAX_SWEEPS).ok_or(PolarError::NotConverged(MAX_SWEEPS))?;
+    let svd = of_ordinary_size(f)
+        .try_svd(true, true, f64::EPSILON, MAX_SWEEPS)
+        .ok_or(PolarError::NotConverged(MAX_SWEEPS))?;
     let (u, v_t) = svd.u.zip(svd.v_t).ok_or(PolarError::NotConverged(MAX_SWEEPS))?;
     Ok(Polar::new(f, u * v_t, 0))
 }

@@ -1,6 +1,7 @@
 //! What can be wrong with a scene, said with file, line and what was expected.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use thiserror::Error;
 
@@ -21,6 +22,32 @@ impl Invalid {
     }
 }
 
+/// Why the text of a scene could not be read.
+#[derive(Clone, Debug, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The system's reason.
+    #[error("{0}")]
+    System(Arc<std::io::Error>),
+    /// A folder, or a device.
+    #[error("not a file")]
+    NoFile,
+    /// More bytes than a scene may have.
+    #[error("{bytes} bytes, more than the {most} a scene may have")]
+    TooLarge {
+        /// Bytes read; for a stream, no more than one over the limit.
+        bytes: u64,
+        /// The limit.
+        most: u64,
+    },
+}
+
+impl From<std::io::Error> for ReadError {
+    fn from(error: std::io::Error) -> Self {
+        Self::System(Arc::new(error))
+    }
+}
+
 /// Why a scene could not be opened.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -30,8 +57,8 @@ pub enum SceneError {
     Read {
         /// What was asked for.
         path: PathBuf,
-        /// The system's reason.
-        reason: String,
+        /// Why it could not be read.
+        reason: ReadError,
         /// The names that would have worked.
         built_in: String,
     },

@@ -101,7 +101,7 @@ impl DynamicsSettings {
 }
 
 impl Start {
-    pub(super) fn is_rest(&self) -> bool {
+    pub(crate) fn is_rest(&self) -> bool {
         *self == Self::default()
     }
 

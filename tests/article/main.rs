@@ -1,8 +1,12 @@
 //! The article's formulas written out: affine maps, the SVD and its reading, the 3×3 iteration, its examples and errata.
 
+mod affine;
+mod decomposition;
+
+use affine::{Affine3, Affine3Error, Diagonal, quadrilateral_maps, triangle_system};
+use decomposition::{PolarError, orthogonality_error, polar_from_svd, polar3, proper_rotation3};
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
-use warpbeam::article::affine::{Affine2, Affine3, AffineError, Diagonal, quadrilateral_maps, triangle_system};
-use warpbeam::article::decomposition::{PolarError, orthogonality_error, polar_from_svd, polar3, proper_rotation3};
+use warpbeam::article::affine::{Affine2, AffineError};
 use warpbeam::rotation::polar;
 
 /// Erratum: with eq. (38) as printed, c = a √(a² + b²), the result is not a rotation.
@@ -128,7 +132,7 @@ fn a_tetrahedron_has_one_map() {
         }
     }
     let flat = rest.map(|p| Vector3::new(p.x, p.y, p.x + p.y));
-    assert_eq!(Affine3::from_tetrahedron(flat, rest), Err(AffineError::CoplanarCorners));
+    assert_eq!(Affine3::from_tetrahedron(flat, rest), Err(Affine3Error::CoplanarCorners));
 }
 
 /// Eq. (26): a shear is a rotation, a stretch and a rotation; the printed singular values and factors.
@@ -235,4 +239,20 @@ fn the_3x3_iteration_at_the_extremes() {
     assert_eq!(polar_from_svd(&Matrix2::from_element(f64::INFINITY)), Err(PolarError::NotFinite));
     let thin = Matrix3::from_diagonal(&Vector3::new(1.0, 1e-6, 1e3));
     assert!((polar3(&thin).unwrap().orthogonal - Matrix3::identity()).norm() < 1e-8);
+}
+
+#[test]
+fn numbers_out_of_range_are_refused() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
+        assert!(Affine2::from_triangle([Vector2::new(bad, 0.0); 3], [Vector2::zeros(); 3]).is_err());
+        assert!(Affine3::from_tetrahedron([Vector3::repeat(bad); 4], [Vector3::zeros(); 4]).is_err());
+        assert!(quadrilateral_maps([Vector2::repeat(bad); 4], [Vector2::zeros(); 4], Diagonal::OneThree).is_err());
+        let matrix = Matrix3::repeat(bad);
+        assert!(polar3(&matrix).is_err() && proper_rotation3(&matrix).is_err());
+        match polar_from_svd(&matrix) {
+            // Every size has a decomposition.
+            Ok(polar) => assert!(bad.is_finite() && orthogonality_error(&polar.orthogonal) < 1e-9, "{bad}: {polar:?}"),
+            Err(error) => assert_eq!((error, bad.is_finite()), (PolarError::NotFinite, false), "{bad}"),
+        }
+    }
 }

@@ -1,11 +1,8 @@
 //! Scenes in code: builders and setters with numbers, checked where they are simulated.
 
-use std::path::Path;
-
-use super::open::read_mesh;
 use super::{
-    Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material, MeshFile,
-    MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SolverSettings, Start, Support,
+    Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
+    MethodKind, Place, Plane, Probe, Pulse, Scene, SolverSettings, Start, Support,
 };
 use crate::words::engineering;
 
@@ -55,19 +52,6 @@ impl Scene {
             diagonals: Diagonals::default(),
         };
         Self { beam: Some(beam), ..Self::named("Beam") }
-    }
-
-    /// A body of rubber whose mesh is in a Gmsh file, relative to this folder: nothing holds or pulls it yet.
-    ///
-    /// # Errors
-    /// [`SceneError::Invalid`] where the file cannot be read.
-    pub fn mesh_file(file: &str, folder: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let mesh = MeshFile { file: file.to_owned(), element: None, scale: None, text: None };
-        let mut scene = Self { mesh: Some(mesh), ..Self::named(file) };
-        match read_mesh(&mut scene, folder.as_ref()) {
-            Ok(()) => Ok(scene),
-            Err(invalid) => Err(SceneError::Invalid { file: None, line: None, invalid }),
-        }
     }
 
     /// With so many metres per unit of its mesh file.
@@ -316,12 +300,6 @@ impl Scene {
     pub fn element(&self) -> ElementKind {
         let beam = self.beam.as_ref().map(|b| b.element);
         beam.or(self.mesh.as_ref().and_then(|m| m.element)).unwrap_or_default()
-    }
-
-    /// The elements that its mesh can be made of: all of a beam's, those of the same shape of a file's.
-    pub fn elements(&self) -> impl Iterator<Item = ElementKind> + Clone + use<> {
-        let (any, own) = (self.mesh.is_none(), self.element().entry());
-        ElementKind::all().filter(move |e| any || e.entry().shares_cell(own))
     }
 
     /// Sentences about pulses that are shorter than a time step.

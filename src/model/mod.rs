@@ -1,0 +1,380 @@
+//! The data of a scene: a beam, its material, supports, loads and probes; builders, limits, units and validation.
+//!
+//! [`crate::scene`] reads it, and is where the public finds it.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+mod build;
+mod dynamics;
+mod error;
+pub mod limits;
+mod place;
+pub mod units;
+
+pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
+pub use error::{Invalid, ReadError, SceneError};
+pub use limits::OutOfRange;
+pub use place::{Axis, Load, Place, Probe, Support, TableError};
+
+use crate::words::number;
+
+/// Everything a solve needs to know.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Scene {
+    /// Title.
+    pub name: String,
+    /// One sentence for the scene list.
+    #[serde(default)]
+    pub about: String,
+    /// Equilibrium or motion.
+    #[serde(default)]
+    pub analysis: Analysis,
+    /// The meshed rectangle …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beam: Option<Beam>,
+    /// … or a mesh from a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshFile>,
+    /// The elastic material.
+    pub material: Material,
+    /// Where nodes are fixed.
+    #[serde(rename = "support", default)]
+    pub supports: Vec<Support>,
+    /// Forces, moments and gravity.
+    #[serde(rename = "load", default)]
+    pub loads: Vec<Load>,
+    /// Places whose displacements are measured.
+    #[serde(rename = "probe", default)]
+    pub probes: Vec<Probe>,
+    /// How the equilibrium is found.
+    #[serde(default)]
+    pub solver: SolverSettings,
+    /// How time goes on, in dynamic scenes.
+    #[serde(default, skip_serializing_if = "DynamicsSettings::is_default")]
+    pub dynamics: DynamicsSettings,
+    /// How a dynamic scene starts.
+    #[serde(default, skip_serializing_if = "Start::is_rest")]
+    pub start: Start,
+}
+
+/// Kinds of results.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Analysis {
+    /// An equilibrium.
+    #[default]
+    Static,
+    /// A motion.
+    Dynamic,
+}
+
+/// A structured mesh of the rectangle [0, length] × [−height/2, height/2], or of the arch it is bent to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Beam {
+    /// Length, m.
+    pub length: f64,
+    /// Height, m.
+    pub height: f64,
+    /// How far its axis rises in the middle, along a parabola from end to end, m: a shallow arch, without stress.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rise: f64,
+    /// Cells along and across; each is a quadrilateral, or is cut into two triangles.
+    pub cells: [u32; 2],
+    /// Element that every cell, or each of its triangles, becomes.
+    #[serde(default)]
+    pub element: ElementKind,
+    /// Direction in which cells are cut into triangles; quadrilaterals are not cut.
+    #[serde(default)]
+    pub diagonals: Diagonals,
+}
+
+/// A mesh from a Gmsh file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct MeshFile {
+    /// The file, relative to the scene file. Its physical curves name the edges.
+    pub file: String,
+    /// The element every cell becomes; without one, what the file has, which is found when the scene is opened.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub element: Option<ElementKind>,
+    /// Metres per unit of the file; 1 where it is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+    /// Contents of the file; read when the scene is opened.
+    #[serde(skip)]
+    pub text: Option<Arc<str>>,
+}
+
+/// The elements there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum ElementKind {
+    /// Three nodes, constant strain.
+    #[default]
+    T3,
+    /// Six nodes, linear strain, curved edges.
+    T6,
+    /// Four nodes, incompatible modes, one rotation.
+    Q4,
+}
+
+/// Directions in which the cells of a beam are cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Diagonals {
+    /// Cell (i, j) from lower left to upper right where i + j is even, else the other way.
+    #[default]
+    Alternating,
+    /// Every cell from lower left to upper right.
+    Same,
+}
+
+/// Linear elastic, isotropic.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Young's modulus E, Pa.
+    pub young: f64,
+    /// Poisson ratio ν.
+    pub poisson: f64,
+    /// Density ρ, kg/m³; gravity and motion read it.
+    #[serde(default = "default_density")]
+    pub density: f64,
+    /// Thickness t out of the plane, m.
+    #[serde(default = "default_thickness")]
+    pub thickness: f64,
+    /// Plane stress or plane strain.
+    #[serde(default)]
+    pub plane: Plane,
+}
+
+/// `true` for a default value, which files leave out.
+fn is_zero<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+fn default_density() -> f64 {
+    1000.0
+}
+
+fn default_thickness() -> f64 {
+    1.0
+}
+
+/// Conditions out of the plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Plane {
+    /// No stress out of the plane: a thin plate.
+    #[default]
+    Stress,
+    /// No strain out of the plane: a slice of something long.
+    Strain,
+}
+
+/// How the equilibrium is found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
+pub struct SolverSettings {
+    /// The method, by its name in the registry.
+    pub method: MethodKind,
+    /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ below which the solve is done.
+    pub tolerance: f64,
+    /// Iterations after which it gives up.
+    pub max_iterations: u32,
+    /// Iterations after which the result is accepted as it is; 0: only where it has converged.
+    #[serde(skip_serializing_if = "is_off")]
+    pub accept_after: u32,
+    /// `auto` only: the error that is asked for, percent of the true displacement.
+    pub max_error_percent: f64,
+}
+
+impl Default for SolverSettings {
+    fn default() -> Self {
+        Self {
+            method: MethodKind::default(),
+            tolerance: 1e-8,
+            max_iterations: 100,
+            accept_after: 0,
+            max_error_percent: 1.0,
+        }
+    }
+}
+
+/// `true` for a number of iterations that nothing is accepted after.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_off(iterations: &u32) -> bool {
+    *iterations == 0
+}
+
+/// The methods there are; `method::METHODS` says what each does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum MethodKind {
+    /// Small-rotation FEM, one solve.
+    Linear,
+    /// The article's iteration.
+    Warped,
+    /// Newton's method with the exact tangent.
+    #[default]
+    Newton,
+    /// Whatever of these the asked accuracy needs.
+    Auto,
+}
+
+impl Scene {
+    /// The scene as a TOML file.
+    ///
+    /// # Errors
+    /// The serializer's message; a validated scene has none.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
+    }
+
+    /// Checks every number and every choice that can be checked without a mesh.
+    ///
+    /// # Errors
+    /// The first key that is wrong and what was expected there.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        match (&self.beam, &self.mesh) {
+            (Some(beam), None) => beam.validate()?,
+            (None, Some(mesh)) => mesh.scale.map_or(Ok(()), |scale| check("mesh.scale", limits::MESH_SCALE, scale))?,
+            (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither")),
+            (Some(_), Some(_)) => return Err(Invalid::new("mesh", "expected [beam] or [mesh], got both")),
+        }
+        self.validate_all_but_geometry()
+    }
+
+    /// [`Self::validate`] for a scene that is put on a mesh of the caller's.
+    pub(crate) fn validate_all_but_geometry(&self) -> Result<(), Invalid> {
+        if self.name.trim().is_empty() {
+            return Err(Invalid::new("name", "expected a title, got an empty string"));
+        }
+        check("material.young", limits::YOUNG, self.material.young)?;
+        check("material.poisson", self.material.plane.poisson_limit(), self.material.poisson)?;
+        check("material.density", limits::DENSITY, self.material.density)?;
+        check("material.thickness", limits::THICKNESS, self.material.thickness)?;
+        let dynamic = self.analysis == Analysis::Dynamic;
+        if self.supports.is_empty() && !dynamic {
+            return Err(Invalid::new("support", "expected at least one [[support]], got none"));
+        }
+        if dynamic && self.material.density == 0.0 {
+            return Err(Invalid::new("material.density", "expected a density above 0: without mass nothing moves"));
+        }
+        for (i, support) in self.supports.iter().enumerate() {
+            let key = format!("support.{i}");
+            support.validate(&key)?;
+            if dynamic && support.moves() {
+                let name = if support.turn == 0.0 { "displacement" } else { "turn" };
+                return Err(Invalid::new(
+                    format!("{key}.{name}"),
+                    "expected analysis = \"static\" beside it: supports do not move in time",
+                ));
+            }
+        }
+        for (i, load) in self.loads.iter().enumerate() {
+            let key = format!("load.{i}");
+            load.validate(&key)?;
+            if load.pulse().is_some() && !dynamic {
+                return Err(Invalid::new(
+                    format!("{key}.pulse"),
+                    "expected analysis = \"dynamic\" beside a pulse in time",
+                ));
+            }
+        }
+        for (i, probe) in self.probes.iter().enumerate() {
+            probe.place.validate(&format!("probe.{i}"))?;
+            if let Some(first) = self.probes[..i].iter().position(|other| other.name == probe.name) {
+                let message = format!("expected a name of its own, got \"{}\", which probe.{first} has", probe.name);
+                return Err(Invalid::new(format!("probe.{i}.name"), message));
+            }
+        }
+        check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
+        check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;
+        check("solver.accept_after", limits::ACCEPT_AFTER, f64::from(self.solver.accept_after))?;
+        if dynamic && self.solver.accept_after != 0 {
+            let message =
+                "expected analysis = \"static\" beside it; of a motion, dynamics.iterations sets the solves a stage";
+            return Err(Invalid::new("solver.accept_after", message));
+        }
+        check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)?;
+        self.dynamics.validate()?;
+        self.start.validate()?;
+        let given = |key, is_default: bool| {
+            let message = "expected analysis = \"dynamic\" beside it";
+            if dynamic || is_default { Ok(()) } else { Err(Invalid::new(key, message)) }
+        };
+        given("dynamics", self.dynamics.is_default())?;
+        given("start", self.start.is_rest())
+    }
+}
+
+fn check(key: &str, limit: limits::Limit, value: f64) -> Result<(), Invalid> {
+    limit.check(value).map_err(|e| Invalid::new(key, e.to_string()))
+}
+
+/// Length over height of a cell, or the inverse, beyond which an element's stiffness is all rounding.
+const MAX_CELL_ASPECT: f64 = 1e5;
+
+impl Beam {
+    fn validate(&self) -> Result<(), Invalid> {
+        check("beam.length", limits::LENGTH, self.length)?;
+        check("beam.height", limits::HEIGHT, self.height)?;
+        check("beam.rise", limits::RISE, self.rise)?;
+        for cells in self.cells {
+            check("beam.cells", limits::CELLS, f64::from(cells))?;
+        }
+        let total = f64::from(self.cells[0]) * f64::from(self.cells[1]);
+        limits::TOTAL_CELLS.check(total).map_err(|e| Invalid::new("beam.cells", format!("{e} cells in all")))?;
+        let aspect = self.cell_aspect();
+        if (1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect) {
+            return Ok(());
+        }
+        let most = number(MAX_CELL_ASPECT);
+        let message =
+            format!("expected cells at most {most} times as long as high or as high as long, got {}", number(aspect));
+        Err(Invalid::new("beam.cells", message))
+    }
+
+    /// Height of the axis at rest above its ends, m; `along` is 0 at the left end and 1 at the right one.
+    pub(crate) fn axis(&self, along: f64) -> f64 {
+        4.0 * self.rise * along * (1.0 - along)
+    }
+
+    /// Rest coordinates of a point, m: `along` is 0 at the left end and 1 at the right one, `across` −½ at the bottom and ½ at
+    /// the top, measured upwards.
+    #[must_use]
+    pub fn point(&self, along: f64, across: f64) -> [f64; 2] {
+        [along * self.length, self.axis(along) + across * self.height]
+    }
+
+    /// Length over height of one cell.
+    #[must_use]
+    pub fn cell_aspect(&self) -> f64 {
+        let [nx, ny] = self.cells.map(f64::from);
+        (self.length / nx) / (self.height / ny)
+    }
+}
+
+impl Plane {
+    /// The Poisson ratios this plane assumption allows.
+    #[must_use]
+    pub fn poisson_limit(self) -> limits::Limit {
+        match self {
+            Self::Stress => limits::POISSON_STRESS,
+            Self::Strain => limits::POISSON_STRAIN,
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The mesh of a scene: its file, and the elements that it can be made of.
+
+use std::path::Path;
+
+use super::{ElementKind, Invalid, MeshFile, Scene, SceneError, registry};
+use crate::mesh::{GmshError, Mesh};
+
+/// Room for the largest mesh that is solved.
+const MAX_MESH_BYTES: u64 = 256 << 20;
+
+impl Scene {
+    /// A body of rubber whose mesh is in a Gmsh file, relative to this folder: nothing holds or pulls it yet.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] where the file cannot be read.
+    pub fn mesh_file(file: &str, folder: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let mesh = MeshFile { file: file.to_owned(), element: None, scale: None, text: None };
+        let mut scene = Self { mesh: Some(mesh), ..Self::named(file) };
+        match read_mesh(&mut scene, folder.as_ref()) {
+            Ok(()) => Ok(scene),
+            Err(invalid) => Err(SceneError::Invalid { file: None, line: None, invalid }),
+        }
+    }
+
+    /// The elements that its mesh can be made of: all of a beam's, those of the same shape of a file's.
+    pub fn elements(&self) -> impl Iterator<Item = ElementKind> + Clone + use<> {
+        let (any, own) = (self.mesh.is_none(), self.element().entry());
+        ElementKind::all().filter(move |e| any || e.entry().shares_cell(own))
+    }
+
+    /// Unknowns of its mesh, those that supports fix included, without meshing it: two a node, see [`Mesh::beam_nodes`] and
+    /// [`Mesh::gmsh_nodes`]. 0 where the mesh is the caller's.
+    #[must_use]
+    pub fn unknowns(&self) -> u64 {
+        let file = |mesh: &MeshFile| mesh.text.as_deref().map_or(0, |text| Mesh::gmsh_nodes(text, self.element()));
+        let nodes = self.beam.as_ref().map(Mesh::beam_nodes).or(self.mesh.as_ref().map(file));
+        nodes.unwrap_or(0).saturating_mul(2)
+    }
+}
+
+/// Reads the mesh file of a scene, relative to the scene's own folder; the meshes of built-in scenes are built in.
+pub(super) fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
+    const KEY: &str = "mesh.file";
+    let Some(mesh) = &mut scene.mesh else { return Ok(()) };
+    let path = folder.join(&mesh.file);
+    let text = match (registry::mesh(&mesh.file), path.is_file()) {
+        (Some(text), false) => text.to_owned(),
+        _ => {
+            let failed = |reason: String| Invalid::new(KEY, format!("{}: {reason}", path.display()));
+            let size = std::fs::metadata(&path).map_err(|e| failed(e.to_string()))?.len();
+            if size > MAX_MESH_BYTES {
+                return Err(failed(format!("expected at most {MAX_MESH_BYTES} bytes, got {size}")));
+            }
+            let bytes = std::fs::read(&path).map_err(|e| failed(e.to_string()))?;
+            String::from_utf8(bytes).map_err(|_| failed(GmshError::NotText.to_string()))?
+        }
+    };
+    mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&text));
+    mesh.text = Some(text.into());
+    Ok(())
+}

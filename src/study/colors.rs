@@ -1,0 +1,45 @@
+//! Colours of methods and integrators in pictures and in the window.
+
+/// Red, green and blue of a method or an integrator, by its name in scene files: on a light ground, and on a dark one. Methods
+/// differ in brightness too.
+const COLORS: &[(&str, [[u8; 3]; 2])] = &[
+    ("linear", [[200, 90, 0], [240, 150, 60]]),
+    ("warped", [[128, 50, 190], [202, 160, 255]]),
+    ("newton", [[0, 100, 180], [90, 200, 250]]),
+    ("auto", [[0, 120, 80], [110, 220, 140]]),
+    ("tr-bdf2", [[0, 120, 80], [110, 220, 140]]),
+    ("energy-momentum", [[0, 100, 180], [90, 200, 250]]),
+    ("implicit-euler", [[190, 20, 30], [255, 105, 97]]),
+    ("symplectic-euler", [[200, 90, 0], [240, 150, 60]]),
+];
+
+/// Grey, for a name without a colour.
+const OTHER: [[u8; 3]; 2] = [[110, 110, 110], [170, 170, 170]];
+
+/// Returns the colour of a method or an integrator on a dark or a light ground, by its name in scene files.
+///
+/// ```
+/// use warpbeam::study::color;
+/// assert_eq!(color("newton", false), [0, 100, 180]);
+/// ```
+#[must_use]
+pub fn color(id: &str, dark: bool) -> [u8; 3] {
+    let own = COLORS.iter().find(|(name, _)| *name == id).map_or(OTHER, |(_, colors)| *colors);
+    own[usize::from(dark)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::COLORS;
+    use crate::dynamics::INTEGRATORS;
+    use crate::method::METHODS;
+
+    #[test]
+    fn every_entry_of_the_registries_has_a_colour_and_every_colour_an_entry() {
+        let mut entries: Vec<&str> = METHODS.iter().map(|m| m.id).chain(INTEGRATORS.iter().map(|i| i.id)).collect();
+        let mut named: Vec<&str> = COLORS.iter().map(|(name, _)| *name).collect();
+        entries.sort_unstable();
+        named.sort_unstable();
+        assert_eq!(entries, named);
+    }
+}
