@@ -19,6 +19,8 @@ use crate::simulation::{Simulation, Status};
 pub(super) struct Background {
     /// Larger models than this, in unknowns, are solved in the background.
     most_unknowns: u64,
+    /// `true` if the wanted scene is larger: counting the unknowns of a mesh file takes too long for every frame.
+    is_large: bool,
     work: Work,
     /// Model of a solve that is not to be displayed: the next solve continues with it.
     returned: Option<(Bodies, Option<DisplayGeometry>)>,
@@ -110,6 +112,7 @@ impl Session {
     /// Sets the size, in unknowns, above which a model is meshed and solved in the background.
     pub(crate) fn set_most_unknowns(&mut self, most: u64) {
         self.background.most_unknowns = most;
+        self.note_size();
     }
 
     /// `true` while a model is meshed or solved in the background.
@@ -130,19 +133,29 @@ impl Session {
     /// `true` if a scene is set up in the background: a large model that needs a mesh or has to be searched. Motions take
     /// their steps between frames.
     pub(super) fn is_for_background(&self, scene: &Scene) -> bool {
+        scene.unknowns() > self.background.most_unknowns && self.needs_work(scene)
+    }
+
+    fn needs_work(&self, scene: &Scene) -> bool {
         let is_search = scene.analysis == Analysis::Static && self.simulation.motion().is_none();
-        scene.unknowns() > self.background.most_unknowns && (is_search || !has_mesh_of(scene, self.simulation.scene()))
+        is_search || !has_mesh_of(scene, self.simulation.scene())
     }
 
     /// `true` if the displayed model is solved in the background.
     pub(crate) fn is_in_background(&self) -> bool {
-        self.is_working() || self.is_for_background(&self.scene)
+        self.is_working() || self.background.is_large && self.needs_work(&self.scene)
+    }
+
+    /// Notes whether the wanted scene is large.
+    pub(super) fn note_size(&mut self) {
+        self.background.is_large = self.scene.unknowns() > self.background.most_unknowns;
     }
 
     /// Requests a scene, which the next background solve takes.
     pub(super) fn request_scene(&mut self, scene: Scene) {
         self.keep_rollback();
         self.scene = scene;
+        self.note_size();
         self.changed.scene = true;
         self.stop_solve();
     }
@@ -202,7 +215,8 @@ impl Session {
 
     /// Drops the background work.
     pub(super) fn drop_background(&mut self) {
-        self.background = Background { most_unknowns: self.background.most_unknowns, ..Background::default() };
+        let Background { most_unknowns, is_large, .. } = self.background;
+        self.background = Background { most_unknowns, is_large, ..Background::default() };
     }
 
     /// Takes the news of the background solve, and starts the next one where there is something to solve.
@@ -319,7 +333,7 @@ impl Session {
 
     /// Starts the next solve, if there is something to solve.
     fn start_solve(&mut self) {
-        if !self.is_for_background(&self.scene) {
+        if !(self.background.is_large && self.needs_work(&self.scene)) {
             return;
         }
         let background = &self.background;
@@ -385,6 +399,7 @@ impl Session {
         let Rollback { version, depth, snapshot, quality, .. } = *rollback;
         self.undo.take_back(depth);
         Version { document: self.document, scene: self.scene, iterations: self.iterations } = version;
+        self.note_size();
         if let Some(Snapshot { bodies, geometry, residuals }) = snapshot {
             let scene = self.simulation.scene().clone();
             (self.simulation, self.linear, self.residuals) = (bodies.simulation, bodies.linear, residuals);

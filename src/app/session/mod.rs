@@ -126,7 +126,7 @@ impl Session {
     /// A session with this scene, iterating from rest.
     pub(crate) fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
         let linear = solve_linear(simulation.scene(), simulation.system(), None);
-        Self {
+        let mut session = Self {
             document: Document::new(source, scene.clone()),
             linear,
             scene,
@@ -145,7 +145,9 @@ impl Session {
             is_outdated: false,
             changed: Changed::default(),
             notices: Vec::new(),
-        }
+        };
+        session.note_size();
+        session
     }
 
     pub(crate) fn document(&self) -> &Document {
@@ -339,6 +341,7 @@ impl Session {
             self.geometry = DisplayGeometry::new(self.simulation.system().mesh());
         }
         self.scene = scene;
+        self.note_size();
         self.follow_scene(&before);
         let known = self.linear.take();
         self.linear = solve_linear(self.simulation.scene(), self.simulation.system(), known);

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::app::action::Action;
 use crate::app::language::{fill, tr, translated};
 use crate::app::session::Edit;
+use crate::app::session::document::SaveError;
 use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question};
 use crate::app::shell::messages::banner;
@@ -25,11 +26,15 @@ impl Lab {
         }
     }
 
-    /// Saves the scene to a file; returns a message, or the reason for a failure.
-    fn save(&mut self, path: &Path) -> Result<String, String> {
-        self.desk.session.save(path).map_err(|reason| translated(&reason.to_string()))?;
+    /// Saves the scene to a file, and shows a message.
+    ///
+    /// # Errors
+    /// [`SaveError`]; no message is shown.
+    fn save(&mut self, ctx: &egui::Context, path: &Path) -> Result<(), SaveError> {
+        self.desk.session.save(path)?;
         self.settings.add_recent(path);
-        Ok(fill!("Saved %{file}", file = path.display()))
+        self.say(ctx, fill!("Saved %{file}", file = path.display()));
+        Ok(())
     }
 
     /// Saves the scene to its file, or asks for one.
@@ -37,14 +42,11 @@ impl Lab {
         let Some(path) = self.desk.session.document().path().map(Path::to_owned) else {
             return self.ask_where_to_save();
         };
-        match self.save(&path) {
-            Ok(words) => {
-                self.say(ctx, words);
-                self.after_save(ctx);
-            }
+        match self.save(ctx, &path) {
+            Ok(()) => self.after_save(ctx),
             Err(reason) => {
                 self.question = Question::None;
-                self.say(ctx, fill!("Not saved: %{reason}", reason = reason));
+                self.say(ctx, fill!("Not saved: %{reason}", reason = translated(&reason.to_string())));
             }
         }
     }
@@ -60,31 +62,31 @@ impl Lab {
     /// Shows the dialog that asks for a file, and does what it answers.
     pub(super) fn ask_for_file(&mut self, ctx: &egui::Context) {
         let Some(mut dialog) = self.dialog.take() else { return };
-        let done = match dialog.show(ctx, self.settings.recent()) {
-            None => Err(None),
-            Some(Answer::Cancel) => {
+        let Some(answer) = dialog.show(ctx, self.settings.recent()) else {
+            self.dialog = Some(dialog);
+            return;
+        };
+        let refusal = match answer {
+            Answer::Cancel => {
                 self.question = Question::None;
-                Ok(None)
+                None
             }
-            Some(Answer::File(path)) => match dialog.purpose {
-                Purpose::Open => {
-                    let opened = self.desk.session.apply(Edit::Open(Source { name: path, assignments: Vec::new() }));
-                    self.follow_session();
-                    opened.map(|_| self.note_recent()).map(|()| None).map_err(|error| Some(error.to_string()))
+            Answer::File(path) if dialog.purpose == Purpose::Open => {
+                let opened = self.desk.session.apply(Edit::Open(Source { name: path, assignments: Vec::new() }));
+                self.follow_session();
+                opened.map(|_| self.note_recent()).err().map(|error| error.to_string())
+            }
+            Answer::File(path) => match self.save(ctx, &path) {
+                Ok(()) => {
+                    self.after_save(ctx);
+                    None
                 }
-                Purpose::Save => self.save(&path).map(Some).map_err(Some),
+                Err(reason) => Some(translated(&reason.to_string())),
             },
         };
-        match done {
-            Ok(None) => {}
-            Ok(Some(words)) => {
-                self.say(ctx, words);
-                self.after_save(ctx);
-            }
-            Err(message) => {
-                message.into_iter().for_each(|message| dialog.refuse(message));
-                self.dialog = Some(dialog);
-            }
+        if let Some(refusal) = refusal {
+            dialog.refuse(refusal);
+            self.dialog = Some(dialog);
         }
         if self.dialog.is_none() {
             ctx.request_repaint();

@@ -51,6 +51,8 @@ enum FieldError {
     NotWhole(String),
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
+    #[error(transparent)]
+    Unit(#[from] UnitError),
 }
 
 const VALUE_WIDTH: f32 = 104.0;
@@ -91,7 +93,7 @@ impl NumberField {
                             if has_escaped || text.trim() == shown {
                                 return Some(value);
                             }
-                            self.read(text).map_err(|reason| refused.replace(Some(reason))).ok()
+                            self.read(text).map_err(|reason| refused.replace(Some(reason.to_string()))).ok()
                         });
                     let size = egui::vec2(VALUE_WIDTH, ui.spacing().interact_size.y);
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
@@ -213,17 +215,15 @@ impl NumberField {
         Some(if self.whole { stepped } else { three_digits(stepped) })
     }
 
-    /// The number that a text says, or why it is refused.
-    fn read(&self, text: &str) -> Result<f64, String> {
+    /// Reads a number within the limit.
+    fn read(&self, text: &str) -> Result<f64, FieldError> {
         match parse(text, self.limit.unit) {
-            Ok(number) if number.is_finite() => self.check(number).map(|()| number).map_err(|error| error.to_string()),
-            Ok(_) | Err(UnitError::NoNumber { .. }) => Err(self.expected(text)),
-            Err(error) => Err(error.to_string()),
+            Ok(number) if number.is_finite() => self.check(number).map(|()| number),
+            Ok(_) | Err(UnitError::NoNumber { .. }) => {
+                Err(self.limit.expected(&format!("\u{201c}{}\u{201d}", text.trim())).into())
+            }
+            Err(error) => Err(error.into()),
         }
-    }
-
-    fn expected(&self, text: &str) -> String {
-        self.limit.expected(&format!("\u{201c}{}\u{201d}", text.trim())).to_string()
     }
 
     fn check(&self, value: f64) -> Result<(), FieldError> {
