@@ -39,8 +39,8 @@
 //! Data flows one way, and the modules say so; each imports only from its left:
 //!
 //! [`words`], [`timings`], [`scene`], [`lanes`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] → [`solver`], [`state`] →
-//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`study`] → the commands and the
-//! window. [`truth`] needs the scene only; [`article`] stands beside.
+//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`study`] → `plot`, the
+//! drawings → the commands and the window. [`truth`] needs the scene only; [`article`] stands beside.
 //!
 //! The feature `app` (on by default) is the window and the commands; `cli` is the commands alone, without a GPU or a
 //! window. With neither the library names no GPU, window or command line crate.
@@ -72,6 +72,8 @@ pub mod mesh;
 pub mod method;
 #[cfg(feature = "cli")]
 pub mod picture;
+#[cfg(feature = "cli")]
+pub mod plot;
 #[cfg(feature = "app")]
 pub mod render;
 pub mod rotation;

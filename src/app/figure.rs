@@ -14,7 +14,7 @@ use super::plot::{segments, still};
 use super::toolbar::option_button;
 use super::{NoName, free_name};
 use crate::export::{ExportError, write_text};
-use crate::picture::{PictureError, draw_svg};
+use crate::picture::PictureError;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 
 /// Quantities that a load curve shows.
@@ -86,8 +86,8 @@ pub(super) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveErr
     let path = free_name(file.extension())?;
     match file {
         FigureFile::Csv => write_text(&path, &figure.csv())?,
-        FigureFile::Svg => write_text(&path, &figure.svg())?,
-        FigureFile::Png => draw_svg(&figure.svg())?.write_png(&path)?,
+        FigureFile::Svg => write_text(&path, &crate::plot::figure(figure).svg())?,
+        FigureFile::Png => crate::plot::figure(figure).picture()?.write_png(&path)?,
     }
     Ok(path)
 }

@@ -4,9 +4,9 @@ use egui::Color32;
 
 use super::language::{count, fill, joined, percent, tr, translated};
 use super::palette::Palette;
+use crate::plot::drawn_error;
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
-use crate::study::plot::drawn_error;
 use crate::study::{Demand, Measurement, MotionStudy, Study};
 
 /// Displayed frames a second.

@@ -1,18 +1,15 @@
 //! Measurements over many solves.
 
-mod chart;
 mod convergence;
 pub mod extremes;
 pub mod figure;
 mod fine;
-mod heat_map;
 mod load_curve;
 mod load_path;
 pub mod motion;
 pub(crate) mod parallel;
 mod pareto;
 pub mod path_chart;
-pub mod plot;
 mod reference;
 mod report;
 mod scaling;
@@ -21,7 +18,6 @@ mod trade;
 mod tune;
 
 pub use fine::{Effort, MovedPoint, moved_points};
-pub use heat_map::{heat_map, motion_heat_map};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
 pub use load_path::{
     Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_words,
