@@ -40,7 +40,7 @@
 //!
 //! [`words`], [`timings`], the scene's data (`model`), [`lanes`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] →
 //! [`solver`], [`scene`] (reads scenes and mesh files, and re-exports their data), [`state`] → [`assembly`] → [`method`] for equilibria,
-//! [`dynamics`] for motions, [`stress`] → [`simulation`] → [`truth`] → [`study`] → the window → the commands. [`article`] needs elements and
+//! [`dynamics`] for motions, [`stress`] → [`simulation`] → [`truth`] → [`study`] → `plot`, the drawings → the window → the commands. [`article`] needs elements and
 //! rotations only.
 //!
 //! The feature `app` (on by default) is the window and the commands; `cli` is the commands alone, without a GPU or a
@@ -73,6 +73,8 @@ pub mod method;
 mod model;
 #[cfg(feature = "cli")]
 pub mod picture;
+#[cfg(feature = "cli")]
+pub mod plot;
 #[cfg(feature = "app")]
 pub mod render;
 pub mod rotation;

@@ -1,4 +1,4 @@
-//! Pictures in memory, as PNG files, and from SVG.
+//! Pictures in memory, and as PNG files.
 
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -9,9 +9,12 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PictureError {
-    /// The SVG cannot be drawn.
-    #[error("the picture cannot be drawn: {0}")]
-    Svg(String),
+    /// The picture has too many pixels.
+    #[error("expected a picture of at most 65535 pixels a side, got {} x {}", size[0], size[1])]
+    TooLarge {
+        /// Width and height.
+        size: [u32; 2],
+    },
     /// The picture cannot be written.
     #[error("{path}: {reason}", path = path.display())]
     Write {
@@ -50,22 +53,3 @@ impl Picture {
 
 /// Font with the Chinese letters of the window.
 pub(crate) const CHINESE_FONT: &[u8] = include_bytes!("../assets/fonts/NotoSansSC-subset.otf");
-
-/// Draws an SVG picture, without a GPU, with the same fonts on every machine.
-///
-/// # Errors
-/// [`PictureError::Svg`].
-pub fn draw_svg(svg: &str) -> Result<Picture, PictureError> {
-    let mut options = resvg::usvg::Options::default();
-    let fonts = options.fontdb_mut();
-    for font in [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR, CHINESE_FONT] {
-        fonts.load_font_data(font.to_vec());
-    }
-    let tree = resvg::usvg::Tree::from_str(svg, &options).map_err(|e| PictureError::Svg(e.to_string()))?;
-    let size = tree.size().to_int_size();
-    let mut pixels = resvg::tiny_skia::Pixmap::new(size.width(), size.height())
-        .ok_or_else(|| PictureError::Svg("the picture has no size".to_owned()))?;
-    resvg::render(&tree, resvg::tiny_skia::Transform::default(), &mut pixels.as_mut());
-    // The background is opaque, so premultiplied and straight alpha are the same.
-    Ok(Picture { size: [size.width(), size.height()], rgba: pixels.take() })
-}

@@ -23,6 +23,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("methods", &["method", "dynamics", "stress"]),
     ("simulation", &["simulation"]),
     ("study", &["export", "study"]),
+    ("plot", &["plot"]),
     ("render", &["render"]),
     ("language", &["app/language"]),
     ("task", &["app/task"]),

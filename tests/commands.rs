@@ -71,7 +71,7 @@ fn outputs_of_another_kind_are_refused() {
         (&["curve", "scene.toml", "--picture", "scene.jpg"], "expected a name that ends in .svg or .png"),
         (&["tune", "scene.toml", "--write", "scene.csv"], "expected a name that ends in .toml"),
         (&["solve", "scene.toml", "--out", "scene.toml"], "expected a file name ending in .csv or .vtu"),
-        (&["record", "scene.toml", "-o", "scene.toml"], "expected a file name ending in .gif or .png"),
+        (&["record", "scene.toml", "-o", "scene.toml"], "expected a file name ending in .gif, or the name of a folder"),
     ] {
         let refused = warpbeam_in(folder.path(), args);
         assert_eq!(refused.status.code(), Some(2), "{args:?}");

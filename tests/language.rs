@@ -243,7 +243,6 @@ const NOT_SHOWN: &[&str] = &[
     "# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}",
     "English",
     "Noto Sans SC",
-    "acTL",
     "probe values",
     "load curve",
     "WAYLAND_DISPLAY",
@@ -259,7 +258,7 @@ const NOT_SHOWN: &[&str] = &[
     "the surface was lost",
     "the surface is not valid",
     "expected a method ({}), an element ({}), cells as in 10x2 or a number of iterations, got \u{201c}{part}\u{201d}",
-    "{}: expected a file name ending in .gif or .png, or the name of a folder for numbered pictures, which ffmpeg makes a \
+    "{}: expected a file name ending in .gif, or the name of a folder for numbered pictures, which ffmpeg makes a \
      film of",
 ];
 

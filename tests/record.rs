@@ -34,20 +34,19 @@ fn decode_gif(path: &Path) -> Movie {
     Movie { size: [width, height], frames }
 }
 
-fn decode_png(path: &Path) -> Movie {
-    let decoder = png::Decoder::new(std::io::BufReader::new(File::open(path).unwrap()));
-    let mut reader = decoder.read_info().unwrap();
-    let size = [reader.info().width as usize, reader.info().height as usize];
-    let count = reader.info().animation_control().map_or(1, |a| a.num_frames);
-    let mut frames = Vec::new();
-    for _ in 0..count {
-        let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut rgb).unwrap();
-        let delay = reader.info().frame_control().map_or(0.0, |f| f64::from(f.delay_num) / f64::from(f.delay_den));
-        frames.push((rgb, delay));
-    }
+fn decode_png(path: &Path) -> ([usize; 2], Vec<u8>) {
+    let mut reader = png::Decoder::new(std::io::BufReader::new(File::open(path).unwrap())).read_info().unwrap();
+    let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut rgba).unwrap();
     reader.finish().unwrap();
-    Movie { size, frames }
+    let rgb = rgba.chunks(4).flat_map(|pixel| pixel[..3].to_vec()).collect();
+    ([info.width as usize, info.height as usize], rgb)
+}
+
+/// The numbered pictures of a folder, in RGB. It has nothing else.
+fn decode_folder(folder: &Path) -> Vec<([usize; 2], Vec<u8>)> {
+    let count = fs::read_dir(folder).unwrap().count();
+    (1..=count).map(|k| decode_png(&folder.join(format!("frame-{k:04}.png")))).collect()
 }
 
 fn record(folder: &Path, args: &[&str]) -> String {
@@ -63,7 +62,7 @@ fn difference(a: &[u8], b: &[u8]) -> (u8, f64) {
     (off.clone().max().unwrap_or(0), off.map(f64::from).sum::<f64>() / a.len() as f64)
 }
 
-/// The three formats show the same: as many pictures as asked, each another one, GIF in its nearest colours.
+/// Both formats show the same: as many pictures as asked, each another one, GIF in its nearest colours.
 #[test]
 fn a_motion_is_recorded_in_every_format() {
     let folder = tempfile::tempdir().unwrap();
@@ -71,25 +70,22 @@ fn a_motion_is_recorded_in_every_format() {
     let args = ["swing", "--seconds", "0.4", "--size", "320x200"];
     let words = record(folder, &[&args[..], &["-o", "swing.gif"]].concat());
     assert!(words.contains("11 pictures, 25 a second"), "{words}");
-    record(folder, &[&args[..], &["-o", "swing.png"]].concat());
     record(folder, &[&args[..], &["-o", "frames"]].concat());
-    let (gif, png) = (decode_gif(&folder.join("swing.gif")), decode_png(&folder.join("swing.png")));
+    let (gif, pngs) = (decode_gif(&folder.join("swing.gif")), decode_folder(&folder.join("frames")));
     assert_eq!((gif.size, gif.frames.len()), ([320, 200], 11));
-    assert_eq!((png.size, png.frames.len()), ([320, 200], 11));
-    assert!(gif.frames.iter().chain(&png.frames).all(|(_, delay)| (delay - 0.04).abs() < 1e-9));
-    assert_eq!(fs::read_dir(folder.join("frames")).unwrap().count(), 11);
-    for (k, ((gif, _), (png, _))) in gif.frames.iter().zip(&png.frames).enumerate() {
-        let single = decode_png(&folder.join(format!("frames/frame-{:04}.png", k + 1)));
-        let rgb: Vec<u8> = single.frames[0].0.chunks(4).flat_map(|p| p[..3].to_vec()).collect();
-        assert_eq!(&rgb, png, "picture {k}");
+    assert_eq!(pngs.len(), 11);
+    assert!(gif.frames.iter().all(|(_, delay)| (delay - 0.04).abs() < 1e-9));
+    for (k, ((gif, _), (size, png))) in gif.frames.iter().zip(&pngs).enumerate() {
+        assert_eq!(*size, [320, 200], "picture {k}");
         let (_, mean) = difference(gif, png);
         assert!(mean < 0.5, "picture {k}: colours are off by {mean} on average");
         // The background is exact.
         assert_eq!(gif[..3], png[..3]);
     }
-    for movie in [&gif, &png] {
-        assert!(movie.frames.windows(2).all(|w| w[0].0 != w[1].0), "something moves");
-    }
+    assert!(
+        gif.frames.windows(2).all(|w| w[0].0 != w[1].0) && pngs.windows(2).all(|w| w[0] != w[1]),
+        "something moves"
+    );
     // The same again, to the byte.
     record(folder, &[&args[..], &["-o", "again.gif"]].concat());
     assert_eq!(fs::read(folder.join("swing.gif")).unwrap(), fs::read(folder.join("again.gif")).unwrap());
@@ -99,13 +95,13 @@ fn a_motion_is_recorded_in_every_format() {
 #[test]
 fn camera_and_colours_stand_still() {
     let folder = tempfile::tempdir().unwrap();
-    record(folder.path(), &["swing", "--seconds", "1", "--fps", "5", "--size", "400x300", "-o", "swing.png"]);
-    let movie = decode_png(&folder.path().join("swing.png"));
-    assert_eq!(movie.frames.len(), 6);
+    record(folder.path(), &["swing", "--seconds", "1", "--fps", "5", "--size", "400x300", "-o", "frames"]);
+    let pictures = decode_folder(&folder.path().join("frames"));
+    assert_eq!(pictures.len(), 6);
     // The legend's words and colours, and the scale: the lowest sixth of the picture.
     let below = |rgb: &[u8]| rgb[3 * 400 * 250..].to_vec();
-    for (rgb, _) in &movie.frames[1..] {
-        assert_eq!(below(rgb), below(&movie.frames[0].0), "the range or the scale moved");
+    for (_, rgb) in &pictures[1..] {
+        assert_eq!(below(rgb), below(&pictures[0].1), "the range or the scale moved");
     }
 }
 
@@ -117,7 +113,7 @@ fn rates_are_what_the_format_has_and_slow_motion_is_slow() {
     let words = record(folder, &[&short[..], &["--fps", "30", "-o", "a.gif"]].concat());
     assert!(words.contains("7 pictures, 33.33 a second") && words.contains("cannot have 30"), "{words}");
     assert!(decode_gif(&folder.join("a.gif")).frames.iter().all(|(_, delay)| (delay - 0.03).abs() < 1e-9));
-    let words = record(folder, &[&short[..], &["--fps", "30", "-o", "a.png"]].concat());
+    let words = record(folder, &[&short[..], &["--fps", "30", "-o", "frames"]].concat());
     assert!(words.contains("7 pictures, 30 a second\n"), "{words}");
     // A tenth of the speed: ten times as many pictures of the same time.
     record(folder, &[&short[..], &["--speed", "0.1", "-o", "slow.gif"]].concat());
@@ -141,11 +137,11 @@ fn a_search_is_recorded_iteration_by_iteration() {
     // What does not converge is recorded too, and said.
     let diverged = warpbeam_in(
         folder,
-        &["record", "cantilever", "--set", "load.0.force=[0,-9000]", "--size", "64x64", "-o", "b.png"],
+        &["record", "cantilever", "--set", "load.0.force=[0,-9000]", "--size", "64x64", "-o", "diverged"],
     );
     assert_eq!(diverged.status.code(), Some(1));
     assert!(stderr(&diverged).contains("diverged"), "{}", stderr(&diverged));
-    assert!(decode_png(&folder.join("b.png")).frames.len() > 1);
+    assert!(decode_folder(&folder.join("diverged")).len() > 1);
 }
 
 /// A motion that explodes is recorded as far as it went.
@@ -164,7 +160,8 @@ fn an_explosion_is_recorded_and_said() {
 fn wrong_usage_is_refused_before_anything_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let cases: &[(&[&str], &str)] = &[
-        (&["swing", "-o", "a.mp4"], "ending in .gif or .png"),
+        (&["swing", "-o", "a.mp4"], "ending in .gif, or the name of a folder for numbered pictures"),
+        (&["swing", "-o", "a.png"], "a.png: expected a file name ending in .gif, or the name of a folder"),
         (&["swing", "-o", "no/such/a.gif"], "no/such: no such folder"),
         (&["article", "-o", "a.gif", "--seconds", "2"], "this scene is static"),
         (&["swing", "-o", "a.gif", "--seconds", "-1"], "expected"),
@@ -188,18 +185,21 @@ fn wrong_usage_is_refused_before_anything_is_drawn() {
 fn an_interrupted_recording_is_shorter_and_valid() {
     use common::process::{start, wait_for};
     let folder = tempfile::tempdir().unwrap();
-    for name in ["a.gif", "a.png"] {
+    for name in ["a.gif", "frames"] {
         let path = folder.path().join(name);
         // Slow motion: the motion is short, and its pictures are many.
         let args = ["record", "swing", "--speed", "0.001", "--size", "128x128", "-o", name];
         let running = start(folder.path(), &args);
-        wait_for("some pictures", || fs::metadata(&path).is_ok_and(|file| file.len() > 30_000));
+        wait_for("some pictures", || match name {
+            "frames" => fs::read_dir(&path).is_ok_and(|pictures| pictures.count() > 10),
+            _ => fs::metadata(&path).is_ok_and(|file| file.len() > 30_000),
+        });
         let output = running.interrupt();
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
         assert!(stderr(&output).contains("the recording is partial"), "{}", stderr(&output));
-        let movie = if name == "a.gif" { decode_gif(&path) } else { decode_png(&path) };
-        assert!((1..50_000).contains(&movie.frames.len()));
-        let said = format!("{} picture", movie.frames.len());
+        let pictures = if name == "a.gif" { decode_gif(&path).frames.len() } else { decode_folder(&path).len() };
+        assert!((1..50_000).contains(&pictures));
+        let said = format!("{pictures} picture");
         assert!(stdout(&output).contains(&said), "{said}: {}", stdout(&output));
     }
     // Before the first picture there is none.

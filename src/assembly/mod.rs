@@ -5,7 +5,6 @@
 //! - [`Loads`]: what pulls, as nodal forces and moments.
 //! - [`Problem`]: a system with its material, loads and probes; forces, tangents and energies of a state.
 
-mod dissection;
 mod edge;
 mod hand;
 mod hold;
@@ -13,7 +12,6 @@ mod kinematics;
 mod loads;
 mod mass;
 mod matrix;
-mod ordering;
 mod pattern;
 mod probe;
 mod problem;

@@ -7,7 +7,6 @@ use thiserror::Error;
 
 use super::edge::no_such_edge;
 use super::hold::{Hold, check_held, fixed_unknowns};
-use super::ordering::analyse;
 use super::{Edge, Kinematics, Pattern};
 use crate::element::Elements;
 use crate::mesh::{Mesh, Recovery};
@@ -180,7 +179,8 @@ impl System {
             coupled.iter().map(|&edge| body.edges[edge].weights().iter().map(|&(node, _)| node).collect()).collect();
         let pattern = Pattern::new(&body.mesh, &fixed, &groups);
         let slots = body.mesh.elements().flat_map(|nodes| pattern.block_slots(nodes)).collect();
-        let symbolic = analyse(&body.mesh, &pattern).map_err(|_| SystemError::TooLarge { unknowns: pattern.dofs() })?;
+        let symbolic = Symbolic::new(pattern.column_starts(), pattern.row_indices())
+            .map_err(|_| SystemError::TooLarge { unknowns: pattern.dofs() })?;
         Ok(Self { body, supports: scene.supports.clone(), hold, coupled, pattern, slots, symbolic })
     }
 

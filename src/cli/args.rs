@@ -97,7 +97,7 @@ pub(super) enum Command {
     #[command(after_help = EXIT_CODES)]
     Shot(ShotArgs),
     /// Draw the moving picture of a scene in motion, or of the way of a static one to its equilibrium (an iteration a
-    /// picture), without a window: an animated GIF or PNG, or numbered pictures.
+    /// picture), without a window: an animated GIF, or numbered pictures.
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),

@@ -11,14 +11,14 @@ use super::progress::Watch;
 use super::solved::{Solved, Spent};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
 use crate::export::{self, ExportError, Format, MotionWriter};
-use crate::picture::draw_svg;
+use crate::plot::{self, Drawing};
 use crate::scene::{self, Analysis, Scene};
 use crate::simulation::{Deformation, Simulation, Status, StressResult};
 use crate::stress::strain_warning;
 use crate::study::path_chart::Ordinate;
 use crate::study::{
     Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MemoryMeter, MotionStudy, PathSummary, Reference,
-    Scaling, Study, StudyError, Tuning, extremes, heat_map, motion_heat_map, moved_points, parallel, path_chart, plot,
+    Scaling, Study, StudyError, Tuning, extremes, moved_points, parallel, path_chart,
 };
 use crate::words::count;
 
@@ -177,8 +177,8 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     }
     if let (Some(picture), Some(is_png)) = (picture, is_png) {
         let path = path.as_ref().ok_or_else(|| CliError::NoPath(named(&source)))?;
-        let svg = path_chart::figure(path, &scene, &ordinate).svg();
-        if is_png { draw_svg(&svg)?.write_png(&picture)? } else { export::write_text(&picture, &svg)? }
+        let drawing = plot::figure(&path_chart::figure(path, &scene, &ordinate));
+        if is_png { drawing.picture()?.write_png(&picture)? } else { export::write_text(&picture, &drawing.svg())? }
     }
     text::print(&words)?;
     Ok(if path.is_none_or(|path| path.end.is_none()) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
@@ -208,25 +208,24 @@ fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(source)?;
     let watch = Watch::new();
-    let (texts, interrupted) = match scene.analysis {
+    let (result, interrupted) = match scene.analysis {
         Analysis::Static => {
             let study = Study::until_cancelled(&scene, extent(out), &mut |progress| watch.observe(&progress));
             let interrupted = study.as_ref().is_ok_and(|(_, is_partial)| *is_partial);
-            (study.map(|(study, _)| [study.table(), plot::svg(&study), study.summary()]), interrupted)
+            (study.map(|(study, _)| (study.table(), plot::study(&study), study.summary())), interrupted)
         }
         Analysis::Dynamic => {
             let study = MotionStudy::new(&scene, extent(out), &mut |progress| watch.observe(&progress));
             let interrupted = study.as_ref().is_ok_and(|study| study.is_partial);
-            (study.map(|study| [study.table(), plot::motion_svg(&study), study.summary()]), interrupted)
+            (study.map(|study| (study.table(), plot::motion_study(&study), study.summary())), interrupted)
         }
     };
     drop(watch);
-    let [table, svg, summary] = match texts {
+    let (table, drawing, summary) = match result {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
-        texts => texts.map_err(failed(source))?,
+        result => result.map_err(failed(source))?,
     };
-    let texts = [("study.csv", table.as_str()), ("study.svg", &svg), ("study.txt", &summary)];
-    write_folder(&out.folder, &texts, "study.svg")?;
+    write_folder(&out.folder, "study", &table, &drawing, Some(&summary))?;
     text::print(&summary)?;
     Ok(ended(interrupted, "the study lacks what was not measured yet"))
 }
@@ -242,9 +241,8 @@ pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCo
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
         study => study.map_err(failed(source))?,
     };
-    let (table, svg, summary) = (study.table(), study.svg(), study.summary());
-    let texts = [("scaling.csv", table.as_str()), ("scaling.svg", &svg), ("scaling.txt", &summary)];
-    write_folder(&out.folder, &texts, "scaling.svg")?;
+    let summary = study.summary();
+    write_folder(&out.folder, "scaling", &study.table(), &plot::scaling(&study), Some(&summary))?;
     text::print(&summary)?;
     Ok(ended(study.is_partial, "finer meshes have not been measured"))
 }
@@ -328,12 +326,10 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     drop(watch);
     let missing = all - entries.len() - motions.len();
     let summary = format!("{}\n{}", extremes::summary(&entries), extremes::motion::summary(&motions));
-    let (table, svg) = (extremes::table(&entries), heat_map(&entries));
-    let texts = [("extremes.csv", table.as_str()), ("extremes.svg", &svg), ("extremes.txt", &summary)];
-    write_folder(&out.folder, &texts, "extremes.svg")?;
-    let (table, svg) = (extremes::motion::table(&motions), motion_heat_map(&motions));
-    let texts = [("extremes-motion.csv", table.as_str()), ("extremes-motion.svg", &svg)];
-    write_folder(&out.folder, &texts, "extremes-motion.svg")?;
+    let (table, drawing) = (extremes::table(&entries), plot::atlas(&entries));
+    write_folder(&out.folder, "extremes", &table, &drawing, Some(&summary))?;
+    let (table, drawing) = (extremes::motion::table(&motions), plot::motion_atlas(&motions));
+    write_folder(&out.folder, "extremes-motion", &table, &drawing, None)?;
     text::print(&summary)?;
     Ok(ended(missing > 0, &format!("{} not in the atlas", count(missing as u64, "case"))))
 }
@@ -346,15 +342,13 @@ fn extent(out: &FolderArgs) -> Extent {
     if out.quick { Extent::Quick } else { Extent::Full }
 }
 
-/// Writes a folder of texts, and one of them, an SVG picture, as PNG too.
-fn write_folder(out: &Path, texts: &[(&str, &str)], picture: &str) -> Result<(), CliError> {
+/// Writes a table, a drawing and a summary into a folder, under one name.
+fn write_folder(out: &Path, name: &str, table: &str, drawing: &Drawing, summary: Option<&str>) -> Result<(), CliError> {
     std::fs::create_dir_all(out).map_err(|source| ExportError::Write { path: out.display().to_string(), source })?;
-    for (name, text) in texts {
-        let path = out.join(name);
-        export::write_text(&path, text)?;
-        if *name == picture {
-            draw_svg(text)?.write_png(&path.with_extension("png"))?;
-        }
-    }
+    let file = |extension: &str| out.join(format!("{name}.{extension}"));
+    export::write_text(&file("csv"), table)?;
+    export::write_text(&file("svg"), &drawing.svg())?;
+    drawing.picture()?.write_png(&file("png"))?;
+    summary.map_or(Ok(()), |summary| export::write_text(&file("txt"), summary))?;
     Ok(())
 }

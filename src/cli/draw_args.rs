@@ -65,8 +65,7 @@ fn parse_panes(text: &str) -> Result<Panes, app::PaneSettingError> {
 pub(super) const RECORD_NOTES: &str = "\
 OUT.gif loops for ever, in one palette of 256 colours. A GIF counts in hundredths of a second: where --fps is no such \
 rate, the nearest is taken, and said.
-OUT.png is an animated PNG, in full colour.
-A name without extension is a folder of numbered pictures, frame-0001.png and on, ready for
+A name without extension is a folder of numbered pictures in full colour, frame-0001.png and on, ready for
   ffmpeg -framerate 25 -i FOLDER/frame-%04d.png -pix_fmt yuv420p OUT.mp4
 
 Camera and colours span the whole motion: it is run once before it is drawn.
@@ -78,7 +77,7 @@ pub(super) struct RecordArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
     /// The file, or the folder, to write.
-    #[arg(short, long, value_name = "OUT.gif|OUT.png|FOLDER")]
+    #[arg(short, long, value_name = "OUT.gif|FOLDER")]
     pub output: PathBuf,
     /// How much of a motion is recorded: 2, 2s or 500ms. Else the scene's dynamics.duration.
     #[arg(long, value_name = "TIME", value_parser = parse_seconds)]

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use super::draw_args::RecordArgs;
 use super::progress::Watch;
 use super::{CliError, NOT_CONVERGED, exit_code, text};
-use crate::app::{self, MovieFormat, Phase, RecordOptions, RecordProgress, Recorded};
+use crate::app::{self, Phase, RecordOptions, RecordProgress, Recorded};
 use crate::scene;
 use crate::words::{count, number};
 
@@ -48,11 +48,12 @@ fn words(progress: &RecordProgress) -> String {
 
 /// What was written, and at which rate.
 fn summary(recorded: &Recorded, asked: Option<u16>, output: &Path) -> String {
-    let Recorded { pictures, rate, format, .. } = recorded;
+    let Recorded { pictures, rate, .. } = recorded;
     let rounded = number((100.0 * rate).round() / 100.0);
     let mut text = format!("{}: {}, {rounded} a second", output.display(), count(*pictures, "picture"));
     if let Some(asked) = asked.filter(|&asked| (f64::from(asked) - rate).abs() > 1e-9) {
-        text += &format!(" (a {} cannot have {asked})", if *format == MovieFormat::Gif { "GIF" } else { "file" });
+        // Folders have every rate.
+        text += &format!(" (a GIF cannot have {asked})");
     }
     text + "\n"
 }

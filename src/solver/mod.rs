@@ -6,11 +6,11 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, IntranodeLbltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
 use thiserror::Error;
@@ -66,35 +66,17 @@ impl std::fmt::Debug for Symbolic {
 }
 
 impl Symbolic {
-    /// Orders (AMD) and analyses the lower triangle of a symmetric matrix, in compressed columns with sorted rows: the
-    /// start of each column and the end of the last, and the row of every entry. The factor is simplicial up to
-    /// 14 entries an unknown (`SPARSE`), supernodal beyond; faer's own choice is up to 2.6 times slower on these meshes.
+    /// Orders (AMD: Amestoy, Davis and Duff 1996) and analyses the lower triangle of a symmetric matrix, in compressed
+    /// columns with sorted rows: the start of each column and the end of the last, and the row of every entry. The factor
+    /// is simplicial up to 14 entries an unknown (`SPARSE`), supernodal beyond; faer's own choice is up to 2.6 times
+    /// slower on these meshes.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
     pub fn new(column_starts: &[usize], row_indices: &[usize]) -> Result<Self, SolverError> {
-        Self::with_ordering(column_starts, row_indices, SymmetricOrdering::Amd)
-    }
-
-    /// [`Self::new`] with the order of elimination given: every row once, the first to go first.
-    pub(crate) fn in_order(
-        column_starts: &[usize],
-        row_indices: &[usize],
-        order: &[usize],
-    ) -> Result<Self, SolverError> {
-        let inverse = inverse(order);
-        let order = PermRef::new_checked(order, &inverse, order.len());
-        Self::with_ordering(column_starts, row_indices, SymmetricOrdering::Custom(order))
-    }
-
-    fn with_ordering(
-        column_starts: &[usize],
-        row_indices: &[usize],
-        ordering: SymmetricOrdering<'_, usize>,
-    ) -> Result<Self, SolverError> {
         let n = column_starts.len().saturating_sub(1);
         let structure = SymbolicSparseColMat::new_checked(n, n, column_starts.to_vec(), None, row_indices.to_vec());
-        let cholesky = |threshold| symbolic_cholesky(&structure, ordering, threshold);
+        let cholesky = |threshold| symbolic_cholesky(&structure, threshold);
         let supernodal = cholesky(SupernodalThreshold::FORCE_SUPERNODAL)?;
         let (definite, indefinite) = if n <= MOST_SIMPLICIAL {
             let simplicial = cholesky(SupernodalThreshold::FORCE_SIMPLICIAL)?;
@@ -120,72 +102,14 @@ const SPARSE: usize = 14;
 /// Larger systems have more: it is not looked for.
 const MOST_SIMPLICIAL: usize = 2500;
 
-/// The sparsity of a factor in an order of elimination: simplicial or supernodal, as the threshold forces it to be.
+/// The sparsity of a factor: simplicial or supernodal, as the threshold forces it to be.
 fn symbolic_cholesky(
     structure: &SymbolicSparseColMat<usize>,
-    ordering: SymmetricOrdering<'_, usize>,
     threshold: SupernodalThreshold,
 ) -> Result<SymbolicCholesky<usize>, SolverError> {
     let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() };
+    let ordering = SymmetricOrdering::Amd;
     factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, ordering, params).map_err(|_| SolverError::TooLarge)
-}
-
-/// The place of every row in an order.
-fn inverse(order: &[usize]) -> Vec<usize> {
-    let mut inverse = vec![0; order.len()];
-    for (place, &row) in order.iter().enumerate() {
-        inverse[row] = place;
-    }
-    inverse
-}
-
-/// What is coupled with what: the sparsity of a symmetric matrix, without its diagonal.
-pub(crate) struct Graph(SymbolicSparseColMat<usize>);
-
-impl Graph {
-    /// A graph of the neighbours of every vertex, in ascending order: their start for each vertex and the end of the
-    /// last, and the neighbours. Every vertex is a neighbour of its neighbours.
-    pub(crate) fn new(starts: Vec<usize>, neighbours: Vec<usize>) -> Self {
-        let n = starts.len().saturating_sub(1);
-        Self(SymbolicSparseColMat::new_checked(n, n, starts, None, neighbours))
-    }
-
-    /// Number of vertices.
-    pub(crate) fn size(&self) -> usize {
-        self.0.ncols()
-    }
-
-    /// The neighbours of a vertex.
-    pub(crate) fn neighbours(&self, vertex: usize) -> &[usize] {
-        self.0.row_idx_of_col_raw(vertex)
-    }
-
-    /// An order of elimination by approximate minimum degree (Amestoy, Davis and Duff 1996, *An approximate minimum degree
-    /// ordering algorithm*). Of vertices of one degree, the numbers decide.
-    ///
-    /// # Errors
-    /// [`SolverError::TooLarge`].
-    pub(crate) fn minimum_degree(&self) -> Result<Vec<usize>, SolverError> {
-        let n = self.size();
-        let scratch = amd::order_maybe_unsorted_scratch::<usize>(n, self.0.compute_nnz());
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| SolverError::TooLarge)?;
-        let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
-        let control = amd::Control::default();
-        amd::order_maybe_unsorted(&mut order, &mut inverse, self.0.as_ref(), control, MemStack::new(&mut memory))
-            .map_err(|_| SolverError::TooLarge)?;
-        Ok(order)
-    }
-
-    /// The operations of a factorization in an order of elimination, for one unknown a vertex.
-    ///
-    /// # Errors
-    /// [`SolverError::TooLarge`].
-    pub(crate) fn operations(&self, order: &[usize]) -> Result<f64, SolverError> {
-        let inverse = inverse(order);
-        let ordering = SymmetricOrdering::Custom(PermRef::new_checked(order, &inverse, order.len()));
-        let symbolic = symbolic_cholesky(&self.0, ordering, SupernodalThreshold::FORCE_SUPERNODAL)?;
-        Ok(operations(&symbolic)[0])
-    }
 }
 
 /// The operations of a factorization and of a back substitution.

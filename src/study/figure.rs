@@ -1,14 +1,9 @@
-//! A plot over linear axes: lines and marks, a table of present values, and both as CSV and as a picture (SVG).
-
-use std::fmt::Write as _;
+//! A plot over linear axes: lines and marks, a table of present values, and both as CSV.
 
 use nalgebra::Vector2;
 
-use super::chart::{Margins, escape, shape};
-use super::colors::color;
 use crate::export::csv_field;
 use crate::scene::{ElementKind, Load, MethodKind, Scene};
-use crate::words::{number, prefix, ticks};
 
 /// A quantity that every point of a figure has.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,17 +38,6 @@ pub enum Ink {
     Unstable,
     /// The scene as it stands.
     Scene,
-}
-
-impl Ink {
-    fn on_paper(self) -> [u8; 3] {
-        match self {
-            Self::Exact => [0x00, 0x7d, 0x73],
-            Self::Method(method) => color(method.id(), false),
-            Self::Unstable => [0xbe, 0x14, 0x1e],
-            Self::Scene => [0x1c, 0x21, 0x28],
-        }
-    }
 }
 
 /// Line or mark of a series.
@@ -246,145 +230,11 @@ impl Figure {
         }
         text
     }
-
-    /// The picture (SVG), with the table beside it.
-    #[must_use]
-    pub fn svg(&self) -> String {
-        const TABLE: f64 = 330.0;
-        let margins = Margins { left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0 };
-        let width = super::chart::SIZE[0] + TABLE;
-        let ends = [[margins.left, width - margins.right], margins.up()];
-        let corners = self.shaped_corners([ends[0][1] - ends[0][0], ends[1][0] - ends[1][1]]);
-        let at = |p: [f64; 2]| {
-            [0, 1].map(|i| {
-                let [from, to] = ends[i];
-                from + (to - from) * (p[i] - corners[0][i]) / (corners[1][i] - corners[0][i])
-            })
-        };
-        let mut svg = margins.head_of(&self.title, width);
-        let mut labels = [String::new(), String::new()];
-        let mut marks = [Vec::new(), Vec::new()];
-        for i in 0..2 {
-            let Some(quantity) = self.quantity(i) else { continue };
-            let (low, high) = (corners[0][i], corners[1][i]);
-            let (power, symbol) = prefix(&[low, high], quantity.unit);
-            let unit = format!("{symbol}{}", quantity.unit);
-            labels[i] = if unit.is_empty() { quantity.name.clone() } else { format!("{}, {unit}", quantity.name) };
-            let place = |value: f64| at(if i == 0 { [value, corners[0][1]] } else { [corners[0][0], value] })[i];
-            marks[i] = ticks(low, high, 8).into_iter().map(|v| (place(v), tick(v / 10f64.powi(power)))).collect();
-        }
-        margins.grid_of(&mut svg, width, marks, [&labels[0], &labels[1]]);
-        let [[left, right], [bottom, top]] = ends;
-        let _ = writeln!(
-            svg,
-            "<clipPath id=\"axes\"><rect x=\"{left}\" y=\"{top}\" width=\"{}\" height=\"{}\"/></clipPath>\n<g clip-path=\"url(#axes)\">",
-            right - left,
-            bottom - top
-        );
-        // Marks in the same place lie in each other.
-        let mut size = 6.5;
-        for series in &self.series {
-            let places: Vec<[f64; 2]> = series.points.iter().filter_map(|p| self.place(p)).map(at).collect();
-            draw(&mut svg, series.ink, series.mark, &places, size);
-            if matches!(series.mark, Mark::Element(_) | Mark::Disc) {
-                size = (size - 1.2).max(2.0);
-            }
-        }
-        svg.push_str("</g>\n");
-        self.svg_table(&mut svg, right + 24.0, width - 14.0);
-        svg.push_str("</svg>\n");
-        svg
-    }
-
-    /// The corners, with one scale for both axes where they have one, in a picture of this size.
-    fn shaped_corners(&self, [width, height]: [f64; 2]) -> [[f64; 2]; 2] {
-        let [mut low, mut high] = self.corners();
-        if self.has_one_scale() {
-            let scale = ((high[0] - low[0]) / width).max((high[1] - low[1]) / height);
-            for (i, size) in [width, height].into_iter().enumerate() {
-                let missing = 0.5 * (scale * size - (high[i] - low[i]));
-                (low[i], high[i]) = (low[i] - missing, high[i] + missing);
-            }
-        }
-        [low, high]
-    }
-
-    fn svg_table(&self, svg: &mut String, left: f64, right: f64) {
-        const ROW: f64 = 21.0;
-        const ERRORS: f64 = 56.0;
-        let text = |x: f64, y: f64, anchor: &str, words: &str| {
-            format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{}</text>\n", escape(words))
-        };
-        let has_errors = self.rows.iter().any(|row| !row.error.is_empty());
-        let values = if has_errors { right - ERRORS } else { right };
-        let mut y = 66.0;
-        let mut put = |[name, value, error]: [&str; 3], y: f64| {
-            svg.push_str(&text(left + 26.0, y, "start", name));
-            svg.push_str(&text(values, y, "end", value));
-            svg.push_str(&text(right, y, "end", if has_errors { error } else { "" }));
-        };
-        let [name, value, error] = &self.head;
-        put([name, value, error], y);
-        for row in &self.rows {
-            y += ROW;
-            put([&row.name, &row.value, &row.error], y);
-        }
-        let mut y = 66.0 - 4.5;
-        for row in &self.rows {
-            y += ROW;
-            let places = if row.mark.is_line() { vec![[left, y], [left + 20.0, y]] } else { vec![[left + 10.0, y]] };
-            draw(svg, row.ink, row.mark, &places, 4.5);
-        }
-    }
-}
-
-/// Draws a series at its places in the picture.
-fn draw(svg: &mut String, ink: Ink, mark: Mark, places: &[[f64; 2]], size: f64) {
-    let rgb = ink.on_paper();
-    let color = format!("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
-    if mark.is_line() {
-        let dashes = match mark {
-            Mark::Dashes => " stroke-dasharray=\"9 5\"",
-            Mark::Dots => " stroke-dasharray=\"2 5\"",
-            _ => "",
-        };
-        let line: Vec<String> = places.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
-        let _ = writeln!(
-            svg,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2.2\" stroke-linejoin=\"round\"{dashes}/>",
-            line.join(" ")
-        );
-        return;
-    }
-    for &[x, y] in places {
-        let lines = |corners: [[f64; 2]; 4]| {
-            let [a, b, c, d] = corners.map(|[u, v]| format!("{:.1} {:.1}", x + size * u, y + size * v));
-            format!("<path d=\"M{a}L{b}M{c}L{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"/>")
-        };
-        let drawn = match mark {
-            Mark::Element(element) => shape(x, y, element, rgb, size),
-            Mark::Ring => {
-                format!(
-                    "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{size}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\"/>"
-                )
-            }
-            Mark::Cross => lines([[-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [1.0, -1.0]]),
-            Mark::Plus => lines([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]]),
-            _ => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{size}\" fill=\"{color}\"/>"),
-        };
-        let _ = writeln!(svg, "{drawn}");
-    }
 }
 
 fn csv_row(fields: &[String]) -> String {
     let fields: Vec<_> = fields.iter().map(|field| csv_field(field)).collect();
     fields.join(",") + "\n"
-}
-
-/// A number at an axis, without the rounding of its steps.
-fn tick(value: f64) -> String {
-    let short: f64 = format!("{value:.6e}").parse().unwrap_or(value);
-    number(if short == 0.0 { 0.0 } else { short })
 }
 
 /// The axis of a scene's loads.

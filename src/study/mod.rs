@@ -1,19 +1,16 @@
 //! Measurements over many solves.
 
-mod chart;
 mod colors;
 mod convergence;
 pub mod extremes;
 pub mod figure;
 mod fine;
-mod heat_map;
 mod load_curve;
 mod load_path;
 pub mod motion;
 pub(crate) mod parallel;
 mod pareto;
 pub mod path_chart;
-pub mod plot;
 mod progress;
 mod reference;
 mod report;
@@ -24,7 +21,6 @@ mod tune;
 
 pub use colors::color;
 pub use fine::{Effort, MovedPoint, moved_points};
-pub use heat_map::{heat_map, motion_heat_map};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
 pub use load_path::{
     Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_words,

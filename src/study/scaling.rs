@@ -3,11 +3,8 @@
 use std::fmt::Write as _;
 use std::time::Duration;
 
-use super::chart::{LogLog, Series};
-use super::colors::color;
 use super::timing::{Runs, median_time};
 use super::{Extent, Observer, Progress, StudyError};
-use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::Simulation;
 
@@ -158,24 +155,6 @@ impl Scaling {
             let _ = writeln!(text, "{}: time ∝ unknowns^{:.2}{memory} (larger half)", e.element.id(), e.time);
         }
         text
-    }
-
-    /// The study as a picture (SVG): time over unknowns, both logarithmic.
-    #[must_use]
-    pub fn svg(&self) -> String {
-        let series = |element: ElementKind| Series {
-            element,
-            // Colours of methods, which differ in brightness too, serve for elements here.
-            color: color(METHODS[element as usize % METHODS.len()].id, false),
-            points: self.of(element).iter().map(|p| (p.dofs as f64, p.milliseconds)).collect(),
-        };
-        let plot = LogLog {
-            title: format!("{}: time of an iteration", self.scene),
-            x_label: "unknowns",
-            y_label: "time of an iteration, ms",
-            series: ElementKind::all().map(series).collect(),
-        };
-        plot.svg()
     }
 }
 

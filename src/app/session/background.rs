@@ -67,7 +67,14 @@ struct Rollback {
 
 impl Default for Background {
     fn default() -> Self {
-        Self { most_unknowns: MOST_UNKNOWNS, work: Work::Idle, returned: None, start: Start::Present, iterations: None }
+        Self {
+            most_unknowns: MOST_UNKNOWNS,
+            is_large: false,
+            work: Work::Idle,
+            returned: None,
+            start: Start::Present,
+            iterations: None,
+        }
     }
 }
 

@@ -222,20 +222,6 @@ impl Case {
         (self.body, self.start) == (Body::Beam, Start::Rest) && self.distortion == 0.0
     }
 
-    /// What a row of the picture is called, and where it comes; cases of one row differ in what it does not name.
-    pub(super) fn row(&self) -> (String, [f64; 2]) {
-        match (self.body, self.start) {
-            (Body::File(id), _) => {
-                (id.to_owned(), [3.0, FILES.iter().position(|f| *f == id).unwrap_or_default() as f64])
-            }
-            (Body::Beam, Start::Rest) if self.distortion > 0.0 => {
-                (format!("distorted {}", self.distortion), [2.0, self.distortion])
-            }
-            (Body::Beam, Start::Rest) => (format!("L/H {}", self.slenderness), [0.0, self.slenderness]),
-            (Body::Beam, start) => (start.id().to_owned(), [1.0, f64::from(start as u8)]),
-        }
-    }
-
     /// The scene of the case.
     #[must_use]
     pub fn scene(&self) -> Scene {
@@ -362,7 +348,7 @@ pub fn counts(entries: &[Entry]) -> BTreeMap<(&'static str, &'static str), [usiz
 }
 
 /// The loads of the atlas, small to large.
-pub(super) fn alphas(entries: &[Entry]) -> Vec<f64> {
+pub(crate) fn alphas(entries: &[Entry]) -> Vec<f64> {
     let mut alphas: Vec<f64> = entries.iter().map(|e| e.case.alpha).collect();
     alphas.sort_by(f64::total_cmp);
     alphas.dedup();

@@ -6,9 +6,9 @@ use egui::Color32;
 use crate::app::language::{count, fill, joined, percent, tr, translated};
 use crate::app::session::clock::FRAMES;
 use crate::app::widgets::palette::Palette;
+use crate::plot::drawn_error;
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
-use crate::study::plot::drawn_error;
 use crate::study::{Demand, Measurement, MotionStudy, Study};
 
 /// A study.

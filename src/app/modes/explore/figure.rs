@@ -14,7 +14,7 @@ use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{marker, segments, still};
 use crate::app::{NoName, free_name};
 use crate::export::{ExportError, write_text};
-use crate::picture::{PictureError, draw_svg};
+use crate::picture::PictureError;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 
 /// Reason why a figure is not saved.
@@ -33,8 +33,8 @@ pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveErr
     let path = free_name(file.extension())?;
     match file {
         FigureFile::Csv => write_text(&path, &figure.csv())?,
-        FigureFile::Svg => write_text(&path, &figure.svg())?,
-        FigureFile::Png => draw_svg(&figure.svg())?.write_png(&path)?,
+        FigureFile::Svg => write_text(&path, &crate::plot::figure(figure).svg())?,
+        FigureFile::Png => crate::plot::figure(figure).picture()?.write_png(&path)?,
     }
     Ok(path)
 }

@@ -1,6 +1,9 @@
 //! A palette for a whole recording, and its colours by their place in it.
 
 use std::collections::HashMap;
+use std::iter::repeat_n;
+
+use quantizr::{Image, Options, QuantizeResult};
 
 use crate::picture::Picture;
 
@@ -20,7 +23,7 @@ pub(super) struct Palette {
 }
 
 impl Palette {
-    /// One for pictures like these: median cut over their distinct colours.
+    /// Makes a palette for pictures like these.
     pub(super) fn of(pictures: &[Picture]) -> Self {
         let mut counts: HashMap<Color, u64> = HashMap::new();
         for color in pictures.iter().flat_map(colors) {
@@ -31,7 +34,7 @@ impl Palette {
         counts.sort_by_key(|&(color, count)| (std::cmp::Reverse(count), color));
         let rare = counts.split_off(counts.len().min(if counts.len() > MOST { EXACT } else { MOST }));
         let mut palette: Vec<Color> = counts.into_iter().map(|(color, _)| color).collect();
-        palette.extend(median_cut(rare, MOST - palette.len()));
+        palette.extend(quantized(&rare, MOST - palette.len()));
         if palette.is_empty() {
             palette.push([0; 3]);
         }
@@ -85,36 +88,20 @@ fn nearest(palette: &[Color], color: Color) -> (u8, bool) {
     nearest.map_or((0, true), |(distance, place)| (place, distance > FAR))
 }
 
-/// Heckbert 1982: boxes of colours, the widest cut in halves until there are as many as wanted; their means.
-fn median_cut(colors: Vec<(Color, u64)>, most: usize) -> Vec<Color> {
-    if colors.is_empty() || most == 0 {
+/// Means of groups of similar colours, of which a frequent one weighs more than a rare one.
+fn quantized(colors: &[(Color, u64)], most: usize) -> Vec<Color> {
+    // The square root of the count: rare colours of the body matter beside the large areas of the background. It also keeps
+    // sums of colours exact in quantizr's single precision, which would else cut groups of a single colour.
+    let pixels = colors.iter().flat_map(|&([r, g, b], count)| repeat_n([r, g, b, u8::MAX], count.isqrt() as usize));
+    let pixels: Vec<u8> = pixels.flatten().collect();
+    let mut options = Options::default();
+    let Ok(image) = Image::new(&pixels, pixels.len() / 4, 1) else { return Vec::new() };
+    if pixels.is_empty() || options.set_max_colors(most as i32).is_err() {
         return Vec::new();
     }
-    let mut boxes = vec![colors];
-    while boxes.len() < most {
-        let widest = boxes.iter().map(|colors| widest_channel(colors)).enumerate().max_by_key(|(_, (_, width))| *width);
-        let Some((at, (channel, 1..))) = widest else { break };
-        let mut colors = boxes.swap_remove(at);
-        colors.sort_unstable_by_key(|(color, _)| (color[channel], *color));
-        // Halves by distinct colours: a colour that covers much is not worth more of them.
-        let upper = colors.split_off(colors.len() / 2);
-        boxes.extend([colors, upper]);
-    }
-    boxes.iter().map(|colors| mean(colors)).collect()
-}
-
-/// The channel in which some colours differ most, and by how much.
-fn widest_channel(colors: &[(Color, u64)]) -> (usize, u8) {
-    let width = |channel: usize| {
-        let values = colors.iter().map(|(color, _)| color[channel]);
-        values.clone().max().unwrap_or_default() - values.min().unwrap_or_default()
-    };
-    (0..3).map(|channel| (channel, width(channel))).max_by_key(|(_, width)| *width).unwrap_or_default()
-}
-
-fn mean(colors: &[(Color, u64)]) -> Color {
-    let all = colors.iter().map(|(_, count)| count).sum::<u64>().max(1);
-    [0, 1, 2].map(|channel| (colors.iter().map(|(c, n)| u64::from(c[channel]) * n).sum::<u64>() / all) as u8)
+    let result = QuantizeResult::quantize(&image, &options);
+    let palette = result.get_palette();
+    palette.entries.iter().take(palette.count as usize).map(|color| [color.r, color.g, color.b]).collect()
 }
 
 #[cfg(test)]

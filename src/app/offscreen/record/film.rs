@@ -1,8 +1,8 @@
 //! Pictures one after the other, as files.
 
 use std::borrow::Cow;
-use std::fs::{File, OpenOptions};
-use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::fs::File;
+use std::io::{BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::RecordError;
@@ -14,8 +14,6 @@ use crate::picture::Picture;
 pub enum MovieFormat {
     /// An animated GIF: everywhere, 256 colours.
     Gif,
-    /// An animated PNG: all colours.
-    Apng,
     /// A folder of numbered PNG files.
     Folder,
 }
@@ -55,7 +53,6 @@ impl MovieFormat {
         let extension = path.extension().map(|e| e.to_ascii_lowercase());
         let format = match extension.as_deref().map(|e| e.to_str()) {
             Some(Some("gif")) => Self::Gif,
-            Some(Some("png")) => Self::Apng,
             None => return Ok(Self::Folder),
             _ => return Err(unknown()),
         };
@@ -75,7 +72,7 @@ impl MovieFormat {
             Self::Gif => {
                 Delay { numerator: ((100.0 / f64::from(rate.max(1))).round() as u16).max(SHORTEST), denominator: 100 }
             }
-            Self::Apng | Self::Folder => Delay { numerator: 1, denominator: rate.max(1) },
+            Self::Folder => Delay { numerator: 1, denominator: rate.max(1) },
         }
     }
 }
@@ -90,7 +87,6 @@ pub(super) struct Film {
 
 enum Reel {
     Gif(Box<Gif>),
-    Apng { writer: Box<png::Writer<BufWriter<File>>>, announced: u32, rgb: Vec<u8> },
     Folder,
 }
 
@@ -127,12 +123,11 @@ pub(super) fn clear(folder: &Path, overwrite: bool) -> Result<(), RecordError> {
 }
 
 impl Film {
-    /// Begins a recording of so many pictures, which look like `samples`.
+    /// Starts a recording of pictures that look like `samples`.
     pub(super) fn create(
         path: &Path,
         format: MovieFormat,
         delay: Delay,
-        pictures: u64,
         samples: &[Picture],
         size: [u32; 2],
     ) -> Result<Self, RecordError> {
@@ -153,15 +148,6 @@ impl Film {
                     before: Vec::new(),
                     now: Vec::new(),
                 }))
-            }
-            MovieFormat::Apng => {
-                let announced = u32::try_from(pictures).unwrap_or(u32::MAX);
-                let mut encoder = png::Encoder::new(file()?, size[0], size[1]);
-                encoder.set_color(png::ColorType::Rgb);
-                encoder.set_depth(png::BitDepth::Eight);
-                encoder.set_animated(announced, 0).map_err(|e| failed(&e))?;
-                let writer = Box::new(encoder.write_header().map_err(|e| failed(&e))?);
-                Reel::Apng { writer, announced, rgb: Vec::new() }
             }
             MovieFormat::Folder => {
                 std::fs::create_dir_all(path).map_err(|e| failed(&e))?;
@@ -192,12 +178,6 @@ impl Film {
         let shown = delay.longer(hold);
         match reel {
             Reel::Gif(gif) => gif.add(picture, shown).map_err(|e| failed(&e))?,
-            Reel::Apng { writer, rgb, .. } => {
-                rgb.clear();
-                rgb.extend(picture.rgba.chunks_exact(4).flat_map(|pixel| pixel.iter().take(3)));
-                writer.set_frame_delay(shown.numerator, shown.denominator).map_err(|e| failed(&e))?;
-                writer.write_image_data(rgb).map_err(|e| failed(&e))?;
-            }
             Reel::Folder => {
                 let copies = 1 + (hold / delay.seconds()).round() as u64;
                 for copy in 1..=copies {
@@ -210,22 +190,14 @@ impl Film {
         Ok(())
     }
 
-    /// Ends the file: it is valid whether all announced pictures were added or not.
+    /// Ends the file.
     pub(super) fn finish(self) -> Result<(), RecordError> {
-        let Self { path, pictures, reel, .. } = self;
+        let Self { path, reel, .. } = self;
         let failed = |reason: &dyn std::fmt::Display| failed(&path, reason);
         match reel {
             Reel::Gif(gif) => {
                 let mut file = gif.encoder.into_inner().map_err(|e| failed(&e))?;
                 file.flush().map_err(|e| failed(&e))
-            }
-            Reel::Apng { writer, announced, .. } if u64::from(announced) == pictures => {
-                writer.finish().map_err(|e| failed(&e))
-            }
-            Reel::Apng { writer, .. } => {
-                // Ends the file, but with the number of pictures that were to come.
-                drop(writer);
-                correct_frames(&path, u32::try_from(pictures).unwrap_or(u32::MAX)).map_err(|e| failed(&e))
             }
             Reel::Folder => Ok(()),
         }
@@ -298,54 +270,16 @@ fn changed(before: &[u8], now: &[u8], width: usize) -> Rect {
     Rect { left, top, width: right - left + 1, height: bottom - top + 1 }
 }
 
-/// Writes the number of pictures into an animated PNG that announced more.
-fn correct_frames(path: &Path, frames: u32) -> std::io::Result<()> {
-    const SIGNATURE: u64 = 8;
-    let mut file = OpenOptions::new().read(true).write(true).open(path)?;
-    let mut at = SIGNATURE;
-    loop {
-        // A chunk: length, name, data, checksum of name and data.
-        file.seek(SeekFrom::Start(at))?;
-        let mut head = [0; 8];
-        file.read_exact(&mut head)?;
-        let [a, b, c, d, name @ ..] = head;
-        if &name == b"acTL" {
-            let mut plays = [0; 4];
-            file.seek(SeekFrom::Start(at + 12))?;
-            file.read_exact(&mut plays)?;
-            let data = [name, frames.to_be_bytes(), plays].concat();
-            file.seek(SeekFrom::Start(at + 4))?;
-            file.write_all(&data)?;
-            return file.write_all(&crc32(&data).to_be_bytes());
-        }
-        at += 12 + u64::from(u32::from_be_bytes([a, b, c, d]));
-    }
-}
-
-/// The checksum of PNG chunks (ISO 3309).
-fn crc32(bytes: &[u8]) -> u32 {
-    const POLYNOMIAL: u32 = 0xedb8_8320;
-    !bytes.iter().fold(!0, |crc, &byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ if crc & 1 == 1 { POLYNOMIAL } else { 0 })
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_checksum_is_the_one_of_png() {
-        // The chunk that ends every file.
-        assert_eq!(crc32(b"IEND"), 0xae42_6082);
-    }
 
     #[test]
     fn delays_are_what_formats_have() {
         for (rate, hundredths) in [(25, 4), (50, 2), (30, 3), (100, 2), (1, 100), (4, 25)] {
             assert_eq!(MovieFormat::Gif.delay(rate), Delay { numerator: hundredths, denominator: 100 });
         }
-        assert!((MovieFormat::Apng.delay(30).seconds() - 1.0 / 30.0).abs() < 1e-15);
+        assert!((MovieFormat::Folder.delay(30).seconds() - 1.0 / 30.0).abs() < 1e-15);
         assert_eq!(MovieFormat::Gif.delay(4).longer(2.0).numerator, 225);
     }
 
@@ -362,9 +296,9 @@ mod tests {
     #[test]
     fn names_choose_the_format() {
         let of = |name: &str| MovieFormat::of(Path::new(name));
-        assert!(matches!(of("a.gif"), Ok(MovieFormat::Gif)) && matches!(of("a.PNG"), Ok(MovieFormat::Apng)));
+        assert!(matches!(of("a.gif"), Ok(MovieFormat::Gif)) && matches!(of("a.GIF"), Ok(MovieFormat::Gif)));
         assert!(matches!(of("frames"), Ok(MovieFormat::Folder)) && matches!(of("."), Ok(MovieFormat::Folder)));
-        assert!(matches!(of("a.mp4"), Err(RecordError::UnknownFormat(_))));
+        assert!(["a.mp4", "a.png"].map(of).iter().all(|of| matches!(of, Err(RecordError::UnknownFormat(_)))));
         assert!(matches!(of("no/such/folder/a.gif"), Err(RecordError::NoFolder(_))));
     }
 }

@@ -273,7 +273,7 @@ fn write(path: &Path, pictures: &Receiver<(u64, Picture)>, end: &AtomicU64) -> R
     let delay = MovieFormat::Gif.delay(RATE);
     let Ok((mut number, mut picture)) = pictures.recv() else { return Ok(0) };
     let samples = std::slice::from_ref(&picture);
-    let mut film = Film::create(path, MovieFormat::Gif, delay, 0, samples, picture.size).map_err(|error| (0, error))?;
+    let mut film = Film::create(path, MovieFormat::Gif, delay, samples, picture.size).map_err(|error| (0, error))?;
     film.adapt();
     let (mut written, mut length) = (0, 0);
     loop {

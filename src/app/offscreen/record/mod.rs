@@ -46,7 +46,7 @@ const SAMPLES: usize = 12;
 pub enum RecordError {
     /// The file name asks for a format there is not.
     #[error(
-        "{}: expected a file name ending in .gif or .png, or the name of a folder for numbered pictures, \
+        "{}: expected a file name ending in .gif, or the name of a folder for numbered pictures, \
          which ffmpeg makes a film of",
         .0.display()
     )]
@@ -205,7 +205,7 @@ pub fn record(
     if format == MovieFormat::Folder {
         film::clear(output, options.overwrite)?;
     }
-    let mut film = Film::create(output, format, delay, preview.pictures, &samples, options.size)?;
+    let mut film = Film::create(output, format, delay, &samples, options.size)?;
     for k in 0..preview.pictures {
         let told = |time: f64| RecordProgress {
             phase: Phase::Drawing,

@@ -1,13 +1,15 @@
-//! The stability atlas as a picture.
+//! The stability atlas as a drawing.
 
-use std::fmt::Write as _;
-
-use super::extremes::motion::{MotionEntry, MotionOutcome, variant_words, variants};
-use super::extremes::{Entry, Outcome, alphas};
+use super::drawing::{Anchor, Color, Drawing, Item, Text};
 use crate::element::ELEMENTS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
+use crate::study::extremes::motion::{MotionEntry, MotionOutcome, variant_words, variants};
+use crate::study::extremes::{Body, Case, Entry, FILES, Outcome, Start, alphas};
 use crate::words::number;
+
+/// Size of a cell.
+const CELL: [f64; 2] = [52.0, 20.0];
 
 /// A table of cells, each divided by how its cases ended.
 struct Panel {
@@ -17,12 +19,12 @@ struct Panel {
     rows: Vec<(String, Vec<Vec<usize>>)>,
 }
 
-/// The atlas as a picture (SVG): for every element and method, load against slenderness; from rest, from the other starts,
+/// Draws the atlas: for every element and method, load against slenderness; from rest, from the other starts,
 /// with distorted cells, and on mesh files. A cell's bar is divided by how its cases ended.
 #[must_use]
-pub fn heat_map(entries: &[Entry]) -> String {
+pub fn atlas(entries: &[Entry]) -> Drawing {
     let columns = alphas(entries);
-    let mut rows: Vec<(String, [f64; 2])> = entries.iter().map(|e| e.case.row()).collect();
+    let mut rows: Vec<(String, [f64; 2])> = entries.iter().map(|e| row(&e.case)).collect();
     rows.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     rows.dedup_by(|a, b| a.0 == b.0);
     let panel = |element: ElementKind, method: MethodKind| Panel {
@@ -35,7 +37,7 @@ pub fn heat_map(entries: &[Entry]) -> String {
                     let here = entries.iter().filter(|e| {
                         let c = &e.case;
                         (c.element, c.method, c.moved, c.alpha) == (element, method, false, *alpha)
-                            && c.row().0 == *label
+                            && row(c).0 == *label
                     });
                     let mut count = vec![0; Outcome::COUNT];
                     here.for_each(|e| count[e.outcome as usize] += 1);
@@ -52,10 +54,10 @@ pub fn heat_map(entries: &[Entry]) -> String {
     draw(&Outcome::ALL.map(|o| (o.id(), color(o))), &panels)
 }
 
-/// The atlas in time as a picture (SVG): for every element and integrator, time step against stiffness. A cell's bar is
+/// Draws the atlas in time: for every element and integrator, time step against stiffness. A cell's bar is
 /// divided by how its cases, of several weights, ended.
 #[must_use]
-pub fn motion_heat_map(entries: &[MotionEntry]) -> String {
+pub fn motion_atlas(entries: &[MotionEntry]) -> Drawing {
     let sorted = |value: fn(&MotionEntry) -> f64| {
         let mut values: Vec<f64> = entries.iter().map(value).collect();
         values.sort_by(f64::total_cmp);
@@ -89,9 +91,20 @@ pub fn motion_heat_map(entries: &[MotionEntry]) -> String {
     draw(&MotionOutcome::ALL.map(|o| (o.id(), motion_color(o))), &panels)
 }
 
+/// Returns the label of a case's row, and its place among the rows; cases of one row differ in what the label does not name.
+fn row(case: &Case) -> (String, [f64; 2]) {
+    match (case.body, case.start) {
+        (Body::File(id), _) => (id.to_owned(), [3.0, FILES.iter().position(|f| *f == id).unwrap_or_default() as f64]),
+        (Body::Beam, Start::Rest) if case.distortion > 0.0 => {
+            (format!("distorted {}", case.distortion), [2.0, case.distortion])
+        }
+        (Body::Beam, Start::Rest) => (format!("L/H {}", case.slenderness), [0.0, case.slenderness]),
+        (Body::Beam, start) => (start.id().to_owned(), [1.0, f64::from(start as u8)]),
+    }
+}
+
 /// Draws panels, one of each element in a row.
-fn draw(legend: &[(&str, &str)], panels: &[Panel]) -> String {
-    const CELL: [f64; 2] = [52.0, 20.0];
+fn draw(legend: &[(&str, Color)], panels: &[Panel]) -> Drawing {
     const MARGIN: [f64; 2] = [96.0, 64.0];
     const GAP: f64 = 56.0;
     const LEGEND: f64 = 128.0;
@@ -99,86 +112,69 @@ fn draw(legend: &[(&str, &str)], panels: &[Panel]) -> String {
     let columns = panels.iter().map(|p| p.columns.len()).max().unwrap_or(0);
     let rows = panels.iter().map(|p| p.rows.len()).max().unwrap_or(0);
     let panel_size = [MARGIN[0] + CELL[0] * columns as f64, GAP + CELL[1] * rows as f64];
-    let size = [
+    let mut drawing = Drawing::new([
         (20.0 + panel_size[0] * across as f64).max(LEGEND * legend.len() as f64 + 40.0),
         MARGIN[1] + panel_size[1] * panels.len().div_ceil(across) as f64,
-    ];
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" font-family=\"Ubuntu, sans-serif\" font-size=\"12\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-        size[0], size[1]
-    );
-    let mut x = 20.0;
-    for (word, color) in legend {
-        let _ = writeln!(
-            svg,
-            "<rect x=\"{x}\" y=\"14\" width=\"14\" height=\"14\" fill=\"{color}\"/><text x=\"{}\" y=\"26\">{}</text>",
-            x + 20.0,
-            word.replace('_', " ")
-        );
-        x += LEGEND;
+    ]);
+    for (i, (word, color)) in legend.iter().enumerate() {
+        let x = 20.0 + LEGEND * i as f64;
+        drawing.rect([[x, 14.0], [14.0; 2]], *color);
+        text(&mut drawing, 12.0, [x + 20.0, 26.0], Anchor::Start, &word.replace('_', " "));
     }
     for (index, panel) in panels.iter().enumerate() {
         let (i, j) = (index % across, index / across);
-        let corner = [MARGIN[0] + panel_size[0] * i as f64, MARGIN[1] + panel_size[1] * j as f64];
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{}\" font-size=\"14\">{}</text>",
-            corner[0],
-            corner[1] - 8.0,
-            panel.title
-        );
-        for (row, (label, cells)) in panel.rows.iter().enumerate() {
-            let y = corner[1] + CELL[1] * row as f64;
-            let _ =
-                writeln!(svg, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{label}</text>", corner[0] - 6.0, y + 14.0);
+        panel.draw(&mut drawing, legend, [MARGIN[0] + panel_size[0] * i as f64, MARGIN[1] + panel_size[1] * j as f64]);
+    }
+    drawing
+}
+
+impl Panel {
+    fn draw(&self, drawing: &mut Drawing, legend: &[(&str, Color)], [x, y]: [f64; 2]) {
+        text(drawing, 14.0, [x, y - 8.0], Anchor::Start, &self.title);
+        for (row, (label, cells)) in self.rows.iter().enumerate() {
+            let y = y + CELL[1] * row as f64;
+            text(drawing, 12.0, [x - 6.0, y + 14.0], Anchor::End, label);
             for (column, counts) in cells.iter().enumerate() {
                 let total: usize = counts.iter().sum();
-                let mut left = corner[0] + CELL[0] * column as f64;
+                let mut left = x + CELL[0] * column as f64;
                 for ((_, color), &count) in legend.iter().zip(counts) {
                     let width = (CELL[0] - 2.0) * count as f64 / total.max(1) as f64;
                     if count > 0 {
-                        let _ = writeln!(
-                            svg,
-                            "<rect x=\"{left}\" y=\"{y}\" width=\"{width}\" height=\"{}\" fill=\"{color}\"/>",
-                            CELL[1] - 2.0
-                        );
+                        drawing.rect([[left, y], [width, CELL[1] - 2.0]], *color);
                     }
                     left += width;
                 }
             }
         }
-        for (column, label) in panel.columns.iter().enumerate() {
-            let _ = writeln!(
-                svg,
-                "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{label}</text>",
-                corner[0] + CELL[0] * (column as f64 + 0.5),
-                corner[1] + CELL[1] * panel.rows.len() as f64 + 14.0
-            );
+        for (column, label) in self.columns.iter().enumerate() {
+            let at = [x + CELL[0] * (column as f64 + 0.5), y + CELL[1] * self.rows.len() as f64 + 14.0];
+            text(drawing, 12.0, at, Anchor::Middle, label);
         }
     }
-    svg.push_str("</svg>\n");
-    svg
+}
+
+fn text(drawing: &mut Drawing, size: f64, at: [f64; 2], anchor: Anchor, words: &str) {
+    drawing.items.push(Item::Text(Text { size, ..Text::new(at, anchor, words) }));
 }
 
 /// Colours that differ in brightness (Okabe and Ito 2008).
-fn color(outcome: Outcome) -> &'static str {
+fn color(outcome: Outcome) -> Color {
     match outcome {
-        Outcome::Certified => "#0072b2",
-        Outcome::Converged => "#56b4e9",
-        Outcome::Inverted => "#f0e442",
-        Outcome::Stalled => "#e69f00",
-        Outcome::NotConverged => "#b03a2e",
+        Outcome::Certified => [0x00, 0x72, 0xb2],
+        Outcome::Converged => [0x56, 0xb4, 0xe9],
+        Outcome::Inverted => [0xf0, 0xe4, 0x42],
+        Outcome::Stalled => [0xe6, 0x9f, 0x00],
+        Outcome::NotConverged => [0xb0, 0x3a, 0x2e],
     }
 }
 
 /// The same.
-fn motion_color(outcome: MotionOutcome) -> &'static str {
+fn motion_color(outcome: MotionOutcome) -> Color {
     match outcome {
-        MotionOutcome::Finished => "#0072b2",
-        MotionOutcome::Inverted => "#f0e442",
-        MotionOutcome::GainedEnergy => "#e69f00",
-        MotionOutcome::Exploded => "#b03a2e",
-        MotionOutcome::Stopped => "#56b4e9",
+        MotionOutcome::Finished => [0x00, 0x72, 0xb2],
+        MotionOutcome::Inverted => [0xf0, 0xe4, 0x42],
+        MotionOutcome::GainedEnergy => [0xe6, 0x9f, 0x00],
+        MotionOutcome::Exploded => [0xb0, 0x3a, 0x2e],
+        MotionOutcome::Stopped => [0x56, 0xb4, 0xe9],
     }
 }

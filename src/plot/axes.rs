@@ -1,0 +1,100 @@
+//! Axes of drawings: margins, decades, grids and the marks of elements.
+
+use super::drawing::{Anchor, Color, Drawing, GRID, Item, Outline, Shape, Text, solid};
+use crate::scene::ElementKind;
+use crate::words::number;
+
+/// Size of a drawing.
+pub(super) const SIZE: [f64; 2] = [860.0, 560.0];
+/// Height of a row of a legend.
+pub(super) const ROW: f64 = 22.0;
+
+/// Place of the axes in a drawing: the space around them.
+pub(super) struct Margins {
+    pub width: f64,
+    pub left: f64,
+    pub right: f64,
+    pub top: f64,
+    pub bottom: f64,
+}
+
+/// Room for a legend on the right.
+pub(super) const MARGINS: Margins = Margins { width: SIZE[0], left: 80.0, right: 190.0, top: 48.0, bottom: 60.0 };
+
+/// A logarithmic axis.
+pub(super) struct Decades {
+    from: f64,
+    to: f64,
+    ends: [f64; 2],
+}
+
+impl Decades {
+    /// Decades around these values, between two places.
+    pub fn new(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Self {
+        let (low, high) = values
+            .filter(|v| *v > 0.0 && v.is_finite())
+            .map(f64::log10)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        if low > high {
+            return Self { from: 0.0, to: 1.0, ends };
+        }
+        Self { from: low.floor(), to: high.ceil().max(low.floor() + 1.0), ends }
+    }
+
+    pub fn place(&self, value: f64) -> f64 {
+        let fraction = (value.max(f64::MIN_POSITIVE).log10() - self.from) / (self.to - self.from);
+        let [start, end] = self.ends;
+        start + (end - start) * fraction.clamp(0.0, 1.0)
+    }
+
+    /// Returns the places of the decades, and their numbers.
+    pub fn ticks(&self) -> Vec<(f64, String)> {
+        let decades = (self.from as i32..=self.to as i32).map(|e| 10f64.powi(e));
+        decades.map(|value| (self.place(value), number(value))).collect()
+    }
+}
+
+impl Margins {
+    /// Left and right ends of the horizontal axis.
+    pub fn across(&self) -> [f64; 2] {
+        [self.left, self.width - self.right]
+    }
+
+    /// Lower and upper ends of the vertical axis.
+    pub fn up(&self) -> [f64; 2] {
+        [SIZE[1] - self.bottom, self.top]
+    }
+
+    /// Starts a drawing with its title.
+    pub fn start(&self, title: impl Into<String>) -> Drawing {
+        let mut drawing = Drawing::new([self.width, SIZE[1]]);
+        drawing.items.push(Item::Text(Text { size: 16.0, ..Text::new([self.left, 28.0], Anchor::Start, title) }));
+        drawing
+    }
+
+    /// Draws lines at places of both axes with their numbers, and the labels of the axes.
+    pub fn grid(&self, drawing: &mut Drawing, [x, y]: [Vec<(f64, String)>; 2], [x_label, y_label]: [&str; 2]) {
+        let ([left, right], [bottom, top]) = (self.across(), self.up());
+        for (at, words) in x {
+            drawing.line(vec![[at, top], [at, bottom]], GRID, solid(1.0));
+            drawing.text([at, bottom + 18.0], Anchor::Middle, words);
+        }
+        for (at, words) in y {
+            drawing.line(vec![[left, at], [right, at]], GRID, solid(1.0));
+            drawing.text([left - 8.0, at + 4.0], Anchor::End, words);
+        }
+        drawing.text([0.5 * (left + right), SIZE[1] - 14.0], Anchor::Middle, x_label);
+        let label = Text::new([22.0, 0.5 * (top + bottom)], Anchor::Middle, y_label);
+        drawing.items.push(Item::Text(Text { is_upright: true, ..label }));
+    }
+}
+
+/// The mark of an element: as many corners as it has nodes.
+pub(super) fn mark([x, y]: [f64; 2], element: ElementKind, color: Color, size: f64) -> Shape {
+    let corners = element.entry().nodes.len();
+    let corner = |i: usize| {
+        let (s, c) = (std::f64::consts::TAU * i as f64 / corners as f64).sin_cos();
+        [x + size * s, y - size * c]
+    };
+    Shape::filled(Outline::Polygon((0..corners).map(corner).collect()), color)
+}

@@ -1,0 +1,127 @@
+//! Figures as drawings: lines and marks over linear axes, and the table beside them.
+
+use super::axes::{Margins, SIZE, mark as element_mark};
+use super::drawing::{Anchor, Color, Drawing, Outline, Shape, Stroke, solid};
+use crate::study::color;
+use crate::study::figure::{Figure, Ink, Mark};
+use crate::words::{number, prefix, ticks};
+
+/// Width of the table.
+const TABLE: f64 = 330.0;
+const MARGINS: Margins = Margins { width: SIZE[0] + TABLE, left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0 };
+
+/// Draws a figure with the table beside it.
+#[must_use]
+pub fn figure(figure: &Figure) -> Drawing {
+    let ends = [MARGINS.across(), MARGINS.up()];
+    let corners = shaped_corners(figure, [ends[0][1] - ends[0][0], ends[1][0] - ends[1][1]]);
+    let place = |value: f64, i: usize| {
+        let [from, to] = ends[i];
+        from + (to - from) * (value - corners[0][i]) / (corners[1][i] - corners[0][i])
+    };
+    let mut drawing = MARGINS.start(figure.title.as_str());
+    let mut labels = [String::new(), String::new()];
+    let mut numbers = [Vec::new(), Vec::new()];
+    for i in 0..2 {
+        let Some(quantity) = figure.quantity(i) else { continue };
+        let (low, high) = (corners[0][i], corners[1][i]);
+        let (power, symbol) = prefix(&[low, high], quantity.unit);
+        let unit = format!("{symbol}{}", quantity.unit);
+        labels[i] = if unit.is_empty() { quantity.name.clone() } else { format!("{}, {unit}", quantity.name) };
+        numbers[i] = ticks(low, high, 8).into_iter().map(|v| (place(v, i), tick(v / 10f64.powi(power)))).collect();
+    }
+    MARGINS.grid(&mut drawing, numbers, [&labels[0], &labels[1]]);
+    let [[left, right], [bottom, top]] = ends;
+    drawing.clipped([[left, top], [right - left, bottom - top]], |drawing| {
+        // Marks in the same place lie in each other.
+        let mut size = 6.5;
+        for series in &figure.series {
+            let points = series.points.iter().filter_map(|p| figure.place(p));
+            draw(drawing, series.ink, series.mark, points.map(|[x, y]| [place(x, 0), place(y, 1)]).collect(), size);
+            if matches!(series.mark, Mark::Element(_) | Mark::Disc) {
+                size = (size - 1.2).max(2.0);
+            }
+        }
+    });
+    table(&mut drawing, figure, right + 24.0, MARGINS.width - 14.0);
+    drawing
+}
+
+/// The corners, with one scale for both axes where they have one, in a picture of this size.
+fn shaped_corners(figure: &Figure, [width, height]: [f64; 2]) -> [[f64; 2]; 2] {
+    let [mut low, mut high] = figure.corners();
+    if figure.has_one_scale() {
+        let scale = ((high[0] - low[0]) / width).max((high[1] - low[1]) / height);
+        for (i, size) in [width, height].into_iter().enumerate() {
+            let missing = 0.5 * (scale * size - (high[i] - low[i]));
+            (low[i], high[i]) = (low[i] - missing, high[i] + missing);
+        }
+    }
+    [low, high]
+}
+
+fn table(drawing: &mut Drawing, figure: &Figure, left: f64, right: f64) {
+    const ROW: f64 = 21.0;
+    const ERRORS: f64 = 56.0;
+    let has_errors = figure.rows.iter().any(|row| !row.error.is_empty());
+    let values = if has_errors { right - ERRORS } else { right };
+    let mut y = 66.0;
+    let put = |drawing: &mut Drawing, [name, value, error]: [&String; 3], y: f64| {
+        drawing.text([left + 26.0, y], Anchor::Start, name);
+        drawing.text([values, y], Anchor::End, value);
+        if has_errors {
+            drawing.text([right, y], Anchor::End, error);
+        }
+    };
+    let [name, value, error] = &figure.head;
+    put(drawing, [name, value, error], y);
+    for row in &figure.rows {
+        y += ROW;
+        put(drawing, [&row.name, &row.value, &row.error], y);
+        let middle = y - 4.5;
+        let line = || vec![[left, middle], [left + 20.0, middle]];
+        let places = if row.mark.is_line() { line() } else { vec![[left + 10.0, middle]] };
+        draw(drawing, row.ink, row.mark, places, 4.5);
+    }
+}
+
+/// Draws a series at its places in the picture.
+fn draw(drawing: &mut Drawing, ink: Ink, mark: Mark, places: Vec<[f64; 2]>, size: f64) {
+    let color = on_paper(ink);
+    let dashes: &[f64] = match mark {
+        Mark::Dashes => &[9.0, 5.0],
+        Mark::Dots => &[2.0, 5.0],
+        _ => &[],
+    };
+    if mark.is_line() {
+        return drawing.line(places, color, Stroke { width: 2.2, dashes });
+    }
+    for place in places {
+        let [x, y] = place;
+        let mut cross = |ends: [[f64; 2]; 2]| {
+            drawing.line(ends.map(|[u, v]| [x + size * u, y + size * v]).to_vec(), color, solid(2.0));
+        };
+        match mark {
+            Mark::Cross => [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]].into_iter().for_each(&mut cross),
+            Mark::Plus => [[[-1.0, 0.0], [1.0, 0.0]], [[0.0, -1.0], [0.0, 1.0]]].into_iter().for_each(&mut cross),
+            Mark::Element(element) => drawing.add(element_mark(place, element, color, size)),
+            Mark::Ring => drawing.add(Shape::stroked(Outline::Circle(place, size), color, solid(1.5))),
+            _ => drawing.add(Shape::filled(Outline::Circle(place, size), color)),
+        }
+    }
+}
+
+fn on_paper(ink: Ink) -> Color {
+    match ink {
+        Ink::Exact => [0x00, 0x7d, 0x73],
+        Ink::Method(method) => color(method.id(), false),
+        Ink::Unstable => [0xbe, 0x14, 0x1e],
+        Ink::Scene => [0x1c, 0x21, 0x28],
+    }
+}
+
+/// A number at an axis, without the rounding of its steps.
+fn tick(value: f64) -> String {
+    let short: f64 = format!("{value:.6e}").parse().unwrap_or(value);
+    number(if short == 0.0 { 0.0 } else { short })
+}

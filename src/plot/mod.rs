@@ -1,0 +1,13 @@
+//! Drawings of measurements: error over time, lines of elements, atlases and figures, as SVG and as pixels.
+
+mod atlas;
+mod axes;
+mod drawing;
+mod figure;
+mod raster;
+mod trade;
+
+pub use atlas::{atlas, motion_atlas};
+pub use drawing::Drawing;
+pub use figure::figure;
+pub use trade::{drawn_error, motion_study, scaling, study};
