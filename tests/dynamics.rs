@@ -797,7 +797,7 @@ fn an_edited_motion_goes_on_as_a_new_one_would() {
             scene.solver.max_error_percent = 0.1;
             let mut simulation = Simulation::new(&scene).unwrap();
             (0..20).for_each(|_| drop(simulation.step().clone()));
-            // Started from this displacement without a velocity, so that it depends on nothing else.
+            // `start_from` sets this displacement with zero velocity, so that both motions start in the same state.
             let u = simulation.displacement().to_vec();
             let mut edited = scene.clone();
             edited.material = Material { density: 500.0, ..Material::new(4e6, 0.2) };

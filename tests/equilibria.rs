@@ -333,7 +333,7 @@ fn supports_fix_what_they_say() {
     assert_eq!(pattern.fixed(mesh.nodes().len() as u32), [true, true], "no node moves where there is none");
 }
 
-/// Whether a body counts as supported depends neither on its size nor on its position.
+/// The check of the supports gives the same result for bodies of any size at any position.
 #[test]
 fn a_clamp_is_a_clamp_at_any_size_and_place() {
     for size in [1e-4, 1.0, 1e4] {

@@ -397,7 +397,8 @@ fn fields_of_a_uniform_stretch(kind: ElementKind) {
     }
 }
 
-/// The strains at the quadrature points have the elastic energy: ∫ ψ includes the strain of an element's own modes.
+/// The energy of the strains at the quadrature points is the elastic energy. These strains include the part of an
+/// element's own modes.
 fn the_strains_at_points_hold_the_energy(kind: ElementKind) {
     for plane in [Plane::Stress, Plane::Strain] {
         let problem = problem(&irregular_scene(plane), kind);
