@@ -1,5 +1,5 @@
-//! Time per simulated half second of the swing at two sizes, under `newton`, which refactorizes in every stage, and
-//! under `auto`.
+//! Time per simulated half second of the swing at two sizes, under `newton`, which refactorizes in
+//! every stage, and under `auto`.
 //!
 //! The ratio printed at the end compares the fastest rounds of one run.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]

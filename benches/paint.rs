@@ -1,5 +1,5 @@
-//! Time to draw a frame of the window offscreen at 1280×800, in total and by stage: with the panel, without it, and for
-//! a fine mesh.
+//! Time to draw a frame of the window offscreen at 1280×800, in total and by stage: with the panel,
+//! without it, and for a fine mesh.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a bench may fail")]
 
 use std::time::Duration;

@@ -18,8 +18,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Plays all frames. Returns how many ended in equilibrium, and the distance of the tip from its rest position at the
-/// end, m.
+/// Plays all frames. Returns how many ended in equilibrium, and the distance of the tip from its
+/// rest position at the end, m.
 pub fn play() -> Result<(u32, f64), Box<dyn Error>> {
     let scene = Scene::beam(4.0, 0.4)
         .with_cells(16, 1)

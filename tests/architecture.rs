@@ -1,9 +1,9 @@
-//! Tests of the layers of `src`: a file imports only from its own layer and lower ones, and no files import each other
-//! in a circle.
+//! Tests of the layers of `src`: a file imports only from its own layer and lower ones, and no files
+//! import each other in a circle.
 //!
-//! The imports are read from the text: `use` declarations, also through re-exports, and paths that begin with
-//! `crate::`, `super::` or `self::`. Macros and method calls that reach another file without such a path are not
-//! detected.
+//! The imports are read from the text: `use` declarations, also through re-exports, and paths that
+//! begin with `crate::`, `super::` or `self::`. Macros and method calls that reach another file without
+//! such a path are not detected.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 

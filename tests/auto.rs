@@ -1,5 +1,5 @@
-//! Tests of `auto`: it skips work that a scene does not need, and its result is within the requested error of the exact
-//! equilibrium.
+//! Tests of `auto`: it skips work that a scene does not need, and its result is within the requested
+//! error of the exact equilibrium.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -58,8 +58,8 @@ fn every_result_is_within_the_asked_error() {
                 let is_linear = report(&auto).decision == Decision::Linear;
                 assert_eq!(is_linear, auto.is_linear());
                 served += u32::from(is_linear);
-                // The estimate also covers the largest displacement, not only the probe's. Linear theory is not tried
-                // where supports move.
+                // The estimate also covers the largest displacement, not only the probe's. Linear theory is
+                // not tried where supports move.
                 let may_skip = !auto.problem().supports().move_the_body();
                 assert!(
                     is_linear || !may_skip || linear > 0.1 * asked,

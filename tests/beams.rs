@@ -58,8 +58,8 @@ fn warped_becomes_linear_for_small_loads() {
     }
 }
 
-/// A load so small that u has few digits relative to X still converges, because strains are computed from
-/// displacements.
+/// A load so small that u has few digits relative to X still converges, because strains are
+/// computed from displacements.
 #[test]
 fn tiny_loads_keep_their_digits() {
     let reference = solution(&scene_with("cantilever", &["load.0.force=[0,-1e-3]"])).probes[0].u.y / 1e-3;
@@ -166,8 +166,8 @@ fn warped_frames_are_the_articles_frames() {
     }
 }
 
-/// Under a large load, the beam grows in linear theory and keeps its length in the warped formulation (the article's
-/// figure 1).
+/// Under a large load, the beam grows in linear theory and keeps its length in the warped
+/// formulation (the article's figure 1).
 #[test]
 fn linear_theory_swells_and_warping_does_not() {
     let scene = scene("cantilever");

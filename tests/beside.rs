@@ -156,8 +156,8 @@ fn large() -> Scene {
     scene_with("cantilever", &["beam.cells=[400,40]", "load.0.force=[0,-700]"])
 }
 
-/// While a mesh is created, the previous picture stays with a status text, and the previous scene is restored on
-/// cancel.
+/// While a mesh is created, the previous picture stays with a status text, and the previous
+/// scene is restored on cancel.
 #[test]
 fn cancel_brings_back_what_was() {
     let mut harness = harness("cantilever");

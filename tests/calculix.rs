@@ -1,5 +1,5 @@
-//! Compares two parts from Gmsh with CalculiX 2.20 on the same nodes; `tests/data/calculix/make.py` computes its
-//! numbers.
+//! Compares two parts from Gmsh with CalculiX 2.20 on the same nodes;
+//! `tests/data/calculix/make.py` computes its numbers.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;

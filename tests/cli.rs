@@ -252,8 +252,8 @@ fn same(number: f64, json: &serde_json::Value) -> bool {
     (number - json.as_f64().unwrap()).abs() <= 1e-14 * number.abs()
 }
 
-/// The trajectory of a motion has a row for every step. The last row is the result, and the energy ledger balances in
-/// every row.
+/// The trajectory of a motion has a row for every step. The last row is the result, and the energy
+/// ledger balances in every row.
 #[test]
 fn a_motion_is_written_as_a_table() {
     let folder = tempfile::tempdir().unwrap();
@@ -363,8 +363,8 @@ fn a_motion_is_written_as_a_series_of_states() {
     assert!(!folder.path().join("rest.pvd").exists());
 }
 
-/// A file that cannot be written is an error, but the result is still printed. A reader that closes its pipe is no
-/// error.
+/// A file that cannot be written is an error, but the result is still printed. A reader that
+/// closes its pipe is no error.
 #[cfg(target_os = "linux")]
 #[test]
 fn failed_writes_end_with_exit_code_2() {
@@ -856,8 +856,8 @@ fn json_certifies_its_result() {
     let linear = solve_json(&["elastica", "--set", "solver.method=linear"]);
     assert!(linear["stable"].is_null() && linear["fixed_point_rho"].is_null());
     assert!(linear["probes"][0]["error_percent"].as_f64().unwrap() > 100.0);
-    // Where beam theory does not apply, or is too inaccurate, a fine solution is the reference, and its source is
-    // named.
+    // Where beam theory does not apply, or is too inaccurate, a fine solution is the
+    // reference, and its source is named.
     for (id, source) in [
         ("elastica", "the exact beam"),
         ("article", "a fine solution"),
@@ -982,8 +982,8 @@ fn study_measures_error_against_time() {
                     && (number(row, 16) - number(row, 13) - number(row, 14) - number(row, 15)).abs()
                         < 1e-9 * number(row, 16).max(1.0)
             );
-            // The parts are distances along a chain from the result to the reference: their sum is an upper bound of
-            // the total.
+            // The parts are distances along a chain from the result to the reference: their sum is
+            // an upper bound of the total.
             let parts = number(row, 13) + number(row, 14) + number(row, 15);
             assert!(number(row, 12) <= parts * (1.0 + 1e-6) + 1e-4, "{row:?}");
             assert!(["linear", "auto"].contains(&row[4]) || number(row, 15) == 0.0, "{row:?}");
@@ -998,8 +998,8 @@ fn study_measures_error_against_time() {
         assert!(fs::read_to_string(out.join("study.svg")).unwrap().contains("Pareto front"));
         assert!(fs::metadata(out.join("study.png")).unwrap().len() > 10_000);
     }
-    // Locking is distinguished from the model error: converged T3 has only discretization error, and linear T6 only
-    // model error.
+    // Locking is distinguished from the model error: converged T3 has only discretization error, and
+    // linear T6 only model error.
     let csv = fs::read_to_string(folder.path().join("cantilever/study.csv")).unwrap();
     let row = |element: &str, method: &str| {
         let mut rows = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
@@ -1039,8 +1039,8 @@ fn tune_chooses_a_setting_that_meets_the_demand() {
         let chosen = format!("  {} ", json["element"].as_str().unwrap());
         assert!(text.lines().any(|line| line.starts_with(&chosen)), "{text}");
     }
-    // With a time limit only, it chooses the most accurate setting within it. A reference without a closed form has its
-    // own error included.
+    // With a time limit only, it chooses the most accurate setting within it. A reference without a closed form
+    // has its own error included.
     let text = stdout(&warpbeam(&["tune", "bracket", "--time", "100s"]));
     assert!(text.contains("meet at most 100000 ms; the closest:"), "{text}");
     assert!(!text.contains("the reference's own 0.0000 %"), "{text}");

@@ -1,5 +1,5 @@
-//! Compares motions with an independent trajectory, beam theory, conservation laws, and known properties of the
-//! integrators.
+//! Compares motions with an independent trajectory, beam theory, conservation laws, and known
+//! properties of the integrators.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -121,7 +121,7 @@ fn a_spin_slows_as_its_integrator_must() {
     };
     let kept = spin(TR_BDF2, 1);
     assert!((0.99..=1.001).contains(&kept), "{kept}");
-    // Under implicit Euler a rigid body rotates along chords: dL/dt = −h ω² L, with ω proportional to L.
+    // Under implicit Euler the points of a rigid body move along chords: dL/dt = −h ω² L, with ω proportional to L.
     let (omega, h, time) = (6.0_f64, 1.0 / 60.0, 10.0);
     let law = (1.0 + 2.0 * h * omega * omega * time).powf(-0.5);
     let kept = spin(EULER, 0);
@@ -159,8 +159,8 @@ fn first_frequencies_are_beam_theorys() {
     }
     // Shear and rotary inertia matter at L/H = 10.
     assert!(theory(10.0, true) < 0.995 * theory(10.0, false));
-    // A small motion of the swing has that frequency: after a quarter of its period it passes through the shape at
-    // rest.
+    // A small motion of the swing has that frequency: after a quarter of its period it
+    // passes through the shape at rest.
     let mut scene = beam(20, 10.0).moving(ENERGY_MOMENTUM, 1e-3);
     scene.dynamics.iterations = 0;
     let omega = measured(&scene);
@@ -235,8 +235,8 @@ fn the_discrete_gradient_is_exact() {
     assert!(worst[0] < 1e-12 && worst[1] < 1e-12, "{worst:?}");
 }
 
-/// Energy–momentum has no dissipation beyond its tolerance: the energy decreases by the dissipation of the damping
-/// only.
+/// Energy–momentum has no dissipation beyond its tolerance: the energy decreases by the
+/// dissipation of the damping only.
 #[test]
 fn energy_momentum_books_only_its_tolerance() {
     let mut scene = with("swing", ENERGY_MOMENTUM, 1.0 / 120.0, 0, 2.0).moment("right", 20.0);
@@ -472,8 +472,8 @@ fn auto_sees_a_column_buckle() {
     assert!(error <= 1.0, "{error} {:?}", report(&auto));
 }
 
-/// The same scene gives bitwise the same motion, with any previous state: the decisions of `auto` do not depend on time
-/// measurements.
+/// The same scene gives bitwise the same motion, with any previous state: the decisions of `auto` do not
+/// depend on time measurements.
 #[test]
 fn auto_is_reproduced_to_the_last_bit() {
     // Linear theory is used for the smaller load until its phase may be inaccurate.
@@ -493,8 +493,8 @@ fn auto_is_reproduced_to_the_last_bit() {
     }
 }
 
-/// Old factors must not spoil the conservation of energy–momentum, and switches to and from linear theory must be
-/// recorded.
+/// Old factors must not spoil the conservation of energy–momentum, and switches to and from
+/// linear theory must be recorded.
 #[test]
 fn auto_keeps_what_energy_momentum_keeps() {
     let scene = with("swing", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 10.0).with_method(MethodKind::Auto);
@@ -506,8 +506,7 @@ fn auto_keeps_what_energy_momentum_keeps() {
     assert!((momentum(&simulation).angular / before - 1.0).abs() < 1e-6);
 }
 
-/// A body at rest is grabbed, pulled and released, and then its material is changed: the motion is the same as under
-/// Newton.
+/// A body at rest is grabbed, pulled, and released with another material: the motion is the same as under Newton.
 #[test]
 fn auto_follows_a_hand_and_edits() {
     for kind in IMPLICIT {
@@ -765,7 +764,7 @@ fn a_body_starts_as_its_scene_says() {
     // Angular momentum about the origin: c × m v, and that of the spin, ω m (L² + H²)/12.
     let expected = mass * (centre.perp(&Vector2::new(3.0, -1.5)) + 0.7 * 5.0 / 12.0);
     assert!((start.angular - expected).abs() < 1e-9 * mass, "{} {expected}", start.angular);
-    // A free body moves on until its strains have lost their digits.
+    // A free body moves on until it is so far away that its strains have lost their digits.
     let mut thrown = scene.clone();
     (thrown.start.velocity, thrown.start.spin) = ([0.0, 9e3], 0.0);
     thrown.dynamics.time_step = 10.0;
@@ -778,7 +777,7 @@ fn a_body_starts_as_its_scene_says() {
     }
     assert!(matches!(simulation.status(), Status::Stopped(StopReason::RanAway(_))), "{:?}", simulation.status());
     assert!(simulation.probe("end").unwrap().norm() > limit);
-    // The residual of a step is zero if it iterates, and small if it solves once.
+    // The residual of a step is below the tolerance if it iterates, and small if it solves once.
     let left = |iterations: u32| {
         let mut scene = with("swing", TR_BDF2, 1.0 / 60.0, iterations, 1.0);
         scene.solver.tolerance = 1e-9;

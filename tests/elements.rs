@@ -199,9 +199,9 @@ fn a_force_at_a_point_pulls_the_nearest_node() {
 /// A quadrilateral that is far from a parallelogram.
 const QUAD: [[f64; 2]; 4] = [[0.1, -0.2], [2.0, 0.3], [1.5, 1.4], [-0.3, 1.0]];
 
-/// Returns the stiffness of Taylor, Beresford and Wilson's element in its textbook form: 3 × 12 strain matrices at 2 ×
-/// 2 points, the modes' gradients scaled with the Jacobian of the centre over that of the point, and the last four
-/// unknowns condensed.
+/// Returns the stiffness of Taylor, Beresford and Wilson's element in its textbook form: 3 × 12 strain matrices
+/// at 2 × 2 points, the modes' gradients scaled with the Jacobian of the centre over that of the point, and the
+/// last four unknowns condensed.
 fn textbook_q4(material: &Material) -> SMatrix<f64, 8, 8> {
     let gauss = 1.0 / 3f64.sqrt();
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
@@ -348,7 +348,7 @@ fn a_traction_is_shared_out_along_a_side() {
     assert!((arc[0] - arc[2]).abs() < 1e-14 && arc[1] > arc[0] && arc[0] > 0.0, "{arc:?}");
 }
 
-/// A small rotation gives no strain, up to the square of the rounding error.
+/// A small rotation gives no strain, up to a rounding error relative to the squared angle.
 #[test]
 fn a_small_turn_strains_nothing() {
     for angle in [1e-9_f64, 1e-6, 1e-4] {
@@ -388,8 +388,8 @@ fn q4_bends_with_few_cells() {
     }
 }
 
-/// Nearly incompressible plane strain, stubby and slender, under a small load, against Timoshenko's beam with E/(1 −
-/// ν²).
+/// Nearly incompressible plane strain under a small load, against Timoshenko's beam with
+/// E/(1 − ν²), stubby and slender.
 #[test]
 fn q4_locks_neither_in_shear_nor_in_volume() {
     let (young, nu, load) = (1e6, 0.4999, 1e-3);
@@ -414,7 +414,7 @@ fn q4_locks_neither_in_shear_nor_in_volume() {
 }
 
 /// The body is stretched, so that tension alone would make G positive, and twisted, so that the rotational part of G is
-/// not. The positive part exceeds both G and zero.
+/// not. With the positive part of G, the tangent is no less than the exact one and no less than the one without G.
 #[test]
 fn q4_positive_part_of_g_is_positive() {
     let mut scene = Scene::named("One").with_material(material(Plane::Stress));

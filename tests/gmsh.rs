@@ -163,7 +163,7 @@ fn damaged_files_never_panic() {
 }
 
 /// The number of unknowns is known before a scene is meshed. It is exact for beams and for files with their own
-/// element; for another element it is exact up to the holes of the body.
+/// element; for another element it may be wrong by two unknowns per hole of the body.
 #[test]
 fn unknowns_are_known_before_a_scene_is_meshed() {
     let mut files = 0;

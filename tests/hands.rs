@@ -70,9 +70,8 @@ fn a_pulled_body_settles_where_the_spring_balances() {
     }
 }
 
-/// Under a pointer that jumps wildly, every motion stays finite under every integrator, its energy ledger balances, and
-/// the energy comes from the spring only. Implicit motions are never stopped; explicit ones may run away under about
-/// one in ten of the random pointers, and are then stopped.
+/// Under a pointer that jumps wildly, every motion stays finite under every integrator, and its energy ledger balances.
+/// Implicit motions are never stopped; explicit ones may run away, in about one of ten cases, and are then stopped.
 #[test]
 fn no_pointer_is_too_wild() {
     for id in ids_of(Analysis::Dynamic) {
@@ -110,8 +109,7 @@ fn no_pointer_is_too_wild() {
     }
 }
 
-/// The spring is refused outside the body or at a non-finite position, and is released when its element no longer
-/// exists.
+/// Non-finite targets and missing elements are refused, and a new mesh releases the spring.
 #[test]
 fn a_hand_needs_a_body_and_a_place() {
     let mut simulation = held(&scene("jelly"));
@@ -212,8 +210,8 @@ fn a_hand_is_as_firm_as_it_says() {
     let critical = 2.0 * (hand.stiffness() * mass).sqrt();
     assert!((damper / (-0.7 * critical) - Vector2::new(0.01, -0.02)).norm() < 1e-12, "{damper}");
 
-    // A stiff cantilever: the softest direction at its upper corner, from three loads and the polarization of their
-    // work.
+    // A stiff cantilever: the softest direction at its upper corner, from three loads and the
+    // polarization of their work.
     let mut scene = scene.clamp("left").with_method(MethodKind::Linear);
     scene.material.young = 1e9;
     let corner = Vector2::new(4.0, 0.5);

@@ -215,8 +215,8 @@ fn a_press_takes_what_was_under_it_however_late_the_frame() {
     harness.run();
 }
 
-/// With Shift, the direction is a multiple of 15°. An arrow dragged onto its foot is a zero force, and can be dragged
-/// out again.
+/// With Shift, the direction is a multiple of 15°. An arrow dragged onto its foot is a zero force,
+/// and can be dragged out again.
 #[test]
 fn shift_snaps_the_direction_and_a_force_can_be_dragged_away_and_back() {
     let mut harness = harness("cantilever");
@@ -530,8 +530,8 @@ fn the_force_slider_spans_what_a_slender_body_can_bear() {
     }
 }
 
-/// A wheel that still turns in the gallery when a scene is clicked does not change the new view, which shows the whole
-/// body.
+/// A wheel that still turns in the gallery when a scene is clicked does not change the new view,
+/// which shows the whole body.
 #[test]
 fn a_wheel_in_the_gallery_does_not_zoom_the_view() {
     let opened = harness;

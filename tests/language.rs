@@ -237,8 +237,8 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files.into_iter().chain(folders.iter().flat_map(|folder| sources(folder))).collect()
 }
 
-/// Literals of the window's sources that are not shown in it: copied texts, ids, variables, and messages of programs
-/// without a window.
+/// Literals of the window's sources that are not shown in it: copied texts, ids, variables, and messages
+/// of programs without a window.
 const NOT_SHOWN: &[&str] = &[
     "# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}",
     "English",
@@ -352,8 +352,8 @@ fn the_fonts_have_every_letter() {
     assert!(!harness.ctx.fonts_mut(|fonts| fonts.has_glyph(&rare, '\u{9f98}')), "the check is blind");
 }
 
-/// The button in the toolbar changes the language at once and is labelled in the other language. The settings keep the
-/// language.
+/// The button in the toolbar changes the language at once and is labelled in the other language. The
+/// settings keep the language.
 #[test]
 fn the_switch_changes_the_language_and_the_settings_keep_it() {
     let mut harness = settled("article", [1280.0, 800.0]);
@@ -387,8 +387,8 @@ fn the_switch_changes_the_language_and_the_settings_keep_it() {
     assert_eq!(Settings::default().language, Language::English);
 }
 
-/// Explore is in Chinese: every fold, the pickers, the drawer, the card of a point, messages and remedies, the help and
-/// the dialog.
+/// Explore is in Chinese: every fold, the pickers, the drawer, the card of a point, messages and
+/// remedies, the help and the dialog.
 #[test]
 fn exploring_is_in_chinese() {
     let mut harness = settled("article", [1280.0, 2400.0]);

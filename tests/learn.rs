@@ -324,8 +324,8 @@ fn the_matrices_are_the_solvers() {
     assert!(cell(&mut harness, "the body's matrix", 24, 0, 23).starts_with("no entry"));
 }
 
-/// Card 6: each press iterates once; the residual falls by ρ, which equals the certificate's ρ for the equilibrium of
-/// `newton`.
+/// Card 6: each press iterates once; the residual falls by ρ, which equals the certificate's ρ for
+/// the equilibrium of `newton`.
 #[test]
 fn the_residual_falls_by_rho() {
     let mut harness = at_card(6);
@@ -479,8 +479,8 @@ fn steps_walk_through_the_pseudocode() {
     assert_eq!(harness.state().simulation().iterations(), 0);
 }
 
-/// A card has a single force slider. The panel is hidden on cards and opened with its key; leaving restores its
-/// previous state.
+/// A card has a single force slider. The panel is hidden on cards and opened with its key; leaving
+/// restores its previous state.
 #[test]
 fn the_panel_is_folded_away_on_the_cards() {
     let has_panel = |harness: &Harness<'_, Lab>| harness.query_by_role_and_label(Role::Slider, "Force").is_some();

@@ -21,8 +21,8 @@ fn column(part: f64, hold: impl Fn(Scene) -> Scene) -> Scene {
     hold(scene).force("right", [-part * euler, 0.0]).probe("tip", "right")
 }
 
-/// Every kind of support has its critical load; a longer path passes the higher ones, each of which adds an unstable
-/// mode.
+/// Every kind of support has its critical load; a longer path passes the higher ones, each of
+/// which adds an unstable mode.
 #[test]
 fn columns_buckle_at_eulers_loads() {
     type Hold = fn(Scene) -> Scene;

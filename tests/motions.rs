@@ -193,8 +193,8 @@ fn the_past_ends_at_the_present_and_begins_with_the_scene() {
     assert_eq!(time(&harness), 0.0);
 }
 
-/// Other integrators go back together with the body to the displayed time. One that did not run then starts from the
-/// body's state.
+/// Other integrators go back together with the body to the displayed time. One that did not run then
+/// starts from the body's state.
 #[test]
 fn companions_go_back_along() {
     let mut harness = harness("swing");
@@ -248,8 +248,8 @@ fn is_said(harness: &mut Harness<'_, Lab>, frames: u32) -> bool {
     })
 }
 
-/// A clip that is pressed into its own base is reported once. No other built-in scene intersects itself, at rest or in
-/// its result.
+/// A clip that is pressed into its own base is reported once. No other built-in scene intersects
+/// itself, at rest or in its result.
 #[test]
 fn a_body_that_passes_through_itself_says_so_once() {
     let mut clip = harness("clip");

@@ -326,8 +326,8 @@ fn keys_that_end_a_text_in_their_frame_are_the_texts() {
     assert!(harness.query_by_label_contains("Paused").is_none());
 }
 
-/// The ends of a fixed colour range accept any value, including negative ones. The scale does not move while an end is
-/// dragged.
+/// The ends of a fixed colour range accept any value, including negative ones. The scale does not
+/// move while an end is dragged.
 #[test]
 fn a_fixed_range_of_colours_is_set() {
     let mut harness = harness("article");
@@ -643,8 +643,8 @@ fn a_support_is_dragged_and_its_reaction_is_shown() {
     assert!(harness.query_by_label("Move y").is_none());
 }
 
-/// The window shows for a result: certificate, ρ with an explanation, the error relative to the exact beam, and the
-/// load curve.
+/// The window shows for a result: certificate, ρ with an explanation, the error relative to the
+/// exact beam, and the load curve.
 #[test]
 fn results_are_certified_and_compared_with_the_truth() {
     let mut harness = harness("elastica");
@@ -846,8 +846,8 @@ fn on_body(lab: &Lab, at: Vector2<f64>) -> egui::Pos2 {
     lab.view_rect().center() + egui::vec2(x as f32, y as f32)
 }
 
-/// A beam at rest that is pressed and pulled settles in equilibrium with the mouse spring; after release, it returns to
-/// its previous state.
+/// A beam at rest that is pressed and pulled settles in equilibrium with the mouse spring; after release, it
+/// returns to its previous state.
 #[test]
 fn a_beam_is_pulled_and_springs_back() {
     let mut harness = harness("article");

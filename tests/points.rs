@@ -85,8 +85,8 @@ fn a_point_has_the_values_of_the_fields() {
     }
 }
 
-/// Checks that F, R, S, ε and σ of a point belong to one deformation: each follows from the previous one by its
-/// definition.
+/// Checks that F, R, S, ε and σ of a point belong to one deformation: each follows from the
+/// previous one by its definition.
 fn check_consistency(point: &PointState, material: &Material, about: &str) {
     let identity = Matrix2::identity();
     let (f, size) = (point.gradient, 1.0 + point.gradient.norm());

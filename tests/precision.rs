@@ -214,9 +214,9 @@ fn exact_forces<const N: usize>(
 /// Values of ξη at a quadrilateral's corners.
 const TWIST: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
 
-/// Returns K of a quadrilateral over μ as the element has stored it, bit for bit. In a parallelogram, where γ is
-/// TWIST/4, the force on a body that bends at the rate 1 is a quarter of a column, and no operation in its computation
-/// rounds.
+/// Returns K of a quadrilateral over μ as the element has stored it, bit for bit. In a parallelogram,
+/// where γ is TWIST/4, the force on a body that bends at the rate 1 is a quarter of a column, and no
+/// operation in its computation rounds.
 fn stored_stiffness(element: &ElementType, rest: &[Vector2<f64>; 4], moduli: Lame) -> [[f64; 2]; 2] {
     let elements = (element.loops)(rest, &[0, 1, 2, 3]);
     let over_mu = Lame { lambda: moduli.lambda / moduli.mu, mu: 1.0 };
@@ -341,8 +341,8 @@ fn the_bound_of_rounding_holds() {
     }
 }
 
-/// The bound also holds for states out of balance: bodies rotated by any angle, with random strain or bending in every
-/// cell.
+/// The bound also holds for states out of balance: bodies rotated by any angle, with random
+/// strain or bending in every cell.
 #[test]
 fn the_bound_of_rounding_holds_out_of_balance() {
     let mut state = 1u64;

@@ -27,8 +27,8 @@ impl Built for Result<Scene, SceneError> {
     }
 }
 
-/// Compares the program in `tests/programs` with the one generated for `scene`, and the scene that it builds with
-/// `scene`.
+/// Compares the program in `tests/programs` with the one generated for `scene`, and the scene
+/// that it builds with `scene`.
 fn check(name: &str, written: &str, built: &Scene, scene: &Scene) {
     let program = scene.to_rust(Path::new(""));
     if std::env::var_os("UPDATE_GOLDEN").is_some() {

@@ -55,8 +55,8 @@ fn a_pulse_leaves_its_impulse_whatever_the_step() {
     }
 }
 
-/// A pulse of a moment changes the angular momentum by exactly M d/2 under the energy–momentum method, which conserves
-/// it.
+/// A pulse of a moment changes the angular momentum by exactly M d/2 under the energy–momentum
+/// method, which conserves it.
 #[test]
 fn a_pulse_of_a_moment_leaves_its_angular_impulse() {
     for steps in [0.2, 1.3, 4.0] {
@@ -74,8 +74,8 @@ fn a_pulse_of_a_moment_leaves_its_angular_impulse() {
 /// The ledger balances: a rigid push gives the body ½ p²/m, and all entries of the ledger sum to the total energy.
 #[test]
 fn the_ledger_has_the_work_of_pulses() {
-    // Explicit integrators are left out: the forces on lumped masses differ from the body's weight, so that it would
-    // vibrate.
+    // Explicit integrators are left out: the forces on lumped masses differ from the body's
+    // weight, so that it would vibrate.
     for integrator in INTEGRATORS.iter().filter(|integrator| !integrator.is_explicit()) {
         for steps in [0.3, 1.0, 2.5] {
             let pulse = Pulse { start: 0.4 * STEP, duration: steps * STEP };
@@ -90,8 +90,8 @@ fn the_ledger_has_the_work_of_pulses() {
             let words = format!("{} {steps}: {ledger:?}", integrator.id);
             assert!((ledger.kinetic - kinetic).abs() < 1e-9 * kinetic, "{words}, {kinetic} J");
             assert!(ledger.imbalance().abs() < 1e-10 * ledger.throughput, "{words}");
-            // Under a force that is constant over each step, the work is the energy except for the integrator's
-            // dissipation.
+            // Under a force that is constant over each step, the work is the energy except for
+            // the integrator's dissipation.
             assert!((ledger.pulses - ledger.integrator - kinetic).abs() < 1e-9 * kinetic, "{words}, {kinetic} J");
         }
     }

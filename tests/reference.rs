@@ -1,5 +1,5 @@
-//! Compares reference solutions with independent solutions: the claimed error is right to within the reference's own
-//! error.
+//! Compares reference solutions with independent solutions: the claimed error is right to
+//! within the reference's own error.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod common;
@@ -15,9 +15,9 @@ use warpbeam::simulation::Status;
 use warpbeam::study::{Effort, Reference};
 use warpbeam::{ElementKind, Scene, Simulation};
 
-/// Returns a mesh of six-node triangles on a grid that has a line at every point of a scene. Cells between lines are
-/// cut once, from lower left to upper right. Written for these tests, it shares no code with the meshes of reference
-/// solutions.
+/// Returns a mesh of six-node triangles on a grid that has a line at every point of a scene. Cells between
+/// lines are cut once, from lower left to upper right. Written for these tests, it shares no code with the
+/// meshes of reference solutions.
 fn six_node_grid(scene: &Scene, beam: &Beam, cells: [usize; 2]) -> Mesh {
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut add = |place: &Place| {

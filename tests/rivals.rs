@@ -1,5 +1,5 @@
-//! Compares warpbeam with rapier2d as an independent implementation: both come to rest in the same state on the same
-//! mesh.
+//! Compares warpbeam with rapier2d as an independent implementation: both come to rest in the
+//! same state on the same mesh.
 #![cfg(feature = "rivals")]
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 

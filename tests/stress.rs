@@ -199,8 +199,8 @@ fn stresses_of_a_beam_are_those_of_the_book() {
     }
 }
 
-/// In a scene rotated by 37°, the Cauchy stresses rotate with the body, and quantities relative to the body are
-/// unchanged.
+/// In a scene rotated by 37°, the Cauchy stresses rotate with the body, and quantities
+/// relative to the body are unchanged.
 #[test]
 fn stresses_turn_with_the_body() {
     let turn = Rotation::from_angle(37f64.to_radians());

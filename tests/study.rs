@@ -1,5 +1,5 @@
-//! Tests of the speed–accuracy study of bodies at rest and in motion, the atlas of motions, and the scaling of an
-//! iteration.
+//! Tests of the speed–accuracy study of bodies at rest and in motion, the atlas of motions, and
+//! the scaling of an iteration.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -51,8 +51,8 @@ fn single_rows_of_bending_elements_are_studied() {
     }
 }
 
-/// The progress of a study never decreases and reaches its end. The element that converges fastest is measured first, and
-/// the measurements of each element are listed from coarse to fine.
+/// The progress of a study never decreases and reaches its end. The element that converges fastest is measured first,
+/// and the measurements of each element are listed from coarse to fine.
 #[test]
 fn a_study_says_how_far_it_is_and_has_the_likely_answers_first() {
     let (mut last, mut elements) = (0.0, Vec::new());
@@ -123,8 +123,8 @@ fn a_swing_is_studied() {
             _ => {}
         }
     }
-    // Explicit steps are 0.9 of the critical step, rounded to integer parts of 1/60 s, so that they end with those of
-    // the others.
+    // Explicit steps are 0.9 of the critical step, rounded to integer parts of 1/60 s, so that they
+    // end with those of the others.
     let explicit = study.measurements.iter().filter(|m| m.setting.integrator == IntegratorKind::SymplecticEuler);
     for m in explicit {
         let parts = 1.0 / 60.0 / m.setting.time_step;
@@ -146,8 +146,8 @@ fn a_swing_is_studied() {
     assert!(study.fastest_within(0.5 * own).is_none());
 }
 
-/// The progress of a motion study never decreases. Cancelled during timed or untimed runs, the study keeps its
-/// measurements.
+/// The progress of a motion study never decreases. Cancelled during timed or untimed runs, the
+/// study keeps its measurements.
 #[test]
 fn a_study_of_a_motion_says_how_far_it_is_and_keeps_what_is_measured() {
     let scene = scene_with("swing", &["dynamics.duration=0.1"]);
@@ -260,8 +260,8 @@ fn a_cancelled_tuning_chooses_from_what_was_measured() {
     assert!(tuning.study.measurements.len() < 60);
 }
 
-/// The command writes the same study: its files, columns and finite numbers. A step that is too short to be run to the
-/// end is reported.
+/// The command writes the same study: its files, columns and finite numbers. A step that is too short to be
+/// run to the end is reported.
 #[test]
 fn study_of_a_motion_writes_its_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -333,8 +333,8 @@ fn motions_at_the_extremes_end_in_words() {
     }
 }
 
-/// The time of an iteration against the number of unknowns, for every element from coarse to fine, as table, picture
-/// and text.
+/// The time of an iteration against the number of unknowns, for every element from coarse to fine,
+/// as table, picture and text.
 #[test]
 fn scaling_is_measured() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,8 @@
 //! Language of the comments: a comment does not begin with a word that leaves out its noun ("What", "Whether", …), and
 //! contains no words of the forbidden list.
 //!
-//! The comments are read from the text, so that strings do not count. Raw strings and block comments are not recognised.
+//! The comments are read from the text, so that strings do not count. Raw strings and block
+//! comments are not recognised.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 

@@ -91,7 +91,7 @@ fn a_rigid_turn_of_all_supports_leaves_no_stress() {
             }
             let simulation = solved(&scene);
             let solution = simulation.solution();
-            // The scale is the force of the same displacement as a strain.
+            // Forces and energies are compared with those that a strain of about 1 would need.
             let scale = 1e6 * 10.0;
             assert!(solution.energy.elastic < 1e-18 * scale, "{} {}: {:?}", element.id, method.id, solution.energy);
             assert!(solution.supports.iter().all(|s| s.force.norm() < 1e-7 * scale), "{:?}", solution.supports);
@@ -128,8 +128,8 @@ fn a_turned_clamp_is_another_direction_of_the_weight() {
     }
 }
 
-/// A rotation of more than a full turn winds up the beam: it differs from the state at rest with the same support
-/// positions.
+/// A rotation of more than a full turn winds up the beam: it differs from the state at rest with
+/// the same support positions.
 #[test]
 fn a_full_turn_of_one_end_is_not_rest() {
     let mut scene = Scene::beam(20.0, 0.5).with_cells(40, 1).clamp("left").clamp("right");
@@ -301,10 +301,10 @@ fn other_starts_and_stiffnesses_end_in_the_same_place() {
     assert!(values.iter().all(Option::is_some));
 }
 
-/// Returns the limit load of a clamped shallow arch under a force in its middle, N, and the displacement of its middle
-/// there, m. The source is beam theory of small slopes, EI w⁗ + N (w″ − 1/R) = −P δ, with the thrust N = EI k² from the
-/// shortening of the axis. For every k the deflection is linear in P, and the shortening gives a quadratic equation for
-/// P.
+/// Returns the limit load of a clamped shallow arch under a force in its middle, N, and the displacement of
+/// its middle there, m. The source is beam theory of small slopes, EI w⁗ + N (w″ − 1/R) = −P δ, with the
+/// thrust N = EI k² from the shortening of the axis. For every k the deflection is linear in P, and the
+/// shortening gives a quadratic equation for P.
 fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) -> [f64; 2] {
     use nalgebra::{Matrix4, Vector4};
     const POINTS: usize = 400;

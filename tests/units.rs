@@ -207,8 +207,8 @@ fn plain_numbers_are_si() {
     }
 }
 
-/// Groups of three digits may be separated by commas or spaces. A possible decimal comma is refused, with the correct
-/// notation.
+/// Groups of three digits may be separated by commas or spaces. A possible decimal comma is
+/// refused, with the correct notation.
 #[test]
 fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
     for (text, value) in [

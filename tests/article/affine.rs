@@ -63,8 +63,8 @@ pub struct Affine3 {
 }
 
 impl Affine3 {
-    /// Returns the map that takes the corners `rest` of a tetrahedron to `deformed`. It solves eq. (24) with one 3×3
-    /// inverse of the edge vectors instead of a 12×12 solve.
+    /// Returns the map that takes the corners `rest` of a tetrahedron to `deformed`. It solves eq. (24) with one
+    /// 3×3 inverse of the edge vectors instead of a 12×12 solve.
     ///
     /// # Errors
     /// [`Affine3Error::CoplanarCorners`] for a rest tetrahedron without volume, [`Affine3Error::NotFinite`].

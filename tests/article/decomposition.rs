@@ -1,5 +1,5 @@
-//! The polar decomposition in space by iteration, and in the plane and in space from the SVD (article eqs. 25–36 and
-//! its worked example).
+//! The polar decomposition in space by iteration, and in the plane and in space from the SVD (article
+//! eqs. 25–36 and its worked example).
 
 use nalgebra::allocator::Allocator;
 use nalgebra::{Const, DefaultAllocator, DimMin, DimSub, Matrix3, SMatrix, ToTypenum};
@@ -52,8 +52,8 @@ pub const ORTHOGONALITY: f64 = 1e-9;
 /// of the largest singular value.
 const MAX_ITERATIONS: usize = 128;
 
-/// Returns F, or F over its largest entry if products of entries would leave the range of f64. Q does not depend on the
-/// scale.
+/// Returns F, or F over its largest entry if products of entries would leave the range of f64. Q
+/// does not depend on the scale.
 fn of_ordinary_size<const N: usize>(f: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     let largest = f.amax();
     if largest == 0.0 || (1e-60..1e60).contains(&largest) { *f } else { f / largest }
@@ -67,9 +67,9 @@ pub fn orthogonality_error(r: &Matrix3<f64>) -> f64 {
 
 /// Computes the 3×3 polar decomposition by R ← ½(R + R⁻ᵀ), article eqs. (33)–(36).
 ///
-/// Where det F < 0 the iteration ends on a *reflection*, as the article's own example does (det = −110.96, its printed
-/// R has det −1). A corotational code needs [`proper_rotation3`]. Erratum: the A⁻ᵀ printed with that example is A⁻¹,
-/// untransposed.
+/// Where det F < 0 the iteration ends on a *reflection*, as the article's own example does (det = −110.96, its
+/// printed R has det −1). A corotational code needs [`proper_rotation3`]. Erratum: the A⁻ᵀ printed with that
+/// example is A⁻¹, untransposed.
 ///
 /// # Errors
 /// [`PolarError::Singular`] where the inverse does not exist, [`PolarError::NotConverged`], [`PolarError::NotFinite`].

@@ -1,5 +1,5 @@
-//! Tests of the article's formulas: affine maps, the SVD and its interpretation, the 3×3 iteration, its examples and
-//! errata.
+//! Tests of the article's formulas: affine maps, the SVD and its interpretation, the
+//! 3×3 iteration, its examples and errata.
 
 mod affine;
 mod decomposition;

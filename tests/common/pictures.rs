@@ -20,7 +20,7 @@ pub fn for_picture(id: &str) -> &'static [&'static str] {
     }
 }
 
-/// Returns a lab with the scene of [`for_picture`].
+/// Returns a lab with a built-in scene, changed by [`for_picture`].
 pub fn lab(id: &str) -> Lab {
     let scene = scene_with(id, for_picture(id));
     let simulation = Simulation::new(&scene).unwrap();

@@ -65,8 +65,8 @@ impl Running {
     }
 }
 
-/// Runs the program with standard error connected to a terminal. Returns its exit code and the text written to the
-/// terminal.
+/// Runs the program with standard error connected to a terminal. Returns its exit code and the
+/// text written to the terminal.
 pub fn on_a_terminal(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
     let terminal = openpty(None, None).unwrap();
     let child = program(folder, args)

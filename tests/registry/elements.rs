@@ -140,8 +140,8 @@ fn rules_integrate_what_they_must(kind: ElementKind) {
         assert!(rule.iter().all(|p| p.weight > 0.0 && (entry.cell.depth)(p.at) > 0.0));
         assert!((apply(rule, &|_| 1.0) - entry.cell.area).abs() < 1e-14);
     }
-    // Integrands are products of local gradients, and of shape functions. The fine rule itself has an error of order
-    // h³.
+    // Integrands are products of local gradients, and of shape functions. The fine rule
+    // itself has an error of order h³.
     for a in 0..entry.nodes.len() {
         for b in 0..=a {
             let stiffness = |at| {
@@ -191,8 +191,8 @@ fn children_and_lattice_cover_the_cell(kind: ElementKind) {
     }
 }
 
-/// Returns a mesh of the square [0, 2] × [−1, 1] with irregular elements and, where the element allows it, curved inner
-/// sides.
+/// Returns a mesh of the square [0, 2] × [−1, 1] with irregular elements and, where the element
+/// allows it, curved inner sides.
 fn irregular_mesh(kind: ElementKind) -> Mesh {
     let square = Scene::beam(2.0, 2.0).with_cells(4, 3).with_element(kind);
     let mesh = Mesh::beam(square.beam.as_ref().unwrap()).unwrap();
@@ -397,8 +397,8 @@ fn fields_of_a_uniform_stretch(kind: ElementKind) {
     }
 }
 
-/// The energy of the strains at the quadrature points is the elastic energy. These strains include the part of an
-/// element's own modes.
+/// The energy of the strains at the quadrature points is the elastic energy. These strains include the
+/// part of an element's own modes.
 fn the_strains_at_points_hold_the_energy(kind: ElementKind) {
     for plane in [Plane::Stress, Plane::Strain] {
         let problem = problem(&irregular_scene(plane), kind);
@@ -548,8 +548,8 @@ fn the_tangent_is_the_derivative_of_the_force(kind: ElementKind) {
     assert!(definite.symmetric_eigenvalues().min() > 0.0);
 }
 
-/// A + max(G, 0) lowers no eigenvalue: it exceeds A + G by a positive semidefinite matrix, in compression, tension and
-/// bending.
+/// A + max(G, 0) lowers no eigenvalue: it exceeds A + G by a positive semidefinite matrix, in
+/// compression, tension and bending.
 fn its_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Stress), kind);
     for (along, across) in [(0.9, 0.9), (1.1, 1.05), (0.8, 1.2)] {
@@ -558,7 +558,7 @@ fn its_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
             [Tangent::EXACT, Tangent::DEFINITE, Tangent::GEOMETRIC].map(|t| dense(&problem, &start, t, 0.0));
         let added = (&definite - &exact).symmetric_eigenvalues();
         assert!(added.min() > -1e-12 * exact.norm() && added.max() > 1e-3 * geometric.norm(), "{added}");
-        // The added part is no larger than the norm of G in all elements together.
+        // The added part is at most the norm of G times the number of elements.
         assert!(added.max() <= geometric.norm() * problem.system().mesh().element_count() as f64);
         assert!(definite.symmetric_eigenvalues().min() > 0.0);
     }
@@ -691,8 +691,8 @@ fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
     assert!(forces(&problem, &turned).internal().iter().all(|f| f.norm() < 1e-12 * magnitude));
 }
 
-/// Betti's theorem: the work of one load along the displacement of another equals the work of the other along its own
-/// displacement.
+/// Betti's theorem: the work of one load along the displacement of another equals the work of the other
+/// along its own displacement.
 fn works_are_reciprocal(kind: ElementKind) {
     let tip = |force: [f64; 2], at: [f64; 2]| {
         let scene = irregular_scene(Plane::Strain).force(at, force).with_method(warpbeam::MethodKind::Linear);

@@ -41,8 +41,8 @@ fn its_error_goes_with_the_power_of_the_step_it_says(entry: Entry) {
         scene.dynamics.iterations = 0;
         scene.solver.tolerance = 1e-12;
         let mut simulation = Simulation::new(&scene).unwrap();
-        // The amplitude is so small that only the first mode moves: modes along the beam grow with the square of the
-        // amplitude.
+        // The amplitude is so small that only the first mode moves: modes along the beam grow with
+        // the square of the amplitude.
         let mode: Vec<_> = first_mode(&simulation).into_iter().map(|u| u * 1e-6).collect();
         simulation.start_from(&mode).unwrap();
         for _ in 0..steps << halvings {

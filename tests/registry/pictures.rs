@@ -25,8 +25,8 @@ pub fn trials() -> Vec<Trial> {
     suite("picture", registry::BUILT_IN.iter().map(|b| (b.id.to_owned(), b.id)), TESTS)
 }
 
-/// Compares the output of `warpbeam shot` with the golden picture, without the panel (whose times differ from run to
-/// run).
+/// Compares the output of `warpbeam shot` with the golden picture, without the panel (whose
+/// times differ from run to run).
 fn it_is_the_golden_one(id: &'static str, theme: &str) {
     const TOLERANCE: f64 = 2e-3;
     let folder = tempfile::tempdir().unwrap();

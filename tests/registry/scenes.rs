@@ -54,8 +54,8 @@ fn it_runs_to_its_end(id: &'static str) {
         assert_eq!(solution.deformation.inverted_elements, 0, "{}", integrator.id);
         let ledger = solution.motion.unwrap().ledger;
         assert!(ledger.imbalance().abs() < 1e-11 * ledger.throughput, "{}: {ledger:?}", integrator.id);
-        // For finite differences, the rounding of the time step in the work of pulses and damping counts as the
-        // integrator's.
+        // For finite differences, the rounding of the time step in the work of pulses and damping
+        // counts as the integrator's.
         let allowed = if integrator.kind == IntegratorKind::EnergyMomentum { 1e-6 } else { 1e-3 };
         assert!(ledger.drift() < allowed, "{} gains energy: {ledger:?}", integrator.id);
     }
