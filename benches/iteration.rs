@@ -1,7 +1,8 @@
-//! Rotation, assembly, factorization, solve, edits and the whole iteration, at four sizes of the same cantilever; the sweep in
-//! nanoseconds an element; and an iteration over a plain loop of sweep, factorization and solve.
+//! Benchmarks of rotation, assembly, factorization, solve, edits and a whole iteration at four sizes of the same
+//! cantilever. Prints the time of a sweep, in nanoseconds per element, and the time of an iteration relative to a plain
+//! loop of sweep, factorization and solve.
 //!
-//! `cargo bench` reports medians of this machine; compare them with each other, not with another machine's.
+//! `cargo bench` reports medians of this machine; do not compare them with those of another machine.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
 
 use std::hint::black_box;
@@ -22,7 +23,7 @@ fn scene(id: &str, set: &[String]) -> Scene {
     open(&Source { name: id.into(), assignments: set.to_vec() }).unwrap()
 }
 
-/// A cantilever of about 120, 1 440, 5 440 and 20 000 unknowns.
+/// Returns a cantilever with about 120, 1 440, 5 440 and 20 000 unknowns.
 fn sizes() -> Vec<Scene> {
     [[20, 2], [80, 8], [160, 16], [320, 30]]
         .map(|[nx, ny]| scene("cantilever", &[format!("beam.cells=[{nx},{ny}]")]))
@@ -34,7 +35,7 @@ fn stages(c: &mut Criterion) {
         let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
         let system = problem.system();
         let dofs = system.dofs();
-        // A state with all rotations different.
+        // State in which all rotations differ.
         let bent: Vec<Vector2<f64>> =
             system.mesh().nodes().iter().map(|x| Rotation::from_angle(-0.05 * x.x).apply(*x) - x).collect();
         let mut state = system.state_of(&bent).unwrap();
@@ -66,7 +67,7 @@ fn stages(c: &mut Criterion) {
     }
 }
 
-/// What an edit costs beside one evaluation of the residual and one assembly: see `force` and `force and A` above.
+/// Benchmarks edits. Compare them with one evaluation of the residual (`force` above) and one assembly (`force and A`).
 fn edits(c: &mut Criterion) {
     for scene in sizes() {
         let mut simulation = Simulation::new(&scene).unwrap();
@@ -89,7 +90,7 @@ fn edits(c: &mut Criterion) {
     }
 }
 
-/// One iteration of every method, from rest.
+/// Benchmarks one iteration of every method, from rest.
 fn iterations(c: &mut Criterion) {
     for entry in METHODS {
         for mut scene in sizes() {
@@ -106,7 +107,6 @@ fn iterations(c: &mut Criterion) {
     }
 }
 
-/// The median of some times.
 fn median(mut times: Vec<Duration>) -> Duration {
     times.sort_unstable();
     times[times.len() / 2]
@@ -118,8 +118,9 @@ fn time(work: impl FnOnce()) -> Duration {
     start.elapsed()
 }
 
-/// One sweep, rotations and forces included, in nanoseconds an element; and the first iteration from rest over a plain
-/// loop, which factorizes and solves with the same ordering, sweeps, and does nothing else. The two take turns.
+/// Prints the time of one sweep with rotations and forces, in nanoseconds per element, and the time of the first
+/// iteration from rest relative to a plain loop. The plain loop factorizes and solves with the same ordering, sweeps,
+/// and does nothing else. The two are timed alternately.
 fn sweeps(_: &mut Criterion) {
     println!("one sweep, ns an element; an iteration over a plain loop of factorization, solve and sweep");
     println!("element  unknowns  force only       A   A + G  warped / plain  newton / plain");
@@ -177,7 +178,7 @@ fn sweeps(_: &mut Criterion) {
     }
 }
 
-/// Every built-in scene, from rest to the end.
+/// Benchmarks the solution of every built-in scene, from rest.
 fn scenes(c: &mut Criterion) {
     for built_in in registry::BUILT_IN {
         let mut simulation = Simulation::new(&scene(built_in.id, &[])).unwrap();

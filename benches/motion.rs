@@ -1,6 +1,7 @@
-//! The swing at two sizes: time a simulated half second under `newton`, which refactorizes every stage, and under `auto`.
+//! Time per simulated half second of the swing at two sizes, under `newton`, which refactorizes in
+//! every stage, and under `auto`.
 //!
-//! The ratio that is printed at the end is that of the fastest rounds of one run.
+//! The ratio printed at the end compares the fastest rounds of one run.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
 
 use std::time::{Duration, Instant};
@@ -18,7 +19,7 @@ fn swing(cells: &str, integrator: IntegratorKind, method: MethodKind) -> Scene {
     scene
 }
 
-/// A run of [`STEPS`] from the start, the ledger not kept.
+/// Runs [`STEPS`] steps from the start without keeping the ledger, and returns the time.
 fn run(simulation: &mut Simulation) -> Duration {
     simulation.reset();
     let start = Instant::now();

@@ -1,5 +1,5 @@
-//! What a frame of the window costs to draw, offscreen at 1280×800, and each of its stages: with the panel, without it, and of a
-//! fine mesh.
+//! Time to draw a frame of the window offscreen at 1280×800, in total and by stage: with the panel,
+//! without it, and for a fine mesh.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a bench may fail")]
 
 use std::time::Duration;
@@ -37,7 +37,7 @@ fn frames(c: &mut Criterion) {
     }
 }
 
-/// Prints the medians of the stages over some frames.
+/// Prints the median time of each stage.
 fn print_stages(mut frame: impl FnMut() -> FrameTimes) {
     const FRAMES: usize = 41;
     let frames: Vec<FrameTimes> = (0..FRAMES).map(|_| frame()).collect();

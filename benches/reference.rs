@@ -1,5 +1,5 @@
-//! The reference solution of every built-in scene: its source, its own error, and the time that it takes over the time of one
-//! solve of the scene. Prints the table of `docs/accuracy.md`: `cargo bench --bench reference`.
+//! Computes the reference solution of every built-in scene and prints its source, its own error, and its time relative
+//! to one solve of the scene. This is the table of `docs/accuracy.md`: `cargo bench --bench reference`.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
 
 use std::ops::ControlFlow;
@@ -11,7 +11,7 @@ use warpbeam::study::motion::MotionReference;
 use warpbeam::study::{Effort, Extent, Reference, StudyError};
 use warpbeam::words;
 
-/// Rounds whose median is taken.
+/// Number of timed rounds; the median is printed.
 const ROUNDS: usize = 5;
 
 fn main() {

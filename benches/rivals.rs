@@ -1,5 +1,5 @@
-//! One step of rapier2d's soft bodies beside one iteration of `newton`, on the same meshes:
-//! `cargo bench --features rivals --bench rivals`. What such steps are worth, the program `rivals` says.
+//! Compares one step of rapier2d's soft bodies with one iteration of `newton` on the same meshes: `cargo bench
+//! --features rivals --bench rivals`. The program `rivals` reports how accurate such steps are.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
 
 #[path = "../src/bin/rivals/rapier.rs"]

@@ -1,5 +1,5 @@
-//! A game that bends a beam within a time budget: every displayed frame edits the force and iterates until the budget is
-//! used up or the beam is in equilibrium.
+//! A game that bends a beam within a time budget. Every displayed frame edits the force and iterates until the budget
+//! is used up or the beam is in equilibrium.
 //!
 //! `cargo run --release --example game_loop --no-default-features`
 
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use warpbeam::{MethodKind, Scene, Simulation, Status};
 
-/// What the game leaves for the beam in a frame of 16 ms.
+/// Time that the game leaves for the beam in a frame of 16 ms.
 const BUDGET: Duration = Duration::from_millis(2);
 const FRAMES: u32 = 120;
 
@@ -18,7 +18,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Plays all frames; returns how many ended in equilibrium, and how far the tip is from rest at the end, m.
+/// Plays all frames. Returns how many ended in equilibrium, and the distance of the tip from its
+/// rest position at the end, m.
 pub fn play() -> Result<(u32, f64), Box<dyn Error>> {
     let scene = Scene::beam(4.0, 0.4)
         .with_cells(16, 1)
@@ -29,7 +30,7 @@ pub fn play() -> Result<(u32, f64), Box<dyn Error>> {
     let mut beam = Simulation::new(&scene)?;
     let mut finished = 0;
     for frame in 0..FRAMES {
-        // A gust that grows and turns; nothing but the load is computed anew by the edit.
+        // A gust that grows and rotates. The edit recomputes nothing but the load.
         let (s, c) = (f64::from(frame) * 0.05).sin_cos();
         beam.set_force(0, [200.0 * s, -600.0 * s * c])?;
         let start = Instant::now();
@@ -38,7 +39,7 @@ pub fn play() -> Result<(u32, f64), Box<dyn Error>> {
         }
         match beam.status() {
             Status::Converged => finished += 1,
-            // Out of time: the next frame goes on from here.
+            // Out of time: the next frame continues from this state.
             Status::Running => {}
             failed => eprintln!("frame {frame}: {failed:?}"),
         }

@@ -1,5 +1,5 @@
-//! A student's load curve: the tip of a slender beam under a growing force, by linear theory and with large rotations,
-//! beside the exact beam, as CSV.
+//! Writes a load curve as CSV: the tip deflection of a slender beam under a growing force, by linear theory, with large
+//! rotations, and of the exact beam.
 //!
 //! `cargo run --release --example load_curve --no-default-features -- curve.csv`
 
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The curve: load in units of E I / L², and the tip's deflection over the length.
+/// Returns the curve as CSV: load in units of E I / L², and deflection of the tip over the length.
 pub fn curve() -> Result<String, Box<dyn Error>> {
     let (length, height) = (1.0, 0.02);
     let material = Material { thickness: 0.05, ..Material::new(2.1e11, 0.0) };
@@ -28,7 +28,7 @@ pub fn curve() -> Result<String, Box<dyn Error>> {
         .force("right", [0.0, 0.0])
         .probe("tip", "right");
     let mut linear = Simulation::new(&scene.clone().with_method(MethodKind::Linear))?;
-    // Both solve on the same equations.
+    // Both simulations share one system of equations.
     let mut newton = Simulation::with_system(&scene, linear.system().clone())?;
     let mut csv = String::from("alpha,linear_w_over_l,newton_w_over_l,exact_w_over_l\n");
     for i in 1..=20 {

@@ -1,4 +1,4 @@
-//! A mesh from Gmsh, solved and studied: how far off each element and method is on it, and what they cost here.
+//! Solves and studies a mesh from Gmsh: the error of each element and method on it, and their cost on this machine.
 //!
 //! `cargo run --release --example mesh_study --no-default-features`
 
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The result and the study of the bracket, whose scene file is in this folder.
+/// Returns a report on the solution and the study of the bracket, whose scene file is in `folder`.
 pub fn report(folder: &Path) -> Result<String, Box<dyn Error>> {
     let text = std::fs::read_to_string(folder.join("bracket.toml"))?;
     let scene = Scene::from_toml_in(&text, folder)?;

@@ -1,5 +1,5 @@
-//! After the first one a frame allocates nothing: a time step under every integrator, an iteration of every method, an
-//! edit of a force, a pull of a hand.
+//! After the first few steps nothing is allocated by a time step under every integrator, an iteration of every method,
+//! an edit of a force, or a pull of the mouse spring.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -13,7 +13,7 @@ use warpbeam::method::METHODS;
 use warpbeam::scene::Analysis;
 use warpbeam::{MethodKind, Simulation};
 
-/// Steps that may allocate: what is made when it is first needed.
+/// Number of first steps that may allocate, because some memory is allocated on first use.
 const FIRST: u32 = 3;
 
 fn allocations(mut work: impl FnMut()) -> u64 {
@@ -37,7 +37,7 @@ fn time_steps_allocate_nothing() {
                 (0..FIRST).for_each(|_| drop(simulation.step().clone()));
                 let made = allocations(|| (0..20).for_each(|_| drop(simulation.step().clone())));
                 assert_eq!(made, 0, "{id} {} {} {iterations} {method:?}", integrator.id, element.id);
-                // A hand that pulls costs no more.
+                // A pull of the mouse spring allocates nothing either.
                 let point = simulation.system().mesh().locate(simulation.system().mesh().nodes()[1]).unwrap();
                 assert!(simulation.grab(point));
                 (0..FIRST).for_each(|_| drop(simulation.step().clone()));

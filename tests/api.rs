@@ -1,4 +1,4 @@
-//! Every public constructor with short, long, empty, non-finite and out-of-range input: typed errors, no panic.
+//! Every public constructor with short, long, empty, non-finite and out-of-range input gives typed errors and no panic.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -41,7 +41,7 @@ fn states_of_other_bodies_are_refused() {
     }
     assert_eq!(*simulation.state(), before, "a refused state changes nothing");
     assert!(simulation.restore(Simulation::new(&scene("article")).unwrap().state()).is_err());
-    // Huge, but finite: it ends in words.
+    // Huge, but finite: the solve ends with a status.
     simulation.start_from(&vec![Vector2::new(1e300, -1e300); nodes]).unwrap();
     simulation.solve();
     assert!(simulation.state().is_finite() && *simulation.status() != Status::Running);
@@ -104,13 +104,13 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
         assert!(Problem::new(&scene, system.clone()).is_err());
         assert!(Reference::of(&scene).is_err());
         assert!(LoadCurve::new(&scene).is_none(), "{scene:?}");
-        // On another mesh its own geometry is not read; everything else is checked all the same.
+        // With another mesh, the scene's own geometry is not used; everything else is validated.
         let geometry_alone = scene.validate().is_err() && Simulation::with_mesh(&scene, mesh.clone()).is_ok();
         if geometry_alone {
             let of_geometry = |e: String| e.starts_with("beam") || e.starts_with("mesh");
             assert!(of_geometry(scene.validate().unwrap_err().to_string()), "{scene:?}");
         }
-        // An edit is refused as a new simulation is.
+        // An edit is refused for the same scenes as a new simulation.
         assert!(solved(&good()).change_scene(&scene).is_err(), "{scene:?}");
     }
 }
@@ -198,7 +198,7 @@ fn truths_and_words_take_any_number() {
         assert_eq!(beam.tip(), None, "a length of {bad}");
         let beam = ClampedBeam { length: 1.0, bending: bad, ..beam };
         match beam.tip() {
-            // A beam that a load cannot bend.
+            // A beam with zero compliance, which a load cannot bend.
             Some(tip) => assert!(bad.is_finite() && (tip.x - Vector2::x()).norm() < 1e-12, "{bad}: {tip:?}"),
             None => assert!(!bad.is_finite(), "a bending stiffness of {bad}"),
         }

@@ -1,16 +1,17 @@
-//! The layers of `src`: a file imports only from its own layer and those before it, and no files import each other in a
-//! circle.
+//! Tests of the layers of `src`: a file imports only from its own layer and lower ones, and no files
+//! import each other in a circle.
 //!
-//! The imports are read from the text: `use` declarations, also through re-exports, and paths that begin with `crate::`,
-//! `super::` or `self::`. A macro or a method call that reaches another file without such a path is not seen.
+//! The imports are read from the text: `use` declarations, also through re-exports, and paths that
+//! begin with `crate::`, `super::` or `self::`. Macros and method calls that reach another file without
+//! such a path are not detected.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Layers from the lowest to the highest, with their files and folders in `src`. The longest entry counts; `lib` is the
-/// crate's root.
+/// Layers from the lowest to the highest, with their files and folders in `src`. The longest matching entry counts;
+/// `lib` is the crate's root.
 const LAYERS: &[(&str, &[&str])] = &[
     ("foundations", &["words", "timings", "lanes", "picture"]),
     ("model", &["model"]),
@@ -42,13 +43,13 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("crate", &["lib"]),
 ];
 
-/// A module by its path from the crate's root: `["scene", "registry"]`.
+/// Path of a module from the crate's root: `["scene", "registry"]`.
 type Module = Vec<String>;
 
 /// Text and imports of a file.
 struct Source {
     file: PathBuf,
-    /// The text without comments, strings, imports and unit tests.
+    /// Text without comments, strings, imports and unit tests.
     code: String,
     /// Imported paths, with the names that they have in the module.
     uses: Vec<(Vec<String>, String)>,
@@ -56,7 +57,7 @@ struct Source {
 
 type Sources = BTreeMap<Module, Source>;
 
-/// Imports of every module: imported module, and the path that names it.
+/// Imports of every module: the imported module, and the path that names it.
 type Imports = BTreeMap<Module, BTreeMap<Module, String>>;
 
 #[test]
@@ -120,7 +121,7 @@ fn circles_and_imports_through_re_exports_are_found() {
     assert!(circles.len() == 1 && circles[0].contains("low.rs") && circles[0].contains("inner.rs"), "{circles:?}");
 }
 
-/// The position of a module's layer in [`LAYERS`].
+/// Returns the position of a module's layer in [`LAYERS`].
 fn layer(module: &[String]) -> Option<usize> {
     if module.is_empty() {
         return LAYERS.iter().position(|(_, entries)| entries.contains(&"lib"));
@@ -149,7 +150,7 @@ fn sources(root: &Path) -> Sources {
             } else if file.extension().is_some_and(|extension| extension == "rs") {
                 let relative = file.strip_prefix(root).unwrap().with_extension("");
                 let mut module: Module = relative.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
-                // The programs are crates of their own; tests may import everything.
+                // Programs are separate crates, and tests may import everything.
                 if module[0] == "main" || module[0] == "bin" || module.last().is_some_and(|name| name == "tests") {
                     continue;
                 }
@@ -184,7 +185,7 @@ fn code(text: &str) -> String {
     code
 }
 
-/// Takes the imports of a module out of its code, with the names that they have there.
+/// Splits a module's code into the code without imports and the imported paths, with the names that they have there.
 fn take_uses(code: &str) -> (String, Vec<(Vec<String>, String)>) {
     let (mut rest, mut uses) = (String::new(), Vec::new());
     for statement in code.split_inclusive(';') {
@@ -203,7 +204,7 @@ fn take_uses(code: &str) -> (String, Vec<(Vec<String>, String)>) {
     (rest, uses)
 }
 
-/// Adds every path of a tree of imports: `a::{b, c as d}`.
+/// Adds every path of an import tree such as `a::{b, c as d}`.
 fn flatten(before: &[String], tree: &str, uses: &mut Vec<(Vec<String>, String)>) {
     let tree = tree.trim();
     let names =
@@ -216,7 +217,7 @@ fn flatten(before: &[String], tree: &str, uses: &mut Vec<(Vec<String>, String)>)
             depth += i32::from(c == '{') - i32::from(c == '}');
             c == ',' && depth == 0
         });
-        // The closing brace of an inner group that was cut off above is not needed.
+        // The closing brace of an inner group that was removed above is not needed.
         parts.filter(|part| !part.trim().is_empty()).for_each(|part| flatten(&before, part, uses));
         return;
     }
@@ -228,7 +229,7 @@ fn flatten(before: &[String], tree: &str, uses: &mut Vec<(Vec<String>, String)>)
     }
 }
 
-/// Imports of every module.
+/// Returns the imports of every module.
 fn imports(sources: &Sources) -> Imports {
     let mut imports = Imports::new();
     for (module, source) in sources {
@@ -247,7 +248,7 @@ fn imports(sources: &Sources) -> Imports {
         for path in paths {
             let Some(absolute) = absolute(sources, module, &path) else { continue };
             let Some(imported) = definition(sources, &absolute, &mut BTreeSet::new()) else { continue };
-            // A module and its children are one; a child may use its parents.
+            // A module and its children count as one; a child may use its parents.
             if !module.starts_with(&imported) {
                 imports.entry(module.clone()).or_default().insert(imported, path.join("::"));
             }
@@ -256,7 +257,7 @@ fn imports(sources: &Sources) -> Imports {
     imports
 }
 
-/// The path from the crate's root; `None` if it leads to another crate.
+/// Returns the path from the crate's root; `None` if it leads to another crate.
 fn absolute(sources: &Sources, module: &[String], path: &[String]) -> Option<Vec<String>> {
     match path.first()?.as_str() {
         "crate" => Some(path[1..].to_vec()),
@@ -272,7 +273,7 @@ fn absolute(sources: &Sources, module: &[String], path: &[String]) -> Option<Vec
     }
 }
 
-/// The module that defines the last name of a path, through re-exports.
+/// Returns the module that defines the last name of a path, through re-exports.
 fn definition(sources: &Sources, path: &[String], seen: &mut BTreeSet<Vec<String>>) -> Option<Module> {
     let length = (0..=path.len()).rev().find(|&length| sources.contains_key(&path[..length]))?;
     let module = &path[..length];
@@ -286,7 +287,7 @@ fn definition(sources: &Sources, path: &[String], seen: &mut BTreeSet<Vec<String
     Some(module.to_vec())
 }
 
-/// A line for every circle of files that import each other.
+/// Returns one line for every circle of files that import each other.
 fn circles(imports: &Imports) -> Vec<String> {
     let reaches = |from: &Module| {
         let (mut reached, mut next) = (BTreeSet::new(), vec![from]);

@@ -1,4 +1,5 @@
-//! `auto` leaves out what a scene does not need, and stays within the asked error of the exact equilibrium.
+//! Tests of `auto`: it skips work that a scene does not need, and its result is within the requested
+//! error of the exact equilibrium.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -24,7 +25,7 @@ fn run(scene: &Scene, method: MethodKind) -> Simulation {
     simulation
 }
 
-/// The distance of two results at the first probe, percent of the second's displacement.
+/// Returns the distance of two results at the first probe, percent of the second's displacement.
 fn distance(a: &Simulation, b: &Simulation) -> f64 {
     let [a, b] = [a, b].map(|s| s.problem().probes()[0].mean(s.displacement()));
     100.0 * (a - b).norm() / b.norm()
@@ -34,8 +35,8 @@ fn report(simulation: &Simulation) -> AutoReport {
     simulation.auto_report().unwrap()
 }
 
-/// Every scene and element, loads over five decades: the result is within the asked error of Newton's, linear theory is
-/// used where it serves and nowhere else.
+/// For every scene and element and loads over five decades, the result is within the requested error of Newton's.
+/// Linear theory is used where it is accurate enough, and nowhere else.
 #[test]
 fn every_result_is_within_the_asked_error() {
     let mut served = 0;
@@ -57,8 +58,8 @@ fn every_result_is_within_the_asked_error() {
                 let is_linear = report(&auto).decision == Decision::Linear;
                 assert_eq!(is_linear, auto.is_linear());
                 served += u32::from(is_linear);
-                // The estimate is of the largest displacement too, not only of the probe's. Linear theory is not asked where
-                // supports move.
+                // The estimate also covers the largest displacement, not only the probe's. Linear theory is
+                // not tried where supports move.
                 let may_skip = !auto.problem().supports().move_the_body();
                 assert!(
                     is_linear || !may_skip || linear > 0.1 * asked,
@@ -70,7 +71,7 @@ fn every_result_is_within_the_asked_error() {
     assert!(served > 150, "{served}");
 }
 
-/// Against the exact beam too, on a mesh that is good enough for it.
+/// Results are within the requested error of the exact beam, too, on a sufficiently fine mesh.
 #[test]
 fn results_stay_within_the_asked_error_of_the_truth() {
     for id in ["cantilever", "elastica"] {
@@ -92,13 +93,13 @@ fn results_stay_within_the_asked_error_of_the_truth() {
     }
 }
 
-/// A load that grows and turns a little every frame, as under a slider: the old factor serves most frames, and every
-/// frame is within the asked error.
+/// A load that grows and rotates a little in every frame, as with a slider: most frames reuse the old factor, and every
+/// frame is within the requested error.
 #[test]
 fn a_dragged_load_seldom_needs_a_new_factor() {
     for id in ["cantilever", "elastica"] {
         drag(scene(id), 60, 1.0);
-        // So slowly that one step's length says nothing of how far the factor is behind.
+        // The load changes so slowly that the length of one step does not show how outdated the factor is.
         drag(scene(id), 300, 0.2);
     }
 }
@@ -153,7 +154,7 @@ fn where_nothing_has_changed_nothing_is_solved() {
         assert_eq!(report(&auto).decision, Decision::Unchanged);
         assert_eq!((report(&auto).solves, report(&auto).factorizations), (0, 0));
         assert_eq!(auto.displacement(), before);
-        // More accuracy is a change; less is none.
+        // A smaller allowed error requires another solve; a larger one does not.
         for (asked, solves) in [(5.0, false), (1e-4, true)] {
             let estimate = report(&auto).estimated_error;
             scene.solver.max_error_percent = asked;
@@ -170,7 +171,7 @@ fn where_nothing_has_changed_nothing_is_solved() {
     }
 }
 
-/// A small load again and again costs one factorization in all, and three back substitutions a frame.
+/// Repeated small loads cost one factorization in total, and three back substitutions per frame.
 #[test]
 fn under_small_loads_nothing_is_factorized() {
     let mut scene = scaled(&scene("cantilever"), 1e-3);
@@ -186,7 +187,7 @@ fn under_small_loads_nothing_is_factorized() {
     }
 }
 
-/// Another stiffness makes the old factors useless.
+/// A changed stiffness makes the old factors useless.
 #[test]
 fn a_new_stiffness_is_factorized_anew() {
     for factor in [1e-3, 1.0] {
@@ -204,7 +205,7 @@ fn a_new_stiffness_is_factorized_anew() {
     }
 }
 
-/// A column pressed straight is its own linear solution, and beyond Euler's load an unstable one.
+/// The straight state of a compressed column is its own linear solution; beyond Euler's load it is unstable.
 #[test]
 fn an_unstable_linear_solution_is_not_taken() {
     let mut column = scene("elastica");

@@ -1,4 +1,4 @@
-//! Whole beams: beam theory, equilibrium, the article's frame, independence of the frame of reference.
+//! Tests of whole beams: beam theory, equilibrium, the article's frame, and independence of the frame of reference.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -20,7 +20,7 @@ fn with_method(mut scene: Scene, method: MethodKind) -> Scene {
     scene
 }
 
-/// Linear tip stiffness against P L³/3EI + 6 P L/5GA (Timoshenko): its error, locking, falls as h².
+/// Linear tip stiffness against P L³/3EI + 6 P L/5GA (Timoshenko): the locking error decreases as h².
 #[test]
 fn linear_deflection_converges_to_beam_theory_with_rate_2() {
     let errors: Vec<f64> = [[20, 4], [40, 8], [80, 16], [160, 32]]
@@ -41,7 +41,7 @@ fn linear_deflection_converges_to_beam_theory_with_rate_2() {
     assert!(errors[3] < 1e-2, "{errors:?}");
 }
 
-/// Rotation by identity gives linear FEM back: for a small load both methods agree to second order.
+/// With identity rotations the warped method is linear FEM: for small loads both agree to second order.
 #[test]
 fn warped_becomes_linear_for_small_loads() {
     let mut differences = Vec::new();
@@ -58,7 +58,8 @@ fn warped_becomes_linear_for_small_loads() {
     }
 }
 
-/// A load so small that u has few digits next to X still converges: strains come from displacements.
+/// A load so small that u has few digits relative to X still converges, because strains are
+/// computed from displacements.
 #[test]
 fn tiny_loads_keep_their_digits() {
     let reference = solution(&scene_with("cantilever", &["load.0.force=[0,-1e-3]"])).probes[0].u.y / 1e-3;
@@ -69,7 +70,7 @@ fn tiny_loads_keep_their_digits() {
     }
 }
 
-/// The whole scene turned, loads and all: the warped result turns with it, exactly.
+/// If the whole scene is rotated, including its loads, the warped result rotates with it.
 #[test]
 fn the_result_does_not_depend_on_the_frame_of_reference() {
     for id in ["article", "gravity", "bridge", "shear"] {
@@ -103,8 +104,8 @@ fn the_result_does_not_depend_on_the_frame_of_reference() {
     }
 }
 
-/// The article's frame with its own matrices, dense: m_cMatRK, m_cMatRKRT, R K X, 24 → 20, solve, 20 → 24, element
-/// maps, polar decomposition. Every frame of `warped` gives the same positions.
+/// The article's frame, computed with its own dense matrices: m_cMatRK, m_cMatRKRT, R K X, 24 → 20, solve, 20 → 24,
+/// element maps, polar decomposition. Every frame of `warped` gives the same positions.
 #[test]
 fn warped_frames_are_the_articles_frames() {
     let scene = scene("article");
@@ -165,7 +166,8 @@ fn warped_frames_are_the_articles_frames() {
     }
 }
 
-/// Linear theory swells the beam under a large load, the warped one keeps its length (the article's figure 1).
+/// Under a large load, the beam grows in linear theory and keeps its length in the warped
+/// formulation (the article's figure 1).
 #[test]
 fn linear_theory_swells_and_warping_does_not() {
     let scene = scene("cantilever");
@@ -184,8 +186,8 @@ fn linear_theory_swells_and_warping_does_not() {
     assert!(linear > 1.1, "{linear}");
 }
 
-/// The converged tip under a moderate load, against the geometrically exact beam: `method.md` measured −3.7 % at α = 1
-/// for this mesh.
+/// The converged tip displacement under a moderate load, against the geometrically exact beam: `method.md` gives −3.7 %
+/// at α = 1 for this mesh.
 #[test]
 fn the_warped_cantilever_has_the_measured_locking_error() {
     // α = P L²/(E I) = 1, ν = 0.
@@ -196,7 +198,7 @@ fn the_warped_cantilever_has_the_measured_locking_error() {
     assert!((error + 0.037).abs() < 0.002, "{error}");
 }
 
-/// A load beyond what the iteration can do: said to diverge, the state finite; lower loads recover.
+/// A load too large for the iteration is reported as diverged with a finite state, and smaller loads converge again.
 #[test]
 fn too_large_a_load_diverges_in_words_and_recovers() {
     let heavy = scene_with("cantilever", &["load.0.force=[0,-9000]"]);

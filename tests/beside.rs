@@ -1,4 +1,5 @@
-//! Large bodies are meshed and solved beside the window, which goes on meanwhile. Here every body is large.
+//! Tests of background solves: large models are meshed and solved in the background while the window stays responsive.
+//! In these tests every model counts as large.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -16,7 +17,7 @@ use warpbeam::app::Lab;
 use warpbeam::scene::{Load, MethodKind, Scene, Source};
 use warpbeam::simulation::{Simulation, Status};
 
-/// A window in which nothing is solved between two frames; every frame is checked.
+/// Returns a window that solves everything in the background; every frame is checked.
 fn harness(id: &str) -> Harness<'static, Lab> {
     let scene = scene(id);
     let simulation = Simulation::new(&scene).unwrap();
@@ -36,7 +37,7 @@ fn harness(id: &str) -> Harness<'static, Lab> {
     harness
 }
 
-/// Frames until nothing is left to do beside the window.
+/// Runs frames until no background solve is left.
 fn settle(harness: &mut Harness<'_, Lab>) {
     wait(harness, |lab| !lab.is_working() && !lab.iterates());
 }
@@ -49,7 +50,7 @@ fn wait(harness: &mut Harness<'_, Lab>, holds: impl Fn(&Lab) -> bool) {
     }
 }
 
-/// The corners of the body's triangles, m, element by element; nothing of other elements.
+/// Returns the corners of the body's triangles, m, element by element; empty for other elements.
 fn body(lab: &Lab) -> Vec<Vector2<f64>> {
     let simulation = lab.simulation();
     let mesh = simulation.system().mesh();
@@ -60,8 +61,8 @@ fn body(lab: &Lab) -> Vec<Vector2<f64>> {
     mesh.elements().flat_map(|nodes| nodes.iter().map(place).collect::<Vec<_>>()).collect()
 }
 
-/// Body, arrows, linear outline and what is drawn are of one mesh and one load: that of the simulation, as it is or as it
-/// was `before` this frame's clicks.
+/// Checks that body, arrows, linear outline and drawing belong to one mesh and one load: those of the simulation, after
+/// this frame's clicks or `before` them.
 fn is_of_one_state(lab: &Lab, before: &[Vector2<f64>]) {
     let simulation = lab.simulation();
     assert_eq!(simulation.displacement().len(), simulation.system().mesh().nodes().len());
@@ -79,7 +80,7 @@ fn is_of_one_state(lab: &Lab, before: &[Vector2<f64>]) {
     }
 }
 
-/// What is shown in the end is what a solve of the scene that is wanted gives.
+/// Checks that the displayed result equals a solve of the requested scene.
 fn agrees_with_solve(lab: &Lab) {
     assert_eq!(lab.scene(), lab.simulation().scene());
     assert_eq!(*lab.simulation().status(), Status::Converged);
@@ -91,10 +92,10 @@ fn agrees_with_solve(lab: &Lab) {
     assert!(lab.simulation().certificate().is_some(), "it is not certified");
 }
 
-/// What a user does.
+/// Action of a user.
 type Edit = &'static dyn Fn(&mut Harness<'_, Lab>);
 
-/// Every way to change a scene ends where a solve of it ends.
+/// Every kind of edit ends with the result of a solve.
 #[test]
 fn every_edit_goes_through_the_worker_and_ends_where_solve_ends() {
     let mut harness = harness("cantilever");
@@ -121,7 +122,7 @@ fn every_edit_goes_through_the_worker_and_ends_where_solve_ends() {
     }
 }
 
-/// Paused, single steps and going on are what they are between frames.
+/// Pausing, single steps and continuing work in the background as they do between frames.
 #[test]
 fn a_body_beside_the_window_is_paused_and_stepped() {
     let mut harness = harness("article");
@@ -132,7 +133,7 @@ fn a_body_beside_the_window_is_paused_and_stepped() {
     harness.key_press(Key::N);
     settle(&mut harness);
     assert_eq!(harness.state().simulation().iterations(), 2);
-    // Paused, an edit leaves the body where it is.
+    // While paused, an edit does not change the body.
     let u = harness.state().simulation().displacement().to_vec();
     type_into(&mut harness, "Force", "12000");
     settle(&mut harness);
@@ -150,12 +151,13 @@ fn a_body_beside_the_window_is_paused_and_stepped() {
     agrees_with_solve(harness.state());
 }
 
-/// A mesh that takes long enough to be met on its way, under another load.
+/// Returns a scene with another load whose mesh takes long enough to be interrupted.
 fn large() -> Scene {
     scene_with("cantilever", &["beam.cells=[400,40]", "load.0.force=[0,-700]"])
 }
 
-/// While a mesh is made the picture before stays, says what is done, and comes back where that is cancelled.
+/// While a mesh is created, the previous picture stays with a status text, and the previous
+/// scene is restored on cancel.
 #[test]
 fn cancel_brings_back_what_was() {
     let mut harness = harness("cantilever");
@@ -178,11 +180,11 @@ fn cancel_brings_back_what_was() {
     assert_eq!(harness.state().simulation().displacement(), before.1);
     assert_eq!(harness.state().frame().positions, shown);
     agrees_with_solve(harness.state());
-    // The body can be bent as before.
+    // The body can still be bent.
     type_into(&mut harness, "Force", "500");
     settle(&mut harness);
     agrees_with_solve(harness.state());
-    // On the way to an equilibrium, too: by key.
+    // The key cancels during the search for an equilibrium, too.
     let before = (harness.state().scene().clone(), harness.state().simulation().displacement().to_vec());
     harness.state_mut().set_scene(before.0.clone().with_cells(300, 30)).unwrap();
     wait(&mut harness, |lab| lab.simulation().scene() != &before.0);
@@ -195,7 +197,7 @@ fn cancel_brings_back_what_was() {
     agrees_with_solve(harness.state());
 }
 
-/// A dragged slider asks for many meshes, and few are made: one at a time, the last one among them.
+/// A dragged slider requests many meshes, of which few are created: one at a time, and always the last one.
 #[test]
 fn a_dragged_slider_makes_few_bodies() {
     let mut harness = harness("cantilever");
@@ -223,13 +225,13 @@ fn a_dragged_slider_makes_few_bodies() {
     assert!(shown.len() <= wanted.len(), "{} meshes were shown", shown.len());
     assert_eq!(harness.state().scene(), wanted.last().unwrap());
     agrees_with_solve(harness.state());
-    // One drag is one step.
+    // One drag is one undo step.
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut harness);
     assert_eq!(*harness.state().scene(), scene("cantilever"));
 }
 
-/// What is wrong with a mesh is found beside the window, and said at the control; nothing is changed.
+/// An error in a mesh is found in the background and shown at its control; the scene is unchanged.
 #[test]
 fn what_is_wrong_is_said_and_nothing_is_changed() {
     let mut harness = harness("cantilever");
@@ -243,7 +245,7 @@ fn what_is_wrong_is_said_and_nothing_is_changed() {
     agrees_with_solve(harness.state());
 }
 
-/// A lab that is dropped ends what it has begun.
+/// A dropped lab stops its background solve.
 #[test]
 fn a_dropped_lab_ends_its_worker() {
     let mut lab = {
@@ -266,7 +268,7 @@ fn a_dropped_lab_ends_its_worker() {
     }
 }
 
-/// Solved at once, for a picture, is what it is beside the window.
+/// The blocking solve, which is used for pictures, gives the result of a background solve.
 #[test]
 fn solve_waits_for_the_worker() {
     let scene = scene("cantilever");

@@ -1,4 +1,5 @@
-//! Two parts from Gmsh beside CalculiX 2.20 on the same nodes; `tests/data/calculix/make.py` makes its numbers.
+//! Compares two parts from Gmsh with CalculiX 2.20 on the same nodes;
+//! `tests/data/calculix/make.py` computes its numbers.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -7,12 +8,12 @@ use common::{scene, scene_with, solved};
 use nalgebra::Vector2;
 use warpbeam::Simulation;
 
-/// A row of `results.csv`.
+/// Row of `results.csv`.
 struct Row {
     scene: &'static str,
     method: &'static str,
     displacement: Vector2<f64>,
-    /// A node, in units of the mesh file, and the von Mises stress there, Pa.
+    /// Position of a node, in units of the mesh file; `von_mises` is the stress there, Pa.
     at: [f64; 2],
     von_mises: f64,
 }
@@ -28,15 +29,15 @@ fn rows() -> Vec<Row> {
     rows.collect()
 }
 
-/// The scene as CalculiX has it.
+/// Solves the row's scene with CalculiX's load and method.
 fn solved_like(row: &Row) -> Simulation {
     let force = if row.scene == "bracket" { "[0,-200]" } else { "[0,-2]" };
     let set = [format!("load.0.force={force}"), format!("solver.method={}", row.method)];
     solved(&scene_with(row.scene, &[&set[0], &set[1]]))
 }
 
-/// Linear theory is the same theory: to the six digits that CalculiX prints, and to what shear across a thin wedge leaves
-/// in plane stress. With large rotations CalculiX's law, Saint-Venant-Kirchhoff's, differs to the order of the strain.
+/// Linear theory agrees to the six digits that CalculiX prints, except for the effect of shear across a thin wedge in
+/// plane stress. With large rotations, CalculiX's Saint-Venant-Kirchhoff law differs to the order of the strain.
 #[test]
 fn displacements_are_those_of_calculix() {
     let rows = rows();
@@ -49,7 +50,7 @@ fn displacements_are_those_of_calculix() {
     }
 }
 
-/// The same displacements have the same stresses, but both programs bring them to the nodes in their own ways.
+/// Equal displacements have equal stresses, but the two programs recover them at the nodes differently.
 #[test]
 fn stresses_are_those_of_calculix() {
     for row in rows() {
@@ -63,7 +64,7 @@ fn stresses_are_those_of_calculix() {
     }
 }
 
-/// Winkler's curved bar: the bending moment of the nose's force in the deformed clip, and the force itself.
+/// Winkler's curved bar under the bending moment of the nose's force in the deformed clip and the force itself.
 #[test]
 fn the_back_of_the_clip_has_winklers_stress() {
     let simulation = solved(&scene("clip"));

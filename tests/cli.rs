@@ -1,4 +1,4 @@
-//! The command line as scripts see it: exit codes, messages, JSON, files.
+//! Tests of the command line for scripts: exit codes, messages, JSON, files.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -40,7 +40,7 @@ fn every_command_has_help() {
         assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
     }
     assert!(stdout(&warpbeam(&["solve", "--help"])).contains("Exit codes"));
-    // What scripts read has its columns and its interruption documented.
+    // The help documents the columns of files that scripts read, and interruption.
     for words in ["NAME_v_x", "dissipated", "about 300", "Ctrl-C"] {
         assert!(stdout(&warpbeam(&["solve", "--help"])).contains(words), "{words}");
     }
@@ -119,7 +119,7 @@ fn json_has_every_field_of_the_contract() {
         ] {
             assert!(probe.get(key).is_some(), "{id}: {key}");
         }
-        // A body at rest neither moves nor dissipates: what is not there is null.
+        // A body at rest has no kinetic energy and no dissipation: absent values are null.
         assert!(json["energy"]["kinetic"].is_null() && json["energy"]["dissipated"].is_null());
         for (object, keys) in [
             ("energy", &["elastic", "external", "kinetic", "dissipated"][..]),
@@ -145,7 +145,7 @@ fn json_has_every_field_of_the_contract() {
                 assert!(json[object].get(key).is_some(), "{id}: {object}.{key}");
             }
         }
-        // The solve is the sum of its stages, and all of the time is told.
+        // The solve time is the sum of its stages, and the reported times sum to the total.
         let time = |key: &str| json["time_us"][key].as_f64().unwrap();
         let solve: f64 = ["rotate", "assemble", "factorize", "solve"].map(time).iter().sum();
         let beside: f64 = ["certify", "set_up", "stress", "reference", "other"].map(time).iter().sum();
@@ -157,7 +157,7 @@ fn json_has_every_field_of_the_contract() {
     }
 }
 
-/// A motion has the same object and its own fields beside; its books are closed and its energy is the contract's.
+/// A motion has the same object with additional fields. Its energy ledger balances, and its energy drift is small.
 #[test]
 fn json_of_a_motion_has_its_books() {
     for integrator in ["implicit-euler", "tr-bdf2", "energy-momentum"] {
@@ -196,7 +196,7 @@ fn set_changes_any_value() {
     let single = solve_json(&["cantilever", "--set", "solver.method=\"linear\""]);
     let tip = |json: &serde_json::Value| json["probes"][0]["u"][1].as_f64().unwrap();
     assert!((tip(&double) / tip(&single) - 2.0).abs() < 1e-9);
-    // A table that the file leaves out.
+    // A table that the file does not contain.
     let scene = solve_json(&["shear", "--set", "solver.tolerance=1e-4"]);
     assert!(scene["residual"].as_f64().unwrap() > 1e-8);
 }
@@ -239,7 +239,7 @@ fn results_are_written_as_csv_and_vtu() {
     assert!(message.contains(".csv or .vtu"), "{message}");
 }
 
-/// A file of numbers with a header: its columns, and its rows.
+/// Returns the columns and the rows of a CSV file of numbers.
 fn read_table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     let text = fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
@@ -247,12 +247,13 @@ fn read_table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     (header, lines.map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect())
 }
 
-/// Whether a number is one of a JSON text, which `serde_json` reads to all but the last digit.
+/// Returns `true` if a number equals one in a JSON text, which `serde_json` parses to all but the last digit.
 fn same(number: f64, json: &serde_json::Value) -> bool {
     (number - json.as_f64().unwrap()).abs() <= 1e-14 * number.abs()
 }
 
-/// The trajectory of a motion: a row a step, the last one the result, and in every one the books are closed.
+/// The trajectory of a motion has a row for every step. The last row is the result, and the energy
+/// ledger balances in every row.
 #[test]
 fn a_motion_is_written_as_a_table() {
     let folder = tempfile::tempdir().unwrap();
@@ -296,7 +297,7 @@ fn a_motion_is_written_as_a_table() {
         for row in &rows {
             assert!((sum(row) - sum(&rows[0])).abs() < 1e-9 * largest, "{id}, {integrator}: the books of {row:?}");
         }
-        // The velocity is that of the displacement: over steps that resolve it.
+        // The velocity is the derivative of the displacement, for steps that resolve it.
         let h = rows[1][0] - rows[0][0];
         let fastest = rows.iter().map(|r| r[6].abs()).fold(0.0, f64::max);
         let off = rows.windows(3).map(|w| ((w[2][4] - w[0][4]) / (2.0 * h) - w[1][6]).abs()).fold(0.0, f64::max);
@@ -304,11 +305,11 @@ fn a_motion_is_written_as_a_table() {
     }
 }
 
-/// A series of states for ParaView: files that are there, times that increase, and the result at the end.
+/// A motion is written as a series of states for ParaView: existing files, increasing times, and the result at the end.
 #[test]
 fn a_motion_is_written_as_a_series_of_states() {
     let folder = tempfile::tempdir().unwrap();
-    // A name that XML has to escape.
+    // A name with a character that XML must escape.
     let path = folder.path().join("swing & sway.pvd");
     let last = folder.path().join("last.vtu");
     for (step, duration, states) in [("0.016666666666666666", "0.5", 31), ("0.001", "0.65", 218)] {
@@ -329,7 +330,7 @@ fn a_motion_is_written_as_a_series_of_states() {
             let text = fs::read_to_string(file).unwrap();
             roxmltree::Document::parse(&text).unwrap();
         }
-        // The state of the last file is the result: the tip is the mean of the right edge.
+        // The state in the last file is the result: the tip is the mean of the right edge.
         let text = fs::read_to_string(files.last().unwrap()).unwrap();
         let vectors = |name: &str| -> Vec<Vec<f64>> {
             let document = roxmltree::Document::parse(&text).unwrap();
@@ -344,7 +345,7 @@ fn a_motion_is_written_as_a_series_of_states() {
         let (points, u, v) = (vectors("points"), vectors("displacement"), vectors("velocity"));
         assert!(u.len() == points.len() && v.len() == points.len());
         let tip = &json["probes"][0];
-        // Simpson's rule along the one six-node side.
+        // Simpson's rule along the only six-node side.
         let weight = |y: f64| if y.abs() < 1e-9 { 4.0 / 6.0 } else { 1.0 / 6.0 };
         for axis in 0..2 {
             let mean: f64 =
@@ -352,7 +353,7 @@ fn a_motion_is_written_as_a_series_of_states() {
             assert!((mean - tip["u"][axis].as_f64().unwrap()).abs() < 1e-12, "axis {axis}: {mean}, {tip}");
         }
         assert!(v.iter().flatten().any(|v| v.abs() > 0.1));
-        // The same run as a single state.
+        // The same run written as a single state.
         solve_json(&[&args[..], &["--out", last.to_str().unwrap()]].concat());
         assert_eq!(fs::read_to_string(&last).unwrap(), text);
     }
@@ -362,7 +363,8 @@ fn a_motion_is_written_as_a_series_of_states() {
     assert!(!folder.path().join("rest.pvd").exists());
 }
 
-/// What cannot be written is an error, and the result is printed all the same; a reader that goes away is none.
+/// A file that cannot be written is an error, but the result is still printed. A reader that
+/// closes its pipe is no error.
 #[cfg(target_os = "linux")]
 #[test]
 fn failed_writes_end_with_exit_code_2() {
@@ -391,7 +393,7 @@ fn failed_writes_end_with_exit_code_2() {
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
 }
 
-/// Ctrl-C ends what takes long with what it has.
+/// Ctrl-C ends a long command, which writes its results up to then.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_command_leaves_what_it_has() {
@@ -419,7 +421,7 @@ fn an_interrupted_command_leaves_what_it_has() {
     let pvd = fs::read_to_string(folder.path().join("series.pvd")).unwrap();
     assert!(roxmltree::Document::parse(&pvd).unwrap().descendants().filter(|n| n.has_tag_name("DataSet")).count() >= 1);
 
-    // However early, the atlas is a table with what there is.
+    // Interrupted at any time, the atlas is a table of the cases so far.
     let running = start(folder.path(), &["extremes", "--out", "atlas"]);
     wait_for("an ear for signals", || running.listens());
     let output = running.interrupt();
@@ -442,7 +444,7 @@ fn an_interrupted_command_leaves_what_it_has() {
     }
 }
 
-/// On a terminal there is a bar, and nothing of it elsewhere.
+/// A progress bar is shown on a terminal only.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_takes_long_shows_a_bar_on_a_terminal() {
@@ -476,7 +478,7 @@ edge = "right"
 force = [0.0, -10.0]
 "#;
 
-/// The scene above with one line changed: exit code 2, one message with file and line that says what was expected.
+/// The scene above with one line changed gives exit code 2, and one message with file, line and the expected value.
 #[test]
 fn bad_scene_files_get_one_clear_message() {
     let folder = tempfile::tempdir().unwrap();
@@ -612,7 +614,7 @@ fn unreadable_files_and_wrong_usage_get_one_clear_message() {
     }
 }
 
-/// What ends without a result says why in JSON, as it does in words.
+/// A solve without a result gives its reason in JSON, as in the text output.
 #[test]
 fn json_says_why_a_solve_failed() {
     let args = ["solve", "cantilever", "--set", "solver.max_iterations=2"];
@@ -630,7 +632,7 @@ fn a_certificate_can_be_left_out() {
     assert!(!stdout(&warpbeam(&["solve", "elastica", "--no-certificate"])).contains("ρ"));
 }
 
-/// Steel moves by micrometres: words have prefixes and digits.
+/// Steel moves by micrometres: the text has unit prefixes and enough digits.
 #[test]
 fn small_motions_have_digits() {
     let set = ["material.young=210 GPa", "load.0.force=[0 N, -1 kN]"];
@@ -646,7 +648,7 @@ fn small_motions_have_digits() {
     assert!(curve.contains("tip displacement, µm"), "{curve}");
 }
 
-/// `-` is standard input, for whatever takes a scene; a mesh is found from the current folder.
+/// The path `-` reads the scene from standard input in every command; its mesh file is found from the current folder.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_scene_is_read_from_standard_input() {
@@ -668,7 +670,7 @@ fn a_scene_is_read_from_standard_input() {
     let mesh = mesh.replace("\"left\"", "\"wall\"").replace("edge = \"right\"", "at = [1.0, 1.0]");
     let solved = run(&["solve", "-"], &mesh);
     assert_eq!(solved.status.code(), Some(0), "{}", stderr(&solved));
-    // What is found only on the mesh has its line, though standard input is read once.
+    // An error that is found only with the mesh has a line number, although standard input can be read only once.
     let wrong = run(&["solve", "-"], &GOOD.replacen("\"right\"", "\"rihgt\"", 1));
     assert_eq!(wrong.status.code(), Some(2));
     assert!(stderr(&wrong).contains("-:17: load.0.edge: expected one of"), "{}", stderr(&wrong));
@@ -676,7 +678,7 @@ fn a_scene_is_read_from_standard_input() {
     assert!(stderr(&none).contains("-:1: name: expected a title, got nothing"), "{}", stderr(&none));
 }
 
-/// A path need not be text.
+/// A path need not be valid UTF-8.
 #[cfg(target_os = "linux")]
 #[test]
 fn paths_are_any_bytes() {
@@ -756,7 +758,7 @@ fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
         .skip(1)
         .map(|line| line.split(',').map(|v| v.parse().unwrap()).collect())
         .collect();
-    // The full load's row is the truth that solve compares with.
+    // The row of the full load is the reference solution that `solve` compares with.
     let full = rows.iter().find(|r| (r[0] - 1.0).abs() < 1e-9).unwrap();
     let truth = &solve_json(&["elastica"])["probes"][0]["truth_u"];
     assert!((full[3] - truth[0].as_f64().unwrap()).abs() < 1e-6 && (full[4] - truth[1].as_f64().unwrap()).abs() < 1e-6);
@@ -772,8 +774,8 @@ fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
     }
 }
 
-/// The load path of any scene: what is unstable under force control is said, marked in the table and dashed in the
-/// picture.
+/// The load path of any scene: states that are unstable under force control are reported, marked in the table, and
+/// dashed in the picture.
 #[test]
 fn curve_follows_an_arch_through_its_limit_load() {
     let folder = tempfile::tempdir().unwrap();
@@ -781,7 +783,7 @@ fn curve_follows_an_arch_through_its_limit_load() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let text = stdout(&output);
     assert!(text.contains("the limit load") && text.contains("stable under force control again"), "{text}");
-    // In words a support is called as `solve` calls it; its number names it to scripts.
+    // Text output names a support as `solve` does; its number is for scripts.
     assert!(text.contains("way of support (0.1, 0.0085)  its reaction"), "{text}");
     let picture = fs::read_to_string(folder.path().join("snap.svg")).unwrap();
     let axes = ["way of support (0.1, 0.0085), mm", "its reaction along the way, N"];
@@ -792,7 +794,7 @@ fn curve_follows_an_arch_through_its_limit_load() {
     let column = |name: &str| header.iter().position(|h| *h == name).unwrap();
     let (force, stable) = (column("support.2_force_y"), column("stable_under_force"));
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
-    // Unstable is where the force falls.
+    // States are unstable where the force decreases.
     for three in rows.windows(3) {
         let f: Vec<f64> = three.iter().map(|row| -row[force].parse::<f64>().unwrap()).collect();
         if (f[1] - f[0]) * (f[2] - f[1]) > 0.0 && (f[2] - f[1]).abs().min((f[1] - f[0]).abs()) > 0.2 {
@@ -808,7 +810,7 @@ fn curve_follows_an_arch_through_its_limit_load() {
     assert!(fs::read(folder.path().join("snap.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
-/// Under a force beyond its limit load the arch jumps, and it is said; a beam that bends does not.
+/// Under a force beyond its limit load the arch jumps, which is reported; a bending beam does not jump.
 #[test]
 fn a_jump_is_said() {
     let json = solve_json(&["jump", "--no-truth"]);
@@ -826,7 +828,7 @@ fn a_jump_is_said() {
     assert!(unknown["jumped"].is_null());
 }
 
-/// The reaction of every support, in JSON and in words; units where a way or a turn is typed.
+/// The reaction of every support is in JSON and in the text output. Displacements and rotations may have units.
 #[test]
 fn solve_tells_the_reaction_of_every_support() {
     let set = ["--set", "support.1.turn=30°", "--set", "support.1.displacement=[-5 mm, 0 mm]"];
@@ -844,7 +846,7 @@ fn solve_tells_the_reaction_of_every_support() {
     assert!(stderr(&wrong).contains("`3 mm` is a length (m); expected an angle (rad)"), "{}", stderr(&wrong));
 }
 
-/// Sentences of the physics that the JSON carries: certificate, ρ, truth and error.
+/// The JSON has the certificate, ρ, the reference solution and the error.
 #[test]
 fn json_certifies_its_result() {
     let json = solve_json(&["elastica"]);
@@ -854,7 +856,8 @@ fn json_certifies_its_result() {
     let linear = solve_json(&["elastica", "--set", "solver.method=linear"]);
     assert!(linear["stable"].is_null() && linear["fixed_point_rho"].is_null());
     assert!(linear["probes"][0]["error_percent"].as_f64().unwrap() > 100.0);
-    // Where no beam theory serves, or is too far off, a fine solution is the truth, and named.
+    // Where beam theory does not apply, or is too inaccurate, a fine solution is the
+    // reference, and its source is named.
     for (id, source) in [
         ("elastica", "the exact beam"),
         ("article", "a fine solution"),
@@ -863,7 +866,7 @@ fn json_certifies_its_result() {
     ] {
         let probe = &solve_json(&[id])["probes"][0];
         assert_eq!(probe["reference_source"], source, "{id}");
-        // The names of the version before.
+        // Field names of the previous version.
         assert_eq!((&probe["truth_u"], &probe["truth_source"]), (&probe["reference_u"], &probe["reference_source"]));
         let own = probe["reference_error_percent"].as_f64().unwrap();
         assert!(probe["error_percent"].as_f64().unwrap() > 0.0 && own > 0.0 && own < 1.0, "{id}: {own}");
@@ -874,12 +877,12 @@ fn json_certifies_its_result() {
         let none = solve_json(&["shear", none]);
         assert!(none["probes"][0]["reference_u"].is_null() && none["probes"][0]["error_percent"].is_null());
     }
-    // A probe that moves only by rounding has no error relative to its displacement.
+    // A probe that moves only by rounding errors has no error relative to its displacement.
     let still = solve_json(&["shear", "--set", "load.0.force=[0,0]"]);
     assert!(still["probes"][0]["error_percent"].is_null());
 }
 
-/// The stability atlas: every case classified, everything finite, every count accounted for.
+/// In the stability atlas every case is classified, every number is finite, and the counts add up.
 #[test]
 fn extremes_writes_the_stability_atlas() {
     let folder = tempfile::tempdir().unwrap();
@@ -893,7 +896,7 @@ fn extremes_writes_the_stability_atlas() {
         for value in row[3..8].iter().chain(&row[9..13]) {
             assert!(value.parse::<f64>().unwrap().is_finite(), "{row:?}");
         }
-        // Working precision is a residual above the tolerance and within its bound.
+        // A result at working precision has a residual above the tolerance and below its bound.
         if let Ok(floor) = row[16].parse::<f64>() {
             let residual: f64 = row[10].parse().unwrap();
             assert!(residual > 1e-8 && residual <= floor && floor <= 1e-5 && row[8] != "not_converged", "{row:?}");
@@ -904,26 +907,26 @@ fn extremes_writes_the_stability_atlas() {
     };
     for element in ["t3", "t6", "q4"] {
         let all = count(element, "newton", "");
-        // A cube under a thousand times what bends it is turned inside out.
+        // A cube under a thousand times its bending load is inverted.
         assert!(count(element, "newton", "certified") * 100 >= 80 * all, "{element}");
         assert_eq!(count(element, "newton", "not_converged") + count(element, "newton", "stalled"), 0, "{element}");
-        // Distorted cells are as good as others, however large the load.
+        // Distorted cells succeed like others under any load.
         let distorted: Vec<_> = rows.iter().filter(|r| (r[0], r[1]) == (element, "newton") && r[14] != "0").collect();
         assert!(distorted.len() >= 3 && distorted.iter().all(|r| r[8] == "certified"), "{distorted:?}");
         assert!(count(element, "warped", "stalled") > count(element, "newton", "stalled"), "{element}");
-        // Every starting state, however bad, ends in a certified equilibrium.
+        // From every starting state, however bad, the solve ends in a certified equilibrium.
         let bad_starts: Vec<_> =
             rows.iter().filter(|r| (r[0], r[1]) == (element, "newton") && r[2] != "rest").collect();
         assert!(bad_starts.len() >= 12 && bad_starts.iter().all(|r| r[8] == "certified"), "{bad_starts:?}");
     }
-    // Mesh files come with the elements that they have.
+    // Mesh files are used with the elements that they support.
     for file in ["bracket", "clip", "cook"] {
         let of = |element: &str| rows.iter().filter(|r| r[0] == element && r[15] == file).count();
         assert!(of("t3") >= 12 && of("t6") == of("t3") && of("q4") == 0, "{file}");
         let newton = rows.iter().filter(|r| (r[1], r[15]) == ("newton", file));
         assert!(newton.into_iter().all(|r| r[3] != "0.1" || r[8] == "certified"), "{file}");
     }
-    // The summary's counts are those of the table, and the picture is there.
+    // The summary's counts are those of the table, and the picture exists.
     let summary = stdout(&output);
     assert_eq!(summary, fs::read_to_string(out.join("extremes.txt")).unwrap());
     let certified = count("t6", "newton", "certified");
@@ -933,7 +936,7 @@ fn extremes_writes_the_stability_atlas() {
     }));
     assert!(fs::read_to_string(out.join("extremes.svg")).unwrap().contains("stalled"));
     assert!(fs::metadata(out.join("extremes.png")).unwrap().len() > 10_000);
-    // The same of the atlas in time: its counts add up, and its numbers are finite.
+    // The atlas of motions, too, has counts that add up, and finite numbers.
     let csv = fs::read_to_string(out.join("extremes-motion.csv")).unwrap();
     let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
     assert!(rows.len() >= 72 && rows.iter().all(|row| row.len() == 13));
@@ -948,7 +951,7 @@ fn extremes_writes_the_stability_atlas() {
     assert!(fs::metadata(out.join("extremes-motion.png")).unwrap().len() > 5_000);
 }
 
-/// The trade: errors split, times positive, the front the front, the files there.
+/// The speed–accuracy study splits errors, has positive times and a correct front, and writes its files.
 #[test]
 fn study_measures_error_against_time() {
     let folder = tempfile::tempdir().unwrap();
@@ -962,11 +965,11 @@ fn study_measures_error_against_time() {
         let output = warpbeam(&["study", id, "--quick", "--out", out.to_str().unwrap()]);
         assert_eq!(output.status.code(), Some(0), "{id}: {}", stderr(&output));
         let summary = stdout(&output);
-        // Every truth says how wrong it may be itself.
+        // Every reference reports a bound of its own error.
         let own = summary.lines().next().unwrap().split("its own error at most ").nth(1);
         let own: Option<f64> = own.and_then(|t| t.split(' ').next()).map(|t| t.parse().unwrap());
         assert!(own.is_some_and(|own| own > 0.0 && own < 5.0), "{summary}");
-        // Beam theory is no truth of a stubby beam under large strains.
+        // Beam theory is no reference for a stubby beam under large strains.
         assert_eq!(summary.contains("beam theory is"), id == "article", "{summary}");
         assert!(summary.contains(source) && summary.contains("an error of 10 % costs"), "{id}: {summary}");
         let csv = fs::read_to_string(out.join("study.csv")).unwrap();
@@ -979,12 +982,13 @@ fn study_measures_error_against_time() {
                     && (number(row, 16) - number(row, 13) - number(row, 14) - number(row, 15)).abs()
                         < 1e-9 * number(row, 16).max(1.0)
             );
-            // The parts are distances on the way from the result to the truth: the whole is no longer than all of them.
+            // The parts are distances along a chain from the result to the reference: their sum is
+            // an upper bound of the total.
             let parts = number(row, 13) + number(row, 14) + number(row, 15);
             assert!(number(row, 12) <= parts * (1.0 + 1e-6) + 1e-4, "{row:?}");
             assert!(["linear", "auto"].contains(&row[4]) || number(row, 15) == 0.0, "{row:?}");
         }
-        // Nothing beats the front, and the front beats something.
+        // No setting is better than the front, and the front is better than some setting.
         let front: Vec<&Vec<&str>> = rows.iter().filter(|r| r[17] == "true").collect();
         assert!(!front.is_empty() && front.len() < rows.len());
         for f in &front {
@@ -994,7 +998,8 @@ fn study_measures_error_against_time() {
         assert!(fs::read_to_string(out.join("study.svg")).unwrap().contains("Pareto front"));
         assert!(fs::metadata(out.join("study.png")).unwrap().len() > 10_000);
     }
-    // Locking is not mistaken for warping: converged T3 is all discretization, linear T6 all model.
+    // Locking is distinguished from the model error: converged T3 has only discretization error, and
+    // linear T6 only model error.
     let csv = fs::read_to_string(folder.path().join("cantilever/study.csv")).unwrap();
     let row = |element: &str, method: &str| {
         let mut rows = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
@@ -1007,8 +1012,8 @@ fn study_measures_error_against_time() {
     assert!(total > 5.0 && discretization < 0.5 && (model - total).abs() < 0.5);
 }
 
-/// `tune` measures, chooses, says why, and its scene solves within what was asked; what cannot be had ends with exit
-/// code 1, and the closest.
+/// `tune` measures, chooses a setting, gives the reason, and writes a scene that solves within the requested limits. If
+/// they cannot be met, it ends with exit code 1 and the closest setting.
 #[test]
 fn tune_chooses_a_setting_that_meets_the_demand() {
     let folder = tempfile::tempdir().unwrap();
@@ -1034,7 +1039,8 @@ fn tune_chooses_a_setting_that_meets_the_demand() {
         let chosen = format!("  {} ", json["element"].as_str().unwrap());
         assert!(text.lines().any(|line| line.starts_with(&chosen)), "{text}");
     }
-    // With a time alone, the closest within it; a truth without formula counts with its own error.
+    // With a time limit only, it chooses the most accurate setting within it. A reference without a closed form
+    // has its own error included.
     let text = stdout(&warpbeam(&["tune", "bracket", "--time", "100s"]));
     assert!(text.contains("meet at most 100000 ms; the closest:"), "{text}");
     assert!(!text.contains("the reference's own 0.0000 %"), "{text}");
@@ -1051,7 +1057,7 @@ fn tune_chooses_a_setting_that_meets_the_demand() {
     assert!(stderr(&nothing).contains("a probe that moves"), "{}", stderr(&nothing));
 }
 
-/// A tuned scene finds its mesh file from wherever it was written.
+/// A tuned scene finds its mesh file from any folder.
 #[test]
 fn a_tuned_scene_keeps_its_mesh() {
     let folder = tempfile::tempdir().unwrap();
@@ -1065,9 +1071,9 @@ fn a_tuned_scene_keeps_its_mesh() {
     fs::write(from.join("square.toml"), scene).unwrap();
     let tuned = to.join("tuned.toml");
     let tuned = tuned.to_str().unwrap();
-    // From anywhere, and from its own folder, by its bare name.
+    // From another folder, and from its own folder by its bare name.
     for (folder, source) in [(Path::new("."), from.join("square.toml")), (from.as_path(), "square.toml".into())] {
-        // Two triangles cannot meet one percent: the closest is written all the same.
+        // Two triangles cannot reach one percent; the closest setting is written nevertheless.
         let tune = warpbeam_in(folder, &["tune", source.to_str().unwrap(), "--write", tuned]);
         assert_eq!(tune.status.code(), Some(1), "{}{}", stdout(&tune), stderr(&tune));
         assert_eq!(solve_json(&[tuned])["element"], "t6");
@@ -1075,8 +1081,7 @@ fn a_tuned_scene_keeps_its_mesh() {
     }
 }
 
-/// `auto` is one thing everywhere: what it says and finds is the same from `solve` whenever it is asked, on the scene's
-/// own mesh.
+/// `auto` gives the same result and report in every `solve`, on the scene's own mesh.
 #[test]
 fn auto_keeps_the_mesh_and_its_answer() {
     for id in ["article", "elastica"] {
@@ -1096,7 +1101,7 @@ fn auto_keeps_the_mesh_and_its_answer() {
     assert_eq!(gone.status.code(), Some(2));
 }
 
-/// `solve` stops after the iterations that a scene accepts, as a study does with the same number.
+/// `solve` stops after the number of iterations that a scene accepts, as a study does with the same number.
 #[test]
 fn an_accepted_result_is_a_success() {
     let args = ["solve", "cantilever", "--json", "--set", "solver.accept_after=3"];
@@ -1114,7 +1119,7 @@ fn a_scene_is_printed_as_a_rust_program() {
     assert_eq!(stdout(&warpbeam(&["rust", "snap"])), program);
     let edited = stdout(&warpbeam(&["rust", "snap", "--set", "support.2.displacement=[0, -3 mm]"]));
     assert_eq!(edited, program.replace("-0.012", "-0.003"));
-    // The mesh of a file is found from any folder.
+    // The mesh file is found from any folder.
     let folder = std::env::current_dir().unwrap().join("assets/scenes");
     let program = stdout(&warpbeam(&["rust", "assets/scenes/../scenes/clip.toml"]));
     let mesh = program.lines().find(|line| line.contains("mesh_file")).unwrap();

@@ -1,4 +1,4 @@
-//! Commands end on signals, and refuse files and options that do not fit.
+//! Tests that commands end on signals, and refuse unsuitable files and options.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -19,10 +19,10 @@ fn interrupted(folder: &Path, args: &[&str], signal: Signal) -> (Option<i32>, St
     (output.status.code(), stdout(&output), stderr(&output))
 }
 
-/// A body that takes long to solve, and its reference longer.
+/// Arguments for a body that takes long to solve, with a reference solution that takes longer.
 const LARGE: [&str; 5] = ["cantilever", "--set", "beam.cells=[400,40]", "--set", "solver.method=newton"];
 
-/// A result that is there is printed, whatever was looked for when the signal came.
+/// A result that exists is printed, whatever was being computed when the signal came.
 #[test]
 fn static_commands_end_with_what_there_is() {
     let folder = tempfile::tempdir().unwrap();
@@ -39,13 +39,13 @@ fn static_commands_end_with_what_there_is() {
     let (code, out, _) = interrupted(folder.path(), &args, Signal::SIGINT);
     assert_eq!(code, Some(1), "{out}");
     assert!(out.contains("the path ends at ") && out.contains("interrupted"), "{out}");
-    // Before anything has been measured there is nothing to choose from.
+    // Before the first measurement there is no setting to choose.
     let (code, _, said) = interrupted(folder.path(), &["tune", "cantilever"], Signal::SIGINT);
     assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("interrupted"), "{said}");
 }
 
-/// A reference that takes long shows a bar on a terminal.
+/// A slow reference solution shows a progress bar on a terminal.
 #[test]
 fn a_long_solve_shows_a_bar() {
     let args = [&["solve", "--reference", "full"][..], &LARGE].concat();
@@ -134,11 +134,11 @@ fn a_folder_of_pictures_is_not_written_over() {
     assert!(stderr(&refused).contains("has 5 numbered pictures; --overwrite replaces them"), "{}", stderr(&refused));
     assert_eq!(count(), 6);
     assert_eq!(record("0.2", &["--overwrite"]).status.code(), Some(0));
-    // Three pictures, and what is not a picture of a recording.
+    // Three pictures, and a file that is not a picture of a recording.
     assert_eq!(count(), 4);
 }
 
-/// A scene comes from a pipe as well as from a file, also where what is wrong with it is found after it was read.
+/// A scene can be read from a pipe, even if an error in it is found only after reading.
 #[test]
 fn a_scene_is_read_from_a_pipe() {
     let folder = tempfile::tempdir().unwrap();
@@ -166,7 +166,7 @@ fn a_scene_is_read_from_a_pipe() {
     }
 }
 
-/// Names with commas stay one field, and two probes have two names.
+/// A name with commas remains one field, and two probes with the same name are refused.
 #[test]
 fn names_of_probes_are_fields_and_differ() {
     let folder = tempfile::tempdir().unwrap();
@@ -191,7 +191,7 @@ fn names_of_probes_are_fields_and_differ() {
     assert!(stderr(&refused).contains("probe.1.name: expected a name of its own"), "{}", stderr(&refused));
 }
 
-/// Results name their limits, in words and in JSON.
+/// Results report their limitations, in the text output and in JSON.
 #[test]
 fn results_say_what_limits_them() {
     for (args, expected) in [
@@ -205,12 +205,12 @@ fn results_say_what_limits_them() {
         let warnings = solve_json(args)["warnings"].to_string();
         assert!(warnings.contains(expected), "{args:?}: {warnings}");
     }
-    // Bending without a side force has no corner of infinite stress at ν = 0, and its ends are nodes.
+    // Bending without a side force has no corner with infinite stress at ν = 0, and its ends are nodes.
     let bent = solve_json(&["roll-up"])["warnings"].clone();
     assert_eq!(bent, serde_json::json!([]));
 }
 
-/// Beyond a size the extras wait to be asked for.
+/// Above a certain size, certificates are computed on request only.
 #[test]
 fn large_scenes_are_certified_on_request() {
     let args = ["solve", "cantilever", "--set", "beam.cells=[320,160]", "--reference", "none"];

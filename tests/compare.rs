@@ -1,4 +1,4 @@
-//! The mode Compare, driven as a person would.
+//! Tests of the mode Compare, operated by pointer, keys and labels.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -34,7 +34,7 @@ fn harness_of(id: &str, scene: Scene) -> Harness<'static, Lab> {
     )
 }
 
-/// Draws frames until something holds.
+/// Draws frames until a condition holds.
 fn wait(harness: &mut Harness<'_, Lab>, what: &str, holds: impl Fn(&Lab) -> bool) {
     let start = Instant::now();
     while !holds(harness.state()) {
@@ -55,7 +55,7 @@ fn are_judged(lab: &Lab) -> bool {
     have_ended(lab) && lab.panes().iter().all(judged)
 }
 
-/// Everything that is said.
+/// Returns every label and value in the window.
 fn labels(harness: &Harness<'_, Lab>) -> Vec<String> {
     let nodes = harness.get_all_by(|_| true).map(|node| node.accesskit_node());
     nodes.flat_map(|node| [node.label(), node.value()]).flatten().collect()
@@ -76,7 +76,7 @@ fn load(scene: &Scene) -> f64 {
         .unwrap()
 }
 
-/// Error and iterations of every pane are those of a simulation of its own, and its header says so.
+/// Checks that error and iterations of every pane equal those of a separate simulation, and are shown in its header.
 fn panes_agree_with_solves(harness: &Harness<'_, Lab>) {
     let lab = harness.state();
     let truth = Reference::of(lab.scene()).unwrap();
@@ -110,21 +110,21 @@ fn presets_make_panes_that_say_what_solves_of_their_own_say() {
     let expected = [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton].map(Some);
     assert_eq!(methods(harness.state()), expected);
     panes_agree_with_solves(&harness);
-    // Its own 30 kN is too much for the fixed point of better elements.
+    // The scene's own 30 kN is too large for the fixed-point iteration of more accurate elements.
     harness.get_by_label("t3 | t6 | q4").click();
     harness.step();
     wait(&mut harness, "the panes", are_judged);
     let elements: Vec<_> = harness.state().panes().iter().map(|pane| pane.setting().element).collect();
     assert_eq!(elements, [ElementKind::T3, ElementKind::T6, ElementKind::Q4].map(Some));
     panes_agree_with_solves(&harness);
-    // Panes follow the panel in what is not their own.
+    // Panes follow the panel in all settings except their own.
     let newton = scene_with("article", &["solver.method=\"newton\""]);
     harness.state_mut().set_scene(newton).unwrap();
     harness.step();
     wait(&mut harness, "the panes", are_judged);
     assert!(harness.state().panes().iter().all(|p| p.scene().unwrap().solver.method == MethodKind::Newton));
     panes_agree_with_solves(&harness);
-    // A pane is closed; two are the fewest.
+    // A pane can be closed if more than two are left.
     harness.get_by_label("Close pane 2").click();
     harness.step();
     harness.step();
@@ -132,7 +132,7 @@ fn presets_make_panes_that_say_what_solves_of_their_own_say() {
     assert!(harness.query_by_label("Close pane 1").is_none());
 }
 
-/// Large meshes are solved beside the window, and stopped solves stop where they are told to.
+/// Large meshes are solved in the background, and a pane with an iteration limit stops at it.
 #[test]
 fn large_panes_and_stopped_ones_agree_with_solves_too() {
     let mut harness = compared("cantilever", "newton:t3:100x21,warped:4,warped");
@@ -141,7 +141,7 @@ fn large_panes_and_stopped_ones_agree_with_solves_too() {
     panes_agree_with_solves_of(lab, 2);
     let stopped = lab.panes()[1].end().unwrap();
     assert_eq!((&stopped.status, stopped.iterations), (&Status::Running, 4));
-    // A load that changes meanwhile is the one that is answered.
+    // If the load changes during a solve, the result is that of the last load.
     for force in [-2000.0, -1500.0] {
         let changed = scene_with("cantilever", &[&format!("load.0.force=[0,{force}]")]);
         harness.state_mut().set_scene(changed).unwrap();
@@ -175,13 +175,13 @@ fn what_does_not_converge_is_named() {
     assert_eq!(traced.len(), 2, "{traced:?}");
 }
 
-/// Dots stay, and the curve is there, while everything iterates under a load that is dragged; an edit costs an iteration.
+/// While everything iterates under a dragged load, earlier dots and the curve stay. An edit costs one iteration.
 #[test]
 fn the_trace_keeps_its_dots_while_panes_iterate() {
     let mut harness = compared("article", "linear,warped,newton");
     let before = harness.state().traced();
     assert_eq!(before.len(), 3, "{before:?}");
-    // From here on the pointer moves.
+    // From this point on, the pointer moves.
     harness.hover_at(egui::pos2(1100.0, 600.0));
     harness.run();
     for (i, newtons) in [26e3, 24e3, 22e3].into_iter().enumerate() {
@@ -198,7 +198,7 @@ fn the_trace_keeps_its_dots_while_panes_iterate() {
     }
     wait(&mut harness, "the panes", are_judged);
     let traced = harness.state().traced();
-    // Linear theory has answered on the way too.
+    // Linear theory also has results for the loads in between.
     assert!(traced.len() >= 6 && before.iter().all(|dot| traced.contains(dot)), "{traced:?}");
     let last: Vec<_> = traced.iter().filter(|(_, dot)| dot[0] == 22e3).collect();
     assert_eq!(last.len(), 3, "{traced:?}");
@@ -208,7 +208,7 @@ fn the_trace_keeps_its_dots_while_panes_iterate() {
         let u = alone.solution().probes[0].u;
         assert!((nalgebra::Vector2::new(*x, *y) - u).norm() < 1e-6 * u.norm());
     }
-    // Another direction is another curve.
+    // Another load direction has another curve.
     harness.state_mut().set_scene(scene_with("article", &["load.0.force=[100,-2e4]"])).unwrap();
     harness.step();
     assert!(harness.state().traced().iter().all(|(_, dot)| dot[0] != 22e3));
@@ -233,14 +233,14 @@ fn a_press_in_the_load_curve_sets_the_load() {
     press(&mut harness, 0.4);
     let set = load(harness.state().scene());
     assert!((set - 0.4 * 1.25 * 30e3).abs() < 400.0, "{set} N");
-    // Near a dot the dot is meant: the load is the one it was.
+    // A press near a dot sets the exact load of the dot.
     press(&mut harness, 0.8 + 2.0 / area.width());
     assert_eq!(load(harness.state().scene()), 30e3);
     let traced = harness.state().traced();
     assert_eq!(traced.len(), 4, "{traced:?}");
 }
 
-/// One camera: a pan in one pane moves the body in all of them, to where it is drawn.
+/// All panes share one camera: a pan in one moves the body in all of them, to where it is drawn.
 #[test]
 fn panning_one_pane_pans_all() {
     let mut harness = compared("article", "linear,warped,newton,newton:t6");
@@ -283,7 +283,7 @@ fn panning_one_pane_pans_all() {
     assert_eq!(harness.state().camera(), before);
 }
 
-/// Everything is there, named, and inside the window, down to 640×480.
+/// Every control exists, has a name, and is inside the window, down to 640×480.
 #[test]
 fn compare_fits_small_windows() {
     let mut harness = compared("article", "linear,warped,newton,newton:t6");
@@ -314,7 +314,7 @@ fn compare_fits_small_windows() {
     }
 }
 
-/// A pane's own picker changes that pane alone.
+/// The picker of a pane changes that pane only.
 #[test]
 fn pickers_change_their_pane_alone() {
     let mut harness = compared("article", "linear,newton");
@@ -326,7 +326,7 @@ fn pickers_change_their_pane_alone() {
     panes_agree_with_solves(&harness);
 }
 
-/// Where texts that begin so are painted.
+/// Returns the positions of painted texts with this beginning, and the texts.
 fn painted(harness: &Harness<'_, Lab>, begin: &str) -> Vec<(egui::Pos2, String)> {
     fn texts(shape: &egui::Shape, found: &mut Vec<(egui::Pos2, String)>) {
         match shape {
@@ -341,13 +341,13 @@ fn painted(harness: &Harness<'_, Lab>, begin: &str) -> Vec<(egui::Pos2, String)>
     found
 }
 
-/// The value under the pointer is shown in every pane, at the same point of the body, whatever the mesh.
+/// Every pane shows the value at the point of the body under the pointer, for any mesh.
 #[test]
 fn every_pane_says_its_value_at_the_point_under_the_pointer() {
     let mut harness = compared("article", "linear,warped,newton:t6");
     let panes = |lab: &Lab| -> Vec<egui::Rect> { lab.panes().iter().map(|pane| pane.place().unwrap()).collect() };
     let places = panes(harness.state());
-    // Near the clamp all have a body there.
+    // Near the clamp, the bodies of all panes overlap.
     let lab = harness.state();
     let pane = lab.panes()[1].simulation().unwrap();
     let rest = nalgebra::Vector2::new(1.0, 0.1);
@@ -370,14 +370,14 @@ fn every_pane_says_its_value_at_the_point_under_the_pointer() {
         })),
         "{said:?} {u}"
     );
-    // Beside the body nothing is said.
+    // Away from the body no value is shown.
     harness.hover_at(places[1].left_bottom() + egui::vec2(8.0, -8.0));
     harness.step();
     harness.step();
     assert!(painted(&harness, "von Mises (Cauchy): ").is_empty());
 }
 
-/// A motion is compared in panes of its own; those of equilibria wait.
+/// A motion is compared in panes of its own, while the panes of equilibria are inactive.
 #[test]
 fn motions_have_panes_of_their_own() {
     let mut harness = harness_of("swing", scene("swing"));

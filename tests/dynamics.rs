@@ -1,4 +1,5 @@
-//! Motion: against an independent trajectory, beam theory, conservation laws, and laws of the integrators themselves.
+//! Compares motions with an independent trajectory, beam theory, conservation laws, and known
+//! properties of the integrators.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -23,7 +24,7 @@ const ENERGY_MOMENTUM: IntegratorKind = IntegratorKind::EnergyMomentum;
 const IMPLICIT: [IntegratorKind; 3] = [EULER, TR_BDF2, ENERGY_MOMENTUM];
 const SYMPLECTIC: IntegratorKind = IntegratorKind::SymplecticEuler;
 
-/// Tip displacement of the swing at multiples of 1/240 s, computed independently: `tests/data/swing.py`.
+/// Returns the tip displacement of the swing at multiples of 1/240 s, computed independently by `tests/data/swing.py`.
 fn swing_truth() -> Vec<Vector2<f64>> {
     let rows = include_str!("data/swing.csv").lines().filter(|line| !line.starts_with('#')).skip(1);
     rows.map(|row| {
@@ -33,7 +34,7 @@ fn swing_truth() -> Vec<Vector2<f64>> {
     .collect()
 }
 
-/// The largest distance of the swing's tip from the truth in two seconds, over its length.
+/// Returns the largest distance of the swing's tip from the reference in two seconds, relative to the beam's length.
 fn swing_error(kind: IntegratorKind, rate: usize, iterations: u32) -> f64 {
     let mut simulation = Simulation::new(&with("swing", kind, 1.0 / rate as f64, iterations, 2.0)).unwrap();
     let mut worst: f64 = 0.0;
@@ -55,7 +56,7 @@ fn a_swing_follows_the_truth() {
     }
 }
 
-/// What the games' way costs must be seen.
+/// Implicit Euler with one solve per step, as used in games, has a large error.
 #[test]
 fn implicit_euler_loses_a_swing() {
     let error = swing_error(EULER, 60, 1);
@@ -81,7 +82,7 @@ fn energy_momentum_takes_few_iterations() {
     }
 }
 
-/// Linear theory is linear: one solve a step is exact, and the motion is that of the other integrators.
+/// In linear theory one solve per step is exact, and the motion agrees with the other integrators.
 #[test]
 fn energy_momentum_moves_linear_theory_too() {
     let end = |kind, iterations| {
@@ -94,7 +95,7 @@ fn energy_momentum_moves_linear_theory_too() {
     assert!(drift.abs() < 1e-9, "{drift}");
 }
 
-/// 10⁴ steps of a free bar.
+/// Energy and momentum are conserved over 10⁴ steps of a free bar.
 #[test]
 fn energy_momentum_keeps_a_spin() {
     let mut scene = with("spin", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 1e4 / 60.0);
@@ -120,7 +121,7 @@ fn a_spin_slows_as_its_integrator_must() {
     };
     let kept = spin(TR_BDF2, 1);
     assert!((0.99..=1.001).contains(&kept), "{kept}");
-    // A rigid body under implicit Euler turns by chords: dL/dt = −h ω² L, ω proportional to L.
+    // Under implicit Euler the points of a rigid body move along chords: dL/dt = −h ω² L, with ω proportional to L.
     let (omega, h, time) = (6.0_f64, 1.0 / 60.0, 10.0);
     let law = (1.0 + 2.0 * h * omega * omega * time).powf(-0.5);
     let kept = spin(EULER, 0);
@@ -149,7 +150,7 @@ fn first_frequencies_are_beam_theorys() {
         };
         beam.lowest_frequency(density * height, if shear { density * inertia } else { 0.0 }).unwrap()
     };
-    // Euler and Bernoulli in closed form.
+    // Euler–Bernoulli theory in closed form.
     let closed = 1.875_104_068_711_961_f64.powi(2) * (1e6_f64 / 12.0 / 1000.0).sqrt() / 50.0;
     assert!((theory(50.0, false) / closed - 1.0).abs() < 1e-9);
     for (slenderness, cells, shear) in [(50.0, 40, false), (100.0, 80, false), (10.0, 20, true)] {
@@ -158,7 +159,8 @@ fn first_frequencies_are_beam_theorys() {
     }
     // Shear and rotary inertia matter at L/H = 10.
     assert!(theory(10.0, true) < 0.995 * theory(10.0, false));
-    // And the swing's motion, if small, has that frequency: a quarter of its period after it was let go it is at rest's.
+    // A small motion of the swing has that frequency: after a quarter of its period it
+    // passes through the shape at rest.
     let mut scene = beam(20, 10.0).moving(ENERGY_MOMENTUM, 1e-3);
     scene.dynamics.iterations = 0;
     let omega = measured(&scene);
@@ -173,7 +175,7 @@ fn first_frequencies_are_beam_theorys() {
     assert!((simulation.probe("tip").unwrap().y / start).abs() < 0.01);
 }
 
-/// A linear vibration under implicit Euler keeps 1/(1 + ω²h²) of its energy a step.
+/// A linear vibration under implicit Euler keeps 1/(1 + ω²h²) of its energy per step.
 #[test]
 fn implicit_euler_damps_the_first_mode_by_28_percent_a_period() {
     let mut scene = beam(20, 10.0).moving(EULER, 1.0 / 60.0).with_method(MethodKind::Linear);
@@ -194,7 +196,7 @@ fn implicit_euler_damps_the_first_mode_by_28_percent_a_period() {
     assert!((1.0 - kept - 0.284).abs() < 0.005, "{}", 1.0 - kept);
 }
 
-/// P : ΔF = Δψ and P F̄ᵀ symmetric, over random and adversarial pairs.
+/// P : ΔF = Δψ holds and P F̄ᵀ is symmetric, for random and adversarial pairs.
 #[test]
 fn the_discrete_gradient_is_exact() {
     let lame = Lame { lambda: 0.6, mu: 0.4 };
@@ -207,13 +209,13 @@ fn the_discrete_gradient_is_exact() {
     for i in 0..1_000_000_u32 {
         let mut any = |size: f64| Matrix2::new(random(), random(), random(), random()) * size;
         let f0 = match i % 5 {
-            // Small strains, turned anyhow; inverted ones; anything.
+            // Small strains with any rotation; inverted ones; arbitrary ones.
             0 => Rotation::from_angle(4.0 * any(1.0).m11).matrix() * (Matrix2::identity() + any(1e-3)),
             1 => Matrix2::new(-1.0, 0.0, 0.0, 1.0) + any(0.5),
             _ => any(2.0),
         };
         let f1 = match i % 7 {
-            // Next to nothing; half a turn; a squeeze through zero; anything.
+            // Tiny changes; half a turn; a compression through zero; arbitrary ones.
             0 => f0 + any(1e-12),
             1 => f0 + any(1e-5),
             2 => Rotation::from_angle(std::f64::consts::PI).matrix() * (f0 + any(1e-9)),
@@ -233,7 +235,8 @@ fn the_discrete_gradient_is_exact() {
     assert!(worst[0] < 1e-12 && worst[1] < 1e-12, "{worst:?}");
 }
 
-/// Energy–momentum loses nothing: pulses, hands and edits aside, what damping takes is what goes.
+/// Energy–momentum has no dissipation beyond its tolerance: the energy decreases by the
+/// dissipation of the damping only.
 #[test]
 fn energy_momentum_books_only_its_tolerance() {
     let mut scene = with("swing", ENERGY_MOMENTUM, 1.0 / 120.0, 0, 2.0).moment("right", 20.0);
@@ -244,7 +247,7 @@ fn energy_momentum_books_only_its_tolerance() {
     assert!(ledger.integrator.abs() < 1e-9 * ledger.throughput, "{ledger:?}");
 }
 
-/// Stiffness damping does not resist turning: a body that turns without deforming keeps its angular momentum.
+/// Stiffness damping does not resist rotation: a body that rotates without deforming keeps its angular momentum.
 #[test]
 fn damping_by_stiffness_leaves_turning_alone() {
     let mut scene = with("spin", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 5.0);
@@ -258,7 +261,7 @@ fn damping_by_stiffness_leaves_turning_alone() {
     assert!((after / before - 1.0).abs() < 1e-9, "{before} {after}");
 }
 
-/// An explicit integrator is stable just below its critical step, and explodes, honestly, just above it.
+/// An explicit integrator is stable just below its critical step; just above it, it explodes and reports this.
 #[test]
 fn the_critical_step_is_critical() {
     let at = |factor: f64| {
@@ -279,7 +282,7 @@ fn the_critical_step_is_critical() {
     assert!(matches!(status, Status::Stopped(_)), "{status:?}");
 }
 
-/// Where a step has no solution it is halved, which the counts say, and what is conserved still is.
+/// A step without a solution is halved, which is counted, and conserved quantities are still conserved.
 #[test]
 fn a_step_that_fails_is_halved() {
     let mut scene = with("spin", ENERGY_MOMENTUM, 0.4, 0, 8.0);
@@ -315,7 +318,7 @@ fn edits_in_mid_motion_keep_position_and_velocity() {
     );
     simulation.step();
     assert!((simulation.state().time() - before.time() - 0.01).abs() < 1e-12);
-    // From motion to equilibrium and back: the body stays where it is, and loses its velocity.
+    // If the scene changes from dynamic to static, the body keeps its position and loses its velocity.
     let mut at_rest = edited.clone();
     at_rest.analysis = warpbeam::scene::Analysis::Static;
     (at_rest.dynamics, at_rest.start) = Default::default();
@@ -334,7 +337,7 @@ fn edits_in_mid_motion_keep_position_and_velocity() {
     assert!(farthest < 1e-6, "an equilibrium stays one: {farthest}");
 }
 
-/// A method stays finite whatever the scene, the stiffness and the step.
+/// Checks that a method gives finite results for all scenes, stiffnesses and steps.
 fn is_finite_everywhere(method: MethodKind) {
     for id in ["swing", "flick", "spin", "sway", "chime", "jelly"] {
         for young in [1e3, 1e6, 1e9, 1e12] {
@@ -353,19 +356,19 @@ fn is_finite_everywhere(method: MethodKind) {
     }
 }
 
-/// One solve a stage will do.
+/// One solve per stage is enough.
 #[test]
 fn tr_bdf2_is_finite_everywhere() {
     is_finite_everywhere(MethodKind::Newton);
 }
 
-/// What `auto` did in a motion.
+/// Returns the report of `auto` on a motion.
 fn report(simulation: &Simulation) -> MotionReport {
     simulation.solution().motion.unwrap().auto.unwrap()
 }
 
-/// The largest distance of two methods' bodies over a motion, percent of the largest displacement of the first; and the
-/// second's simulation.
+/// Returns the largest distance of two methods' bodies over a motion, percent of the largest displacement of the first,
+/// and the second's simulation.
 fn distance(scene: &Scene, methods: [MethodKind; 2]) -> (f64, Simulation) {
     let mut simulations = methods.map(|method| Simulation::new(&scene.clone().with_method(method)).unwrap());
     let (mut farthest, mut largest) = (0.0_f64, 0.0_f64);
@@ -413,7 +416,7 @@ fn auto_moves_as_newton_does_within_the_asked_error() {
     }
 }
 
-/// The error of a swing is its integrator's, not that of old factors; and these are kept for long.
+/// The error of a swing is due to its integrator, not to old factors, which are reused many times.
 #[test]
 fn auto_swings_as_well_with_far_fewer_factorizations() {
     for (rate, kind) in [(60, TR_BDF2), (120, TR_BDF2), (60, ENERGY_MOMENTUM)] {
@@ -434,7 +437,7 @@ fn auto_swings_as_well_with_far_fewer_factorizations() {
     }
 }
 
-/// Under small loads linear theory serves, for as long as its phase is right; under large ones it does not.
+/// Under small loads linear theory is used for as long as its phase is accurate; under large loads it is not.
 #[test]
 fn auto_uses_linear_theory_where_it_serves() {
     for kind in IMPLICIT {
@@ -449,7 +452,7 @@ fn auto_uses_linear_theory_where_it_serves() {
         let auto = run(&large.with_method(MethodKind::Auto));
         assert!(!auto.is_linear() && report(&auto).linear_steps < 5, "{:?}", report(&auto));
     }
-    // Loads between: for a while.
+    // Under loads in between, it is used for a while.
     let mut between = with("swing", TR_BDF2, 1.0 / 60.0, 1, 10.0);
     between.scale_loads(2e-3);
     let (error, auto) = distance(&between, NEWTON_AND_AUTO);
@@ -457,7 +460,7 @@ fn auto_uses_linear_theory_where_it_serves() {
     assert!((10..600).contains(&report(&auto).linear_steps), "{:?}", report(&auto));
 }
 
-/// Linear theory knows no buckling: `auto` must not leave a column to it.
+/// Linear theory has no buckling, so that `auto` must not use it for a column.
 #[test]
 fn auto_sees_a_column_buckle() {
     let euler = std::f64::consts::PI.powi(2) * 1e6 / 12.0 * f64::powi(0.05, 3) / 4.0;
@@ -469,10 +472,11 @@ fn auto_sees_a_column_buckle() {
     assert!(error <= 1.0, "{error} {:?}", report(&auto));
 }
 
-/// The same scene gives bitwise the same motion, whatever was kept before: what `auto` decides depends on no clock.
+/// The same scene gives bitwise the same motion, with any previous state: the decisions of `auto` do not
+/// depend on time measurements.
 #[test]
 fn auto_is_reproduced_to_the_last_bit() {
-    // The smaller load is left to linear theory until that may have lost the phase.
+    // Linear theory is used for the smaller load until its phase may be inaccurate.
     for (id, kind, load) in [("flick", TR_BDF2, 1.0), ("swing", ENERGY_MOMENTUM, 1.0), ("swing", TR_BDF2, 2e-3)] {
         let mut scene =
             with(id, kind, 1.0 / 120.0, 1, if load < 1.0 { 8.0 } else { 0.5 }).with_method(MethodKind::Auto);
@@ -489,7 +493,8 @@ fn auto_is_reproduced_to_the_last_bit() {
     }
 }
 
-/// Old factors must not cost what energy–momentum is for; nor must coming and going of linear theory be hidden.
+/// Old factors must not spoil the conservation of energy–momentum, and switches to and from
+/// linear theory must be recorded.
 #[test]
 fn auto_keeps_what_energy_momentum_keeps() {
     let scene = with("swing", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 10.0).with_method(MethodKind::Auto);
@@ -501,7 +506,7 @@ fn auto_keeps_what_energy_momentum_keeps() {
     assert!((momentum(&simulation).angular / before - 1.0).abs() < 1e-6);
 }
 
-/// A hand takes hold of a body at rest, pulls and lets go, and the material is another one: as under Newton.
+/// A body at rest is grabbed, pulled, and released with another material: the motion is the same as under Newton.
 #[test]
 fn auto_follows_a_hand_and_edits() {
     for kind in IMPLICIT {
@@ -536,7 +541,7 @@ fn auto_follows_a_hand_and_edits() {
     }
 }
 
-/// What is decided is shown, to programs and to people.
+/// The decisions are reported in JSON and in the text output.
 #[test]
 fn auto_says_what_it_did() {
     let args = ["swing", "--set", "solver.method=\"auto\"", "--set", "dynamics.duration=0.5"];
@@ -554,7 +559,7 @@ fn auto_is_finite_everywhere() {
     is_finite_everywhere(MethodKind::Auto);
 }
 
-/// A body is at rest once nothing has moved for half a second and ten steps, and no pulse is to come.
+/// A body is at rest if nothing has moved for half a second and ten steps, and no pulse will follow.
 #[test]
 fn a_body_at_rest_is_said_to_be() {
     for h in [1.0 / 60.0, 0.125] {
@@ -576,7 +581,7 @@ fn a_body_at_rest_is_said_to_be() {
         assert!(rested > 5, "it comes to rest");
         assert_eq!(simulation.problem().loads().last_pulse_end(), Some(2.0));
     }
-    // A search is at rest at its end, and a motion that was given up.
+    // A search is at rest when it ends, and so is a motion that was stopped.
     let mut search = Simulation::new(&scene("cantilever")).unwrap();
     assert!(!search.is_at_rest() && search.problem().loads().last_pulse_end().is_none());
     search.solve();
@@ -589,7 +594,7 @@ fn a_body_at_rest_is_said_to_be() {
     assert!(exploding.is_at_rest());
 }
 
-/// Pulses of forces and moments: the last one's end.
+/// For pulses of forces and moments, this is the end of the last one.
 #[test]
 fn the_last_pulse_ends_when_its_load_does() {
     let scene = beam(4, 10.0).force("right", [0.0, 1.0]).pulse(0.2, 0.3).moment("right", 1.0).pulse(0.1, 0.6);
@@ -597,7 +602,7 @@ fn the_last_pulse_ends_when_its_load_does() {
     assert!((end - 0.7).abs() < 1e-12, "{end}");
 }
 
-/// A ledger that is kept goes on; one that is taken up again begins where the body is.
+/// A ledger that is kept continues; a ledger that is switched on again starts from the current state.
 #[test]
 fn a_ledger_taken_up_again_begins_anew() {
     let mut simulation = Simulation::new(&scene("swing")).unwrap();
@@ -618,7 +623,7 @@ fn a_ledger_taken_up_again_begins_anew() {
     assert!(after.throughput > 0.0 && after.imbalance().abs() < 1e-11 * after.throughput, "{after:?}");
 }
 
-/// The critical step is that of the scene as it stands, whatever of it was edited.
+/// The critical step is that of the current scene, after any edit.
 #[test]
 fn the_critical_step_follows_edits() {
     let mut scene = with("swing", SYMPLECTIC, 1e-5, 1, 1e3);
@@ -644,7 +649,7 @@ fn the_critical_step_follows_edits() {
     assert_eq!(simulation.motion().unwrap().critical_step(), None);
 }
 
-/// What pulses and a hand put in is force times way, by the trapezoidal rule over steps that are short.
+/// The work of pulses and the mouse spring is force times displacement, by the trapezoidal rule over short steps.
 #[test]
 fn works_are_forces_times_ways() {
     for (kind, close) in [(EULER, 1e-9), (TR_BDF2, 2e-3), (ENERGY_MOMENTUM, 2e-3), (SYMPLECTIC, 2e-3)] {
@@ -657,7 +662,7 @@ fn works_are_forces_times_ways() {
         let middle = simulation.system().mesh().locate(Vector2::new(0.6, 0.01)).unwrap();
         let (mut pulses, mut hands) = (0.0, 0.0);
         let right = simulation.system().edges().iter().position(|edge| edge.name() == "right").unwrap();
-        // The mean over a step, by Simpson's rule on many parts.
+        // Mean over a step, by Simpson's rule on many parts.
         let pulse = |from: f64, to: f64| {
             let at = |time: f64| {
                 let part = (time - 0.05) / 0.4;
@@ -698,7 +703,7 @@ fn works_are_forces_times_ways() {
     }
 }
 
-/// What damping takes is booked as damping: of a first mode under mass damping a, 1 − exp(−a t) of its energy.
+/// Dissipation is recorded as damping: under mass damping a, a first mode loses 1 − exp(−a t) of its energy.
 #[test]
 fn damping_is_booked_as_damping() {
     for kind in [TR_BDF2, ENERGY_MOMENTUM, SYMPLECTIC] {
@@ -720,7 +725,7 @@ fn damping_is_booked_as_damping() {
     }
 }
 
-/// Coming to linear theory and leaving it changes what the energy of a state is: the books say so.
+/// A switch to or from linear theory changes the energy of a state, which the ledger records.
 #[test]
 fn a_change_of_theory_is_booked() {
     let mut scene = with("swing", TR_BDF2, 1.0 / 60.0, 1, 4.0).with_method(MethodKind::Auto);
@@ -739,7 +744,7 @@ fn a_change_of_theory_is_booked() {
     assert!(changes >= 2, "{changes} changes, {:?}", report(&simulation));
 }
 
-/// A free body starts with the velocity and the spin of its scene, about its own centre, and is given up far away.
+/// A free body starts with its scene's velocity and with its spin about its centre. It is stopped when it is far away.
 #[test]
 fn a_body_starts_as_its_scene_says() {
     let mut scene = Scene::beam(2.0, 1.0).with_cells(6, 3).moving(TR_BDF2, 0.5).probe("end", "right");
@@ -756,10 +761,10 @@ fn a_body_starts_as_its_scene_says() {
     let mass = 2.0 * scene.material.area_density();
     let start = momentum(&simulation);
     assert!((start.linear - Vector2::new(3.0, -1.5) * mass).norm() < 1e-9 * mass);
-    // About the origin: c × m v, and the spin's own, ω m (L² + H²)/12.
+    // Angular momentum about the origin: c × m v, and that of the spin, ω m (L² + H²)/12.
     let expected = mass * (centre.perp(&Vector2::new(3.0, -1.5)) + 0.7 * 5.0 / 12.0);
     assert!((start.angular - expected).abs() < 1e-9 * mass, "{} {expected}", start.angular);
-    // Nothing holds it: it goes on for ever, until its strains have lost their digits.
+    // A free body moves on until it is so far away that its strains have lost their digits.
     let mut thrown = scene.clone();
     (thrown.start.velocity, thrown.start.spin) = ([0.0, 9e3], 0.0);
     thrown.dynamics.time_step = 10.0;
@@ -772,7 +777,7 @@ fn a_body_starts_as_its_scene_says() {
     }
     assert!(matches!(simulation.status(), Status::Stopped(StopReason::RanAway(_))), "{:?}", simulation.status());
     assert!(simulation.probe("end").unwrap().norm() > limit);
-    // What a step leaves unsolved is nothing where it iterates, and little where it solves once.
+    // The residual of a step is below the tolerance if it iterates, and small if it solves once.
     let left = |iterations: u32| {
         let mut scene = with("swing", TR_BDF2, 1.0 / 60.0, iterations, 1.0);
         scene.solver.tolerance = 1e-9;
@@ -781,7 +786,7 @@ fn a_body_starts_as_its_scene_says() {
     assert!(left(0) <= 1e-9 && (1e-8..0.1).contains(&left(1)), "{:e} {:e}", left(0), left(1));
 }
 
-/// An edit is a new beginning: a body goes on from an edit as one does that starts there, whatever was kept before.
+/// After an edit, a motion continues like one that starts in this state, independent of any cached data.
 #[test]
 fn an_edited_motion_goes_on_as_a_new_one_would() {
     for method in [MethodKind::Linear, MethodKind::Newton, MethodKind::Auto] {
@@ -791,7 +796,7 @@ fn an_edited_motion_goes_on_as_a_new_one_would() {
             scene.solver.max_error_percent = 0.1;
             let mut simulation = Simulation::new(&scene).unwrap();
             (0..20).for_each(|_| drop(simulation.step().clone()));
-            // Where it stands still for an instant: at rest nothing but place is left of what was.
+            // `start_from` sets this displacement with zero velocity, so that both motions start in the same state.
             let u = simulation.displacement().to_vec();
             let mut edited = scene.clone();
             edited.material = Material { density: 500.0, ..Material::new(4e6, 0.2) };
@@ -810,7 +815,7 @@ fn an_edited_motion_goes_on_as_a_new_one_would() {
             }
         }
     }
-    // And without a new start, where nothing is approximate.
+    // The same without a new start, if the solves are not approximate.
     for method in [MethodKind::Linear, MethodKind::Newton] {
         let mut scene = with("swing", EULER, 1.0 / 60.0, 0, 1e3).with_method(method);
         scene.scale_loads(0.1);
@@ -834,7 +839,7 @@ fn an_edited_motion_goes_on_as_a_new_one_would() {
     }
 }
 
-/// Linear theory's equations are linear, those of damping and of a hand within its reach too: one solve leaves nothing.
+/// In linear theory one solve is exact, also with damping and with the mouse spring below its largest force.
 #[test]
 fn one_solve_is_exact_in_linear_theory() {
     for kind in IMPLICIT {
@@ -861,7 +866,7 @@ fn one_solve_is_exact_in_linear_theory() {
     }
 }
 
-/// However a step is cut up, a body in flight is where its velocity takes it.
+/// A free body moves with its velocity, however a step is divided.
 #[test]
 fn halved_steps_make_up_the_step() {
     let mut scene = with("spin", ENERGY_MOMENTUM, 0.4, 0, 4.0);
@@ -875,7 +880,7 @@ fn halved_steps_make_up_the_step() {
     assert!((centre - Vector2::new(2.0, -1.0)).norm() < 1e-2, "{centre}");
 }
 
-/// Damping ratio ξ = (a/ω + b ω)/2: the critical step is 2 (√(1 + ξ²) − ξ)/ω.
+/// With the damping ratio ξ = (a/ω + b ω)/2, the critical step is 2 (√(1 + ξ²) − ξ)/ω.
 #[test]
 fn damping_shortens_the_critical_step_as_theory_says() {
     let scene = beam(6, 10.0);
@@ -895,7 +900,7 @@ fn damping_shortens_the_critical_step_as_theory_says() {
     }
 }
 
-/// What supports fix has neither velocity nor displacement, whatever a body is started with.
+/// Supported unknowns have neither velocity nor displacement, whatever the body is started with.
 #[test]
 fn supports_stop_what_they_hold() {
     let mut scene = beam(6, 10.0).with_method(MethodKind::Newton);

@@ -1,4 +1,4 @@
-//! Edits under a solved body: what they keep and what they leave.
+//! Tests of edits to a solved body: cached data and state that they keep or discard.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -13,7 +13,7 @@ fn largest(simulation: &Simulation) -> f64 {
     simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max)
 }
 
-/// No edit of loads sends a loaded body back to rest, also where it couples unknowns that were not coupled.
+/// An edit of loads keeps the state of a loaded body, even if it couples unknowns that were not coupled.
 #[test]
 fn edits_of_loads_keep_the_state() {
     let start = scene_with("cantilever", &["solver.method=newton", "solver.tolerance=1e-12"]);
@@ -39,7 +39,7 @@ fn edits_of_loads_keep_the_state() {
         for (a, b) in simulation.displacement().iter().zip(fresh.displacement()) {
             assert!((a - b).norm() < 1e-6, "{what}: {a} {b}");
         }
-        // And back, which needs no other couplings.
+        // The reverse edit needs no other couplings.
         let system = simulation.system().clone();
         simulation.change_scene(&start).unwrap();
         assert!(Arc::ptr_eq(&system, simulation.system()), "{what}");
@@ -48,7 +48,7 @@ fn edits_of_loads_keep_the_state() {
     }
 }
 
-/// What an edit does not change is not made again, and one system serves all who solve on it.
+/// Unchanged parts are not recomputed by an edit, and simulations share one system.
 #[test]
 fn equations_are_shared_and_kept() {
     let mut body = solved(&scene("cantilever"));
@@ -66,14 +66,14 @@ fn equations_are_shared_and_kept() {
     ghost_scene.solver.method = MethodKind::Linear;
     let ghost = Simulation::with_system(&ghost_scene, system.clone()).unwrap();
     assert!(Arc::ptr_eq(&system, ghost.system()));
-    // Another mesh is another system.
+    // Another mesh needs another system.
     body.change_scene(&other.clone().with_cells(40, 4)).unwrap();
     assert!(!Arc::ptr_eq(&system, body.system()));
     fn shared_between_threads<T: Send + Sync>(_: &T) {}
     shared_between_threads(&body);
 }
 
-/// A mesh of the caller's stays through every edit; nothing swaps it for the scene's own.
+/// A mesh given by the caller is kept by every edit and never replaced by the scene's own.
 #[test]
 fn a_mesh_of_ones_own_survives_every_edit() {
     let scene = scene("elastica");
@@ -115,7 +115,7 @@ fn without_geometry(scene: &Scene) -> Scene {
     scene
 }
 
-/// A mesh file is read when the scene is opened, and never again: an edit works though the file is gone.
+/// A mesh file is read once, when the scene is opened: edits work after the file has been deleted.
 #[test]
 fn a_mesh_file_is_read_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -155,7 +155,7 @@ fn a_refused_edit_changes_nothing() {
     assert_eq!((simulation.scene(), simulation.state(), simulation.status()), (&before, &state, &Status::Converged));
 }
 
-/// A copy shows what the search is at an instant, whatever becomes of that, and can go on by itself to the same end.
+/// A snapshot keeps the state of a search at one instant, and can continue by itself to the same end.
 #[test]
 fn a_snapshot_stays_and_can_go_on() {
     for method in METHODS.iter().map(|method| method.kind) {

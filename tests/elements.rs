@@ -1,4 +1,4 @@
-//! Elements against independent numbers. What every element must do is in `tests/registry`.
+//! Compares elements with independent numbers. Tests that every element must pass are in `tests/registry`.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -20,13 +20,13 @@ fn material(plane: Plane) -> Material {
     Material { young: 100.0, poisson: 0.3, density: 1.0, thickness: 0.5, plane }
 }
 
-/// The quadrature points of an element with these rest nodes.
+/// Returns the quadrature points of an element with these rest nodes.
 fn points<const N: usize>(kind: ElementKind, nodes: [[f64; 2]; N]) -> Vec<QuadraturePoint<N>> {
     let rest = nodes.map(Vector2::from);
     kind.entry().points.iter().map(|p| QuadraturePoint::new(kind.entry(), &rest, p.at, p.weight)).collect()
 }
 
-/// Numbers computed independently in rational arithmetic: the first two rows of Ke.
+/// The first two rows of Ke match numbers computed independently in rational arithmetic.
 #[test]
 fn t3_stiffness_matches_independent_numbers() {
     let rows = [
@@ -51,7 +51,7 @@ fn t3_stiffness_matches_independent_numbers() {
     }
 }
 
-/// The same triangle, moved: F, R, S, the warped force and the energy.
+/// F, R, S, the warped force and the energy of the same triangle in a deformed state.
 #[test]
 fn t3_warped_force_matches_independent_numbers() {
     let cases = [
@@ -79,7 +79,7 @@ fn t3_warped_force_matches_independent_numbers() {
         let psi = point.area * 0.5 * moduli.stress(&strain).dot(&strain);
         assert!((psi - energy).abs() < 1e-9, "{psi}");
         assert!((point.area * moduli.energy_density(&strain) - energy).abs() < 1e-9);
-        // Eq. (2), written out with matrices: R Ke (Rᵀ x − X).
+        // Eq. (2) with matrices: R Ke (Rᵀ x − X).
         let stiffness = ElementStiffness::new(&[point], moduli);
         let flat = |p: [[f64; 2]; 3]| DVector::from_iterator(6, p.into_iter().flatten());
         let written_out = stiffness.rkrt(r) * flat(MOVED) - stiffness.force_offset(r, &flat(X));
@@ -89,7 +89,7 @@ fn t3_warped_force_matches_independent_numbers() {
     }
 }
 
-/// Uniaxial stress: axial strain p/E, lateral −ν p/E (the numbers SOFA's LinearElasticity_test uses).
+/// Uniaxial stress: axial strain p/E, lateral −ν p/E (the numbers of SOFA's LinearElasticity_test).
 #[test]
 fn uniaxial_stress_gives_the_strains_of_the_book() {
     for (young, nu, p) in itertools(&[1.0, 2.0], &[0.0, 0.3, 0.49], &[0.2, -0.2, 0.6, -0.6]) {
@@ -118,7 +118,7 @@ fn plane_strain_has_no_strain_out_of_the_plane() {
     assert!((m.elasticity_matrix().m11 - (lambda + 2.0 * mu)).abs() < 1e-12);
 }
 
-/// Numbers computed independently in rational arithmetic: the first two rows of the T6 stiffness.
+/// The first two rows of the T6 stiffness match numbers computed independently in rational arithmetic.
 #[test]
 fn t6_stiffness_matches_independent_numbers() {
     let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
@@ -162,7 +162,7 @@ fn dead_force(scene: &Scene) -> Vec<Vector2<f64>> {
     problem.loads().dead_force().to_vec()
 }
 
-/// On a mesh with curved sides: gravity is the weight of the true area, and a traction's parts add up to the force.
+/// On a mesh with curved sides, gravity is the weight of the true area, and the parts of a traction sum to its force.
 #[test]
 fn loads_on_curved_elements_add_up() {
     let mut scene = common::scene("bracket");
@@ -179,7 +179,7 @@ fn loads_on_curved_elements_add_up() {
     assert!(problem.unwrap_err().to_string().contains("expected a straight edge"));
 }
 
-/// A force at a point pulls the nearest node, as it is given: its reaction is its opposite, and it does work.
+/// A force at a point acts unchanged on the nearest node: the reaction is its opposite, and it does work.
 #[test]
 fn a_force_at_a_point_pulls_the_nearest_node() {
     let mut scene = common::scene("cantilever");
@@ -196,11 +196,12 @@ fn a_force_at_a_point_pulls_the_nearest_node() {
     assert!(result.probes[0].u.y < 0.0 && result.energy.external > 0.0);
 }
 
-/// A quadrilateral far from a parallelogram.
+/// A quadrilateral that is far from a parallelogram.
 const QUAD: [[f64; 2]; 4] = [[0.1, -0.2], [2.0, 0.3], [1.5, 1.4], [-0.3, 1.0]];
 
-/// Taylor, Beresford and Wilson's element as the books write it: 3 × 12 strain matrices at 2 × 2 points, the modes'
-/// gradients with the Jacobian of the centre over that of the point, the last four unknowns condensed.
+/// Returns the stiffness of Taylor, Beresford and Wilson's element in its textbook form: 3 × 12 strain matrices
+/// at 2 × 2 points, the modes' gradients scaled with the Jacobian of the centre over that of the point, and the
+/// last four unknowns condensed.
 fn textbook_q4(material: &Material) -> SMatrix<f64, 8, 8> {
     let gauss = 1.0 / 3f64.sqrt();
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
@@ -238,14 +239,14 @@ fn textbook_q4(material: &Material) -> SMatrix<f64, 8, 8> {
     uu - uc * all.fixed_view::<4, 4>(8, 8).try_inverse().unwrap() * uc.transpose()
 }
 
-/// One element, free at its first corner only through `free`.
+/// Returns the problem of a single free quadrilateral.
 fn one_quad(scene: &Scene) -> Problem {
     let nodes = QUAD.map(Vector2::from).to_vec();
     let mesh = Mesh::new(nodes, ElementKind::Q4, vec![0, 1, 2, 3], Default::default()).unwrap();
     Problem::new(scene, System::with_mesh(scene, mesh).unwrap().into()).unwrap()
 }
 
-/// The element is the textbook's, however it is computed: its force in linear theory is Ke u, its A is Ke at rest.
+/// The element equals the textbook's: its force in linear theory is Ke u, and its A at rest is Ke.
 #[test]
 fn q4_is_the_textbooks_element() {
     use warpbeam::scene::Analysis;
@@ -274,8 +275,8 @@ fn q4_is_the_textbooks_element() {
     }
 }
 
-/// The energy, force and Hessian in one far state, against W(x) = ½ d Ke d, d = Rᵀ(x − x̄) − (X − X̄), written out with
-/// matrices and differentiated by finite differences.
+/// Energy, force and Hessian in a strongly deformed state equal those of W(x) = ½ d Ke d, d = Rᵀ(x − x̄) − (X − X̄),
+/// computed with matrices and finite differences.
 #[test]
 fn q4_energy_is_that_of_the_turned_element() {
     const STEP: f64 = 1e-5;
@@ -327,8 +328,8 @@ fn q4_energy_is_that_of_the_turned_element() {
     }
 }
 
-/// A uniform traction on a side: half to each end of a straight one, Simpson's parts where it has a node in its middle;
-/// on a curved one they sum to its length, and balance where its nodes mirror each other.
+/// A uniform traction is distributed over a side: half to each end of a straight side, Simpson's weights if it has a
+/// middle node. On a curved side, the weights sum to its length, and are symmetric if the nodes are.
 #[test]
 fn a_traction_is_shared_out_along_a_side() {
     let line = [Vector2::new(1.0, 2.0), Vector2::new(2.5, 4.0), Vector2::new(4.0, 6.0)];
@@ -339,7 +340,7 @@ fn a_traction_is_shared_out_along_a_side() {
     close(&side_weights(&[line[0], line[2]]), &[2.5, 2.5]);
     close(&side_weights(&line), &[5.0 / 6.0, 20.0 / 6.0, 5.0 / 6.0]);
     close(&side_weights(&line[..1]), &[0.0]);
-    // A parabola y = 4 b s (1 − s) over a chord of length 1: its length in closed form.
+    // A parabola y = 4 b s (1 − s) over a chord of length 1, whose length has a closed form.
     let b: f64 = 0.1;
     let arc = side_weights(&[Vector2::zeros(), Vector2::new(0.5, b), Vector2::new(1.0, 0.0)]);
     let length = 0.5 * (1.0 + 16.0 * b * b).sqrt() + (4.0 * b).asinh() / (8.0 * b);
@@ -347,7 +348,7 @@ fn a_traction_is_shared_out_along_a_side() {
     assert!((arc[0] - arc[2]).abs() < 1e-14 && arc[1] > arc[0] && arc[0] > 0.0, "{arc:?}");
 }
 
-/// A turn is no strain: to the square of the rounding, small as it may be.
+/// A small rotation gives no strain, up to a rounding error relative to the squared angle.
 #[test]
 fn a_small_turn_strains_nothing() {
     for angle in [1e-9_f64, 1e-6, 1e-4] {
@@ -356,12 +357,12 @@ fn a_small_turn_strains_nothing() {
         let strain = warped_strain(Rotation::from_angle(angle), &h);
         assert!(strain.amax() < 1e-15 * angle * angle, "{angle}: {strain:e}");
     }
-    // With the loads' own tangent belongs what is all of G, and nothing else.
+    // The loads' own tangent is added if all of G is, and only then.
     let exact = [Tangent::EXACT, Tangent::GEOMETRIC, Tangent::WARPED, Tangent::DEFINITE].map(|t| t.is_exact());
     assert_eq!(exact, [true, true, false, false]);
 }
 
-/// Few cells are enough, and few solves; percent of the tip's displacement, against the scene's own truth.
+/// Few cells and few solves suffice. Errors are in percent of the tip's displacement in the scene's reference solution.
 #[test]
 fn q4_bends_with_few_cells() {
     let cases = [
@@ -387,7 +388,8 @@ fn q4_bends_with_few_cells() {
     }
 }
 
-/// Nearly incompressible in plane strain, stubby and slender, under a small load: Timoshenko's beam with E/(1 − ν²).
+/// Nearly incompressible plane strain under a small load, against Timoshenko's beam with
+/// E/(1 − ν²), stubby and slender.
 #[test]
 fn q4_locks_neither_in_shear_nor_in_volume() {
     let (young, nu, load) = (1e6, 0.4999, 1e-3);
@@ -411,8 +413,8 @@ fn q4_locks_neither_in_shear_nor_in_volume() {
     }
 }
 
-/// Stretched, so that tension alone makes G positive, and twisted, so that the turning part of G is not: its positive
-/// part is no less than G, and no less than nothing.
+/// The body is stretched, so that tension alone would make G positive, and twisted, so that the rotational part of G is
+/// not. With the positive part of G, the tangent is no less than the exact one and no less than the one without G.
 #[test]
 fn q4_positive_part_of_g_is_positive() {
     let mut scene = Scene::named("One").with_material(material(Plane::Stress));

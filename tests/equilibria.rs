@@ -1,4 +1,4 @@
-//! Exact equilibria: six-node triangles, Newton, certificates, and the numbers they must reach.
+//! Tests of exact equilibria: six-node triangles, Newton's method, certificates, and required accuracies.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -13,7 +13,8 @@ fn tip(simulation: &Simulation) -> Vector2<f64> {
     simulation.solution().probes[0].x
 }
 
-/// Every row of the table with T6 20×1, and the slender ones with 40×2.
+/// The error of T6 20×1 is within its bound in every row of the table; 40×2 has a tighter bound, for slender beams
+/// under moderate loads.
 #[test]
 fn the_reference_table_is_met() {
     let mut worst = [0.0f64; 3];
@@ -48,7 +49,7 @@ fn the_reference_table_is_met() {
     );
 }
 
-/// Solves from rest, all of the load at once, within the bounds.
+/// Solves from rest under the whole load need no more iterations than these bounds.
 #[test]
 fn newton_needs_few_solves() {
     let mut most = [0; 4];
@@ -74,7 +75,7 @@ fn newton_needs_few_solves() {
     println!("most solves: α ≤ 10 {}, L/H = 500 {}, α = 100 {}, α = 1000 {}", most[0], most[1], most[2], most[3]);
 }
 
-/// The whole box: every case ends certified.
+/// Every case in the range of parameters ends certified.
 #[test]
 fn every_case_of_the_box_is_certified() {
     let mut missed = Vec::new();
@@ -108,7 +109,7 @@ fn every_case_of_the_box_is_certified() {
     assert!(missed.is_empty(), "{} missed: {missed:#?}", missed.len());
 }
 
-/// An end moment of 2πEI/L closes the beam to a circle.
+/// An end moment of 2πEI/L bends the beam into a circle.
 #[test]
 fn the_beam_rolls_up_to_a_circle() {
     let mut simulation = solved(&scene("roll-up"));
@@ -119,17 +120,18 @@ fn the_beam_rolls_up_to_a_circle() {
     println!("gap {:.3} % of L after {} solves", 100.0 * gap, simulation.iterations());
 }
 
-/// Compression through buckling: the side load decides, and the equilibrium found is the buckled, stable one.
+/// Under compression beyond buckling, the side load selects the direction, and the result is the
+/// buckled, stable equilibrium.
 #[test]
 fn the_column_buckles() {
     let mut simulation = solved(&scene("column"));
     assert_eq!(simulation.certify().stable, Some(true));
     assert!(tip(&simulation).y > 5.0);
     let other = solved(&scene_with("column", &["load.0.force=[-700,-2]"]));
-    // The mirror image, but for the mesh's diagonals, which have none.
+    // The result is the mirror image, except for the mesh's diagonals, which are not symmetric.
     let mirrored = Vector2::new(tip(&simulation).x, -tip(&simulation).y);
     assert!((tip(&other) - mirrored).norm() < 0.002 * 20.0, "{} {mirrored}", tip(&other));
-    // Without a side load the straight column is an equilibrium, and reported as what it is.
+    // Without a side load the straight column is an equilibrium, and is reported as unstable.
     let mut straight =
         Simulation::new(&scene_with("column", &["load.0.force=[-700,0]", "beam.diagonals=same"])).unwrap();
     straight.solve();
@@ -137,7 +139,7 @@ fn the_column_buckles() {
     assert!(tip(&straight).y.abs() < 1e-3, "{}", tip(&straight));
 }
 
-/// ρ says which loads `warped` converges for.
+/// ρ predicts the loads for which `warped` converges.
 #[test]
 fn rho_predicts_where_the_warped_iteration_converges() {
     let (mut below, mut above) = (0, 0);
@@ -155,7 +157,7 @@ fn rho_predicts_where_the_warped_iteration_converges() {
             } else {
                 above += 1
             }
-            // And ρ is the rate at which its steps shrink.
+            // ρ is also the ratio of successive steps.
             if rho < 0.9 {
                 let ratio = simulation.step_ratio().unwrap();
                 assert!((ratio - rho).abs() < 0.2 * rho + 0.05, "α {alpha}: ratio {ratio}, ρ {rho}");
@@ -165,11 +167,11 @@ fn rho_predicts_where_the_warped_iteration_converges() {
     assert!(below >= 6 && above >= 6, "{below} below 1, {above} above");
 }
 
-/// Cook's membrane on meshes of n × n cells: the middle of the loaded edge rises by 23.96.
+/// Cook's membrane on n × n cells: the middle of the loaded edge rises by 23.96.
 #[test]
 fn cooks_membrane_converges() {
     let middle = |element: ElementKind, n: u32| {
-        // A unit square, mapped.
+        // A unit square, mapped to the membrane.
         let square = Scene::beam(1.0, 1.0).with_cells(n, n).with_element(element);
         let mesh = Mesh::beam(square.beam.as_ref().unwrap()).unwrap();
         let map = |x: Vector2<f64>| {
@@ -195,7 +197,7 @@ fn cooks_membrane_converges() {
     assert!((t3[3] - 23.96).abs() < 0.15, "{t3:?}");
 }
 
-/// Out of iterations, Newton leaves the last equilibrium it reached, under the part of the load that has it.
+/// Out of iterations, Newton keeps the last equilibrium that it reached, and reports its part of the load.
 #[test]
 fn a_failure_keeps_the_last_good_state() {
     let mut kept = 0;
@@ -214,7 +216,7 @@ fn a_failure_keeps_the_last_good_state() {
     assert!(kept > 10);
 }
 
-/// A load that is changed under a solved body is followed from there, and ends where a start at rest ends.
+/// If the load of a solved body changes, the solve continues from its state and gives the result of a start at rest.
 #[test]
 fn a_changed_load_is_followed_from_where_the_body_is() {
     let mut dragged = solved(&cantilever(20.0, 2.0, &[]));
@@ -227,7 +229,7 @@ fn a_changed_load_is_followed_from_where_the_body_is() {
 }
 
 /// The straight column is an equilibrium under any axial load (exactly so for ν = 0); beyond Euler's load it is
-/// certified as what it is: unstable.
+/// certified as unstable.
 #[test]
 fn an_unstable_equilibrium_is_reported_as_unstable() {
     let euler = std::f64::consts::PI.powi(2) * 1e6 / 12.0 / (4.0 * 20.0 * 20.0);
@@ -246,7 +248,7 @@ fn an_unstable_equilibrium_is_reported_as_unstable() {
     }
 }
 
-/// Out of iterations, `newton` leaves the last equilibrium it found, of the share of the load that it reports; the
+/// Out of iterations, `newton` keeps the last equilibrium that it found, for the part of the load that it reports. The
 /// residual is that of the whole load.
 #[test]
 fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
@@ -269,7 +271,8 @@ fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
     assert!((a - b).norm() < 1e-3 * b.norm(), "{a} {b}");
 }
 
-/// The warped iteration's steps shrink by ρ in the end, the less the larger the load; Newton's method has no such ratio.
+/// The steps of the warped iteration finally decrease by the factor ρ, which grows with the load.
+/// Newton's method has no such ratio.
 #[test]
 fn steps_shrink_by_rho() {
     let mut before = 0.0;
@@ -298,7 +301,7 @@ fn steps_shrink_by_rho() {
     }
 }
 
-/// What supports fix, node by node.
+/// Supports fix exactly their unknowns, node by node.
 #[test]
 fn supports_fix_what_they_say() {
     let scene = Scene::beam(4.0, 1.0).with_cells(4, 2).clamp("left").support([4.0, -0.5], &[Axis::Y]);
@@ -314,14 +317,14 @@ fn supports_fix_what_they_say() {
         assert_eq!(pattern.fixed(node), expected, "at {x}");
         assert_eq!([0, 1].map(|axis| pattern.mask()[node as usize][axis] == 0.0), expected);
     }
-    // A nodal vector times one over the free unknowns: what is fixed counts nothing.
+    // The product of a nodal vector with one over the free unknowns: fixed unknowns do not count.
     let nodal: Vec<_> = mesh.nodes().iter().map(|x| Vector2::new(1.0 + x.x, 2.0 - 3.0 * x.y)).collect();
     let free: Vec<f64> = (0..simulation.system().dofs()).map(|i| (i as f64 + 1.0).sqrt()).collect();
     let mut spread = vec![Vector2::zeros(); nodal.len()];
     pattern.add_free(&free, 1.0, &mut spread);
     let product: f64 = nodal.iter().zip(&spread).map(|(a, b)| a.dot(b)).sum();
     assert!((pattern.dot(&nodal, &free) / product - 1.0).abs() < 1e-12 && product > 1.0);
-    // Its norm, whatever its size.
+    // Its norm, for vectors of any magnitude.
     let plain = pattern.norm(&spread);
     assert!((plain / free.iter().map(|v| v * v).sum::<f64>().sqrt() - 1.0).abs() < 1e-12);
     for size in [1e-250, 1e-160, 1e160, 1e250] {
@@ -331,14 +334,14 @@ fn supports_fix_what_they_say() {
     assert_eq!(pattern.fixed(mesh.nodes().len() as u32), [true, true], "no node moves where there is none");
 }
 
-/// Whether supports hold a body depends on neither its size nor its place.
+/// The check of the supports gives the same result for bodies of any size at any position.
 #[test]
 fn a_clamp_is_a_clamp_at_any_size_and_place() {
     for size in [1e-4, 1.0, 1e4] {
         let scene = Scene::beam(10.0 * size, size).clamp("left").force("right", [0.0, -1.0]);
         let simulation = Simulation::new(&scene);
         assert!(simulation.is_ok(), "{size} m: {:?}", simulation.err());
-        // Along its middle line a body can still turn, wherever that is.
+        // A body supported along its middle line only can rotate, at any position.
         let hinged = Scene::beam(10.0 * size, size).with_cells(4, 2).support([0.0, 0.0], &[Axis::X, Axis::Y]);
         assert!(Simulation::new(&hinged).is_err());
         let two = hinged.support([10.0 * size, 0.0], &[Axis::X]);
@@ -354,7 +357,7 @@ fn a_clamp_is_a_clamp_at_any_size_and_place() {
     assert!(off < 1e-6 * near.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max), "{off}");
 }
 
-/// A reset, before, at and after the end, leads back to the start of the scene, and forgets what was found out.
+/// A reset before, at or after the end restores the start of the scene and discards all results.
 #[test]
 fn a_reset_goes_back_to_the_start() {
     for id in ["cantilever", "swing", "spin"] {
@@ -382,8 +385,8 @@ fn a_reset_goes_back_to_the_start() {
     }
 }
 
-/// Supports balance the moment of the loads too, with the lever arms of the bent body: clamped, and on a roller that has
-/// moved on. Before anything has moved they carry nothing, though the load is there.
+/// Supports balance the moment of the loads with the lever arms of the deformed body: with a clamp, and with a roller
+/// that has moved. Before the first iteration the reactions are zero, although the load is applied.
 #[test]
 fn reactions_balance_moments() {
     let beam = || Scene::beam(10.0, 1.0).with_cells(20, 2).with_method(MethodKind::Newton);
@@ -410,8 +413,8 @@ fn reactions_balance_moments() {
     }
 }
 
-/// Where nothing else leads there `auto` puts the load on in steps, as Newton's method does, and ends where that ends; out
-/// of iterations it leaves an equilibrium of less load.
+/// If nothing else converges, `auto` applies the load in steps, as Newton's method does, with the same result. Out of
+/// iterations, it keeps an equilibrium of less load.
 #[test]
 fn auto_takes_load_steps_where_it_must() {
     for (id, factor) in [("cantilever", 30.0), ("elastica", 30.0)] {
@@ -440,7 +443,7 @@ fn auto_takes_load_steps_where_it_must() {
     }
 }
 
-/// Why the warped iteration ends: it converges, stalls, or runs away.
+/// The warped iteration reports why it ends: it converges, stalls, or diverges.
 #[test]
 fn the_warped_iteration_says_why_it_ends() {
     let end = |factor: f64, tolerance: f64| {
@@ -466,8 +469,7 @@ fn the_warped_iteration_says_why_it_ends() {
     assert!(matches!(status, Status::Diverged(Reason::RanAway(_))) && iterations == 1, "{status:?} {iterations}");
 }
 
-/// A new support that holds, in one direction, what has moved away in it lets the body start at rest; one that holds what
-/// has not moved in it does not.
+/// The body starts from rest if a new support fixes an unknown that has moved; otherwise it keeps its state.
 #[test]
 fn a_support_on_what_has_moved_starts_over() {
     let scene = Scene::beam(10.0, 1.0).with_cells(10, 2).clamp("left").force("right", [50.0, -300.0]);
@@ -484,8 +486,8 @@ fn a_support_on_what_has_moved_starts_over() {
     assert!(simulation.displacement().iter().any(|u| u.norm() > 0.0), "it holds what was held");
 }
 
-/// A scene that accepts its result after some iterations has the state that a search has then, and says so; one that has
-/// converged before is converged.
+/// A scene that accepts its result after some iterations has the state of a search at that point, and reports this. If
+/// the search converges earlier, the status is converged.
 #[test]
 fn a_result_is_accepted_after_the_iterations_that_a_scene_asks_for() {
     for method in ["newton", "warped"] {

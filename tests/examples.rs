@@ -1,4 +1,4 @@
-//! The example programs do what they say.
+//! Tests of the example programs.
 #![allow(clippy::unwrap_used, dead_code, reason = "a test may fail; the examples' own `main` is not called here")]
 
 #[path = "../examples/game_loop.rs"]
@@ -11,7 +11,7 @@ mod mesh_study;
 #[test]
 fn the_game_keeps_its_beam_in_motion() {
     let (finished, tip) = game_loop::play().unwrap();
-    // However slow the machine: a frame that runs out of time hands over to the next.
+    // A frame that runs out of time leaves the rest to the next one, on any machine.
     assert!(finished > 0 && tip > 0.1 && tip < 4.0, "{finished} {tip}");
 }
 
@@ -26,7 +26,7 @@ fn the_load_curve_leaves_linear_theory_where_the_exact_beam_does() {
         assert!((linear - alpha / 3.0).abs() < 0.01 * alpha, "{row:?}");
         assert!((newton - exact).abs() < 0.002, "{row:?}");
     }
-    // Mattiasson 1981: α = 10.
+    // Mattiasson 1981 for α = 10.
     assert!((rows[19][3] - 0.8106).abs() < 0.001, "{:?}", rows[19]);
 }
 

@@ -1,4 +1,4 @@
-//! Load curves in the window: quantities that are plotted, their table, and files of them.
+//! Tests of load curves in the window: plotted quantities, their table, and exported files.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -18,7 +18,7 @@ use warpbeam::simulation::Simulation;
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::{LoadCurve, Reference};
 
-/// Under this force linear theory's tip moves as far as the exact one, but elsewhere.
+/// Force under which linear theory's tip moves as far as the exact one, but in another direction.
 const FORCE: &str = "load.0.force=[0,-553]";
 
 fn lab_of(scene: Scene) -> Lab {
@@ -36,7 +36,7 @@ fn harness_of(lab: Lab) -> Harness<'static, Lab> {
     )
 }
 
-/// A solved scene with its load curve.
+/// Returns a solved scene with its load curve.
 fn with_curve(scene: Scene) -> Harness<'static, Lab> {
     let mut lab = lab_of(scene);
     lab.show_curve();
@@ -53,7 +53,7 @@ fn compared(scene: Scene, panes: &str) -> Harness<'static, Lab> {
     harness
 }
 
-/// The label that begins so.
+/// Returns the label with this beginning.
 fn label(harness: &Harness<'_, Lab>, begin: &str) -> String {
     let labels = harness.get_all_by_role(Role::Label).filter_map(|node| {
         let node = node.accesskit_node();
@@ -73,7 +73,7 @@ fn a_wrong_displacement_of_the_right_length_is_seen_as_wrong() {
     let linear = Vector2::new(*x, *y);
     assert!((linear.norm() - exact.norm()).abs() < 1e-3 * exact.norm(), "{linear} {exact}");
     assert!((linear - exact).norm() > 0.12 * exact.norm());
-    // The table says both, and the error's measure.
+    // The table has both displacements, and the measure of the error.
     assert_eq!(label(&harness, "exact: "), "exact: (-0.274, -2.13) m");
     assert_eq!(label(&harness, &format!("{setting}: ")), format!("{setting}: (0, -2.14) m, 13 %"));
     assert!(label(&harness, "force 553 N").ends_with("(u_x, u_y) of tip |Δu|/|u|"));
@@ -84,7 +84,7 @@ fn a_wrong_displacement_of_the_right_length_is_seen_as_wrong() {
     assert!(label(&harness, "exact beam: ").starts_with("exact beam: (-0.27"));
 }
 
-/// The names of the axes, as painted.
+/// Returns the painted titles of the axes.
 fn axis_names(harness: &Harness<'_, Lab>) -> Vec<String> {
     let names = ["force", "u_x of tip", "u_y of tip"];
     let mut found: Vec<String> = texts(harness).into_iter().map(|(text, _, _)| text).collect();
@@ -102,7 +102,7 @@ fn the_path_and_both_components_can_be_chosen() {
         harness.run();
         assert_eq!(axis_names(&harness), ["force", expected]);
     }
-    // A bar that is pulled has no path worth the name.
+    // The tip of an axial bar moves along a straight line, so that the load is plotted instead of a path.
     let mut harness = with_curve(scene("stretch"));
     harness.run();
     assert!(texts(&harness).iter().any(|(text, _, _)| text == "force"));
@@ -126,7 +126,7 @@ fn loads_are_plotted_in_their_unit() {
     assert_eq!(words(&scene), ("moment".to_owned(), "N m", 7.0));
 }
 
-/// Every text that is painted: itself, its place, and the place that it is cut to.
+/// Returns every painted text with its rectangle and its clip rectangle.
 fn texts(harness: &Harness<'_, Lab>) -> Vec<(String, Rect, Rect)> {
     fn of(shape: &egui::Shape, clip: Rect, found: &mut Vec<(String, Rect, Rect)>) {
         match shape {
@@ -140,7 +140,7 @@ fn texts(harness: &Harness<'_, Lab>) -> Vec<(String, Rect, Rect)> {
     found
 }
 
-/// On the first frame titles of axes stand beside their numbers, and nothing is cut.
+/// On the first frame, titles of axes are already next to their numbers, and no text is clipped.
 #[test]
 fn the_first_frame_is_as_the_others() {
     for (id, sets) in [("cantilever", &[FORCE][..]), ("article", &[]), ("snap", &[]), ("stretch", &[])] {
@@ -176,7 +176,7 @@ fn the_first_frame_is_as_the_others() {
     }
 }
 
-/// Rows of a CSV file, by a parser of its own.
+/// Returns the rows of a CSV file; the parser is independent of the writer.
 fn csv(text: &str) -> Vec<Vec<String>> {
     let (mut rows, mut row, mut field, mut quoted) = (Vec::new(), Vec::new(), String::new(), false);
     for c in text.chars() {
@@ -194,7 +194,7 @@ fn csv(text: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// Chooses a kind of file from the menu.
+/// Selects a file format in the export menu.
 fn export(harness: &mut Harness<'_, Lab>, kind: &str) {
     harness.get_by_label("Export").click();
     harness.run();
@@ -202,13 +202,13 @@ fn export(harness: &mut Harness<'_, Lab>, kind: &str) {
     harness.run();
 }
 
-/// The rows of a series, as numbers: load, u_x, u_y.
+/// Returns the rows of a series as numbers: load, u_x, u_y.
 fn points(rows: &[Vec<String>], series: &str) -> Vec<[f64; 3]> {
     let own = rows.iter().filter(|row| row[0] == series);
     own.map(|row| [1, 2, 3].map(|i| row[i].parse().unwrap())).collect()
 }
 
-/// The one test of this file that changes the folder.
+/// This is the only test of this file that changes the current folder.
 #[test]
 fn curves_are_saved_as_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -239,7 +239,7 @@ fn curves_are_saved_as_files() {
     let picture = read_png(std::path::Path::new("warpbeam-001.png"));
     assert!(picture.size[0] > 800 && picture.rgba.chunks(4).any(|p| p[0] < 100));
 
-    // Compare's has the errors of its table.
+    // The file of Compare has the errors of its table.
     let mut harness = compared(cantilever, "linear,newton");
     export(&mut harness, "CSV");
     let rows = csv(&std::fs::read_to_string("warpbeam-002.csv").unwrap());
@@ -251,7 +251,7 @@ fn curves_are_saved_as_files() {
         assert!((row[4].parse::<f64>().unwrap() - pane.error_percent().unwrap()).abs() < 1e-9);
     }
 
-    // In a folder that is gone nothing is saved, and that is said.
+    // In a deleted folder no file can be saved, which is reported.
     folder.close().unwrap();
     for kind in ["CSV", "SVG", "PNG"] {
         export(&mut harness, kind);
@@ -259,12 +259,12 @@ fn curves_are_saved_as_files() {
     }
 }
 
-/// A press on the exact path sets the load whose tip is there, however short it is.
+/// A press on the exact path sets the load at that tip position, even if the path is short.
 #[test]
 fn a_press_on_the_path_sets_its_load() {
     let mut harness = compared(scene("cantilever"), "linear,newton");
     let area = harness.get_by_role_and_label(Role::Image, "Load curve").rect();
-    // Numbers of both axes tell where a displacement is.
+    // The numbers on both axes give the position of a displacement.
     let numbers = |harness: &Harness<'_, Lab>, upright: bool| -> Vec<(f64, f32)> {
         let all = texts(harness).into_iter().filter(|(text, place, _)| {
             let center = place.center();

@@ -1,4 +1,4 @@
-//! Gmsh files: what is read, what is refused and how, and that nothing panics.
+//! Tests of Gmsh files: accepted and refused files, error messages, and no panics.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -68,7 +68,7 @@ fn a_small_file_is_read() {
     let wall = mesh.edge_nodes("wall").unwrap();
     assert_eq!(wall.len(), 2);
     assert!(wall.iter().all(|&n| mesh.nodes()[n as usize].x == 0.0));
-    // As six-node triangles: five sides, five middles.
+    // With six-node triangles, each of the five sides has a middle node.
     let mesh = Mesh::from_gmsh(SQUARE, ElementKind::T6).unwrap();
     assert_eq!(mesh.nodes().len(), 9);
     assert_eq!(mesh.edge_nodes("wall").unwrap().len(), 3);
@@ -143,7 +143,7 @@ fn what_cannot_be_used_is_said_with_its_line() {
     assert!(matches!(Mesh::from_gmsh("", ElementKind::T3), Err(GmshError::Syntax { .. })));
 }
 
-/// Cut off anywhere, and with any byte replaced: an error or a mesh, never a panic, never a hang.
+/// A file that is truncated anywhere, or has any byte replaced, gives an error or a mesh, never a panic or a hang.
 #[test]
 fn damaged_files_never_panic() {
     let text = SQUARE;
@@ -162,8 +162,8 @@ fn damaged_files_never_panic() {
     }
 }
 
-/// Before a scene is meshed its unknowns are known: exactly of beams and of files with their own element, but for the holes of the body with
-/// another element.
+/// The number of unknowns is known before a scene is meshed. It is exact for beams and for files with their own
+/// element; for another element it may be wrong by two unknowns per hole of the body.
 #[test]
 fn unknowns_are_known_before_a_scene_is_meshed() {
     let mut files = 0;
@@ -174,7 +174,7 @@ fn unknowns_are_known_before_a_scene_is_meshed() {
             let mesh = System::new(&scene).unwrap().mesh().clone();
             let nodes = mesh.nodes().len();
             let exact = scene.beam.is_some() || element == own.element();
-            // V − E + F = 1 − holes of one part.
+            // V − E + F = 1 − holes, for a body of one part.
             let corners = element.entry().cell.corners.len();
             let vertices: BTreeSet<u32> = mesh.elements().flat_map(|nodes| nodes[..corners].to_vec()).collect();
             let sides: BTreeSet<[u32; 2]> =
@@ -219,7 +219,7 @@ fn a_scene_file_names_its_mesh_relative_to_itself() {
     }
 }
 
-/// The square, and a third triangle that shares no node with it.
+/// Returns the square, and a third triangle that shares no node with it.
 fn in_parts() -> String {
     let text = SQUARE.replacen("1 5 1 5\n2 1 0 5\n1\n2\n3\n4\n5\n", "1 7 1 7\n2 1 0 7\n1\n2\n3\n4\n5\n6\n7\n", 1);
     let text = text.replacen("9 9 0\n", "9 9 0\n10 9 0\n9 10 0\n", 1);
@@ -227,7 +227,7 @@ fn in_parts() -> String {
     text.replacen("3 1 4 3\n", "3 1 4 3\n4 5 6 7\n", 1)
 }
 
-/// Parts that are held one by one are no mistake, and in motion a part may fly.
+/// Several parts with separate supports are accepted, and in motion a part may be free.
 #[test]
 fn held_parts_are_solved() {
     let scene = |support: &str, rest: &str| {
@@ -246,8 +246,8 @@ fn held_parts_are_solved() {
     assert!(scene("", "analysis = \"dynamic\"\n").is_ok());
 }
 
-/// Two squares that meet in node 3 only: held on one of them the other turns about it, which is refused with the node; with
-/// another pin, and where a second node is shared, nothing turns.
+/// Two squares share node 3 only. If only one is supported, the other can rotate about the node, which is refused with
+/// the node's number. With another support, or with a second common node, the mesh is accepted.
 #[test]
 fn a_part_that_hangs_on_a_node_is_refused() {
     let hinged = |second: &str| {
@@ -267,7 +267,7 @@ fn a_part_that_hangs_on_a_node_is_refused() {
     };
     let error = scene(&hinged(""), "").unwrap_err().to_string();
     assert!(error.contains("a part that hangs on node 3 at (1, 1) and can turn about it"), "{error}");
-    // Held in the direction of the hinge it turns all the same.
+    // A support in the direction of the hinge does not prevent the rotation.
     assert!(scene(&hinged(""), "[[support]]\nat = [2.0, 1.0]\nfix = [\"x\"]\n").is_err());
     let mut held = scene(&hinged(""), "[[support]]\nat = [2.0, 1.0]\nfix = [\"y\"]\n").unwrap();
     assert_eq!(*held.solve(), warpbeam::Status::Converged);
@@ -281,7 +281,7 @@ fn a_plane_up_to_rounding_is_a_plane() {
     for (z, flat) in [("1e-12", true), ("-3e-10", true), ("1e-6", false)] {
         let text = SQUARE.replacen("1 1 0\n0 1 0\n", &format!("1 1 {z}\n0 1 0\n"), 1);
         assert_eq!(Mesh::from_gmsh(&text, ElementKind::T3).is_ok(), flat, "{z}");
-        // The same in any unit.
+        // The result is the same in any unit.
         assert_eq!(Mesh::from_gmsh_scaled(&text, ElementKind::T3, 1e-3).is_ok(), flat, "{z}");
     }
 }
@@ -302,7 +302,7 @@ fn a_mesh_has_the_unit_and_the_element_of_its_file() {
         warpbeam(&["solve", path.to_str().unwrap(), "--json", "--no-truth"])
     };
     let json = |output: &std::process::Output| serde_json::from_str::<serde_json::Value>(&stdout(output)).unwrap();
-    // No element: that of the file.
+    // By default, the element is that of the file.
     assert_eq!(json(&solve("bracket", ""))["element"], "t6");
     assert_eq!(json(&solve("bracket", "element = \"t3\"\n"))["element"], "t3");
     let metres = solve("large", "");
@@ -366,7 +366,7 @@ $Elements
 $EndElements
 "#;
 
-/// The file as a mesh of triangles and quadrilaterals.
+/// Returns the file as a mesh of triangles and quadrilaterals.
 fn mixed() -> String {
     QUADS.replacen("2 3 1 3\n1 5", "3 3 1 3\n1 5", 1).replacen(
         "2 1 3 2\n2 1 2 5 6\n3 2 5 4 3",
@@ -385,11 +385,11 @@ fn quadrilaterals_are_read() {
         assert!((0.5 * (c - a).perp(&(d - b)) - 1.0).abs() < 1e-15, "a clockwise quadrilateral was not turned");
     }
     assert_eq!(mesh.outline().len(), 6);
-    // What a file is made of by itself.
+    // The default element of a file.
     assert_eq!(Mesh::gmsh_element(QUADS), Some(ElementKind::Q4));
     assert_eq!(Mesh::gmsh_element(SQUARE), Some(ElementKind::T3));
     assert_eq!(Mesh::gmsh_element(""), None);
-    // Not convex: the inner corner points inwards.
+    // Not convex: a corner points inwards.
     let dart = QUADS.replacen("1 1 0\n0 1", "0.2 0.2 0\n0 1", 1);
     let error = Mesh::from_gmsh(&dart, ElementKind::Q4).unwrap_err();
     assert!(matches!(error, GmshError::Mesh(MeshError::Folded { element: 0 })), "{error}");
@@ -416,7 +416,7 @@ fn shapes_that_do_not_fit_are_refused_with_a_remedy() {
     }
 }
 
-/// A scene on a file of quadrilaterals that names no element is one of `q4`, and says so when it is written.
+/// A scene on a file of quadrilaterals without an element uses `q4`, and names it when it is written.
 #[test]
 fn a_scene_of_quadrilaterals_needs_no_element() {
     let folder = tempfile::tempdir().unwrap();
@@ -435,7 +435,7 @@ fn a_scene_of_quadrilaterals_needs_no_element() {
     assert_eq!(scene.elements().collect::<Vec<_>>(), [ElementKind::Q4]);
     let mut simulation = warpbeam::Simulation::new(&scene).unwrap();
     assert_eq!(*simulation.solve(), warpbeam::Status::Converged);
-    // Its truth is found on the refined mesh of the same element.
+    // Its reference solution is computed on the refined mesh of the same element.
     let truth = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().displacement;
     assert!(truth.y < 0.0 && (simulation.solution().probes[0].u - truth).norm() < 0.2 * truth.norm());
     let asked = open(&text.replace("mesh.file", "mesh.element = \"t3\"\n        mesh.file"));

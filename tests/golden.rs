@@ -1,7 +1,7 @@
-//! Golden pictures of the whole window: Explore, each card of Learn, Compare and Budget; some in the other theme or language.
-//! The tests of each mode check in numbers what the pictures show.
+//! Compares the whole window with golden pictures: Explore, each card of Learn, Compare and Budget; some with another
+//! theme or language. The tests of each mode check the displayed numbers.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test golden` draws them anew; look at them before committing.
+//! `UPDATE_GOLDEN=1 cargo test --test golden` redraws the pictures; look at them before committing.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -15,17 +15,17 @@ use warpbeam::app::{Lab, Language, parse_panes, picture};
 use warpbeam::picture::Picture;
 use warpbeam::render::Gpu;
 
-/// The panel is in a window of this width.
+/// Size of the window in pixels, wide enough for the panel.
 const SIZE: [u32; 2] = [960, 600];
 
-/// The share of pixels that may differ.
+/// Share of pixels that may differ.
 const TOLERANCE: f64 = 5e-4;
-/// Where the headline's measured time is, and its bar: left, top, right and bottom in pixels.
+/// Measured time and its bar in the status bar: left, top, right and bottom in pixels.
 const TIME: [u32; 4] = [222, 568, 335, 594];
-/// Where the four panes of Compare tell their measured times.
+/// Measured times in the four panes of Compare.
 const PANES: [[u32; 4]; 4] = [[56, 102, 335, 122], [397, 102, 670, 122], [56, 357, 335, 377], [397, 357, 670, 377]];
 
-/// Without what is measured: it differs from run to run.
+/// Blanks the rectangles of measured numbers, which differ from run to run.
 fn covered(mut picture: Picture, measured: &[[u32; 4]]) -> Picture {
     for [left, top, right, bottom] in measured {
         for y in *top..*bottom {
@@ -36,13 +36,13 @@ fn covered(mut picture: Picture, measured: &[[u32; 4]]) -> Picture {
     picture
 }
 
-/// Looks of the window, with the end of the picture's name.
+/// Language and theme of a picture, with the suffix of its file name.
 const DARK: (Language, Theme, &str) = (Language::English, Theme::Dark, "dark");
 const LIGHT: (Language, Theme, &str) = (Language::English, Theme::Light, "light");
 const CHINESE: (Language, Theme, &str) = (Language::Chinese, Theme::Dark, "dark-zh");
 
-/// Draws the window in these looks, and compares with the golden pictures of this name, but for the places of measured
-/// numbers.
+/// Draws the window with these languages and themes, and compares it with the golden pictures of this name, except for
+/// the rectangles of measured numbers.
 fn golden(name: &str, lab: &mut Lab, looks: &[(Language, Theme, &str)], measured: &[[u32; 4]]) {
     let gpu = Gpu::headless().unwrap();
     lab.set_adapter(gpu.describe());
@@ -100,7 +100,7 @@ fn compare() {
     }
 }
 
-/// Before anything is measured: what has been would differ from run to run.
+/// Budget is drawn before any measurement, because measured times differ from run to run.
 #[test]
 fn budget() {
     let mut solved = lab("article");

@@ -1,4 +1,4 @@
-//! A hand that holds a body: where it settles, and that nothing a pointer can do is too much.
+//! Tests of the mouse spring: its equilibrium with the body, and robustness against any motion of the pointer.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -13,7 +13,7 @@ use warpbeam::element::ELEMENTS;
 use warpbeam::scene::Analysis;
 use warpbeam::{IntegratorKind, Material, MethodKind, Scene, Simulation, Status};
 
-/// The simulation with its body held at a node far from what supports it.
+/// Returns the simulation with its body grabbed at a node far from the supports.
 fn held(scene: &Scene) -> Simulation {
     let mut simulation = Simulation::new(scene).unwrap();
     let mesh = simulation.system().mesh();
@@ -31,8 +31,8 @@ fn held(scene: &Scene) -> Simulation {
     simulation
 }
 
-/// A body at rest settles where the spring balances it: supports carry what loads and hand pull, and the force is that
-/// of the spring, up to its cap.
+/// A body at rest settles in equilibrium with the spring: supports carry loads and spring force, and the force is that
+/// of the spring, up to its limit.
 #[test]
 fn a_pulled_body_settles_where_the_spring_balances() {
     for (id, element) in
@@ -59,7 +59,7 @@ fn a_pulled_body_settles_where_the_spring_balances() {
                 assert!(force.norm() <= hand.largest_force() * (1.0 + 1e-12));
                 let loads: Vector2<f64> = simulation.forces().external().iter().sum();
                 let reaction = simulation.solution().reaction.force;
-                // What auto leaves out it says; the others solve to the tolerance.
+                // `auto` reports its error; the others solve to the tolerance.
                 let allowed = if method == MethodKind::Auto { 1e-2 } else { 1e-5 };
                 let off = (reaction + loads).norm();
                 assert!(off < allowed * (force.norm() + reaction.norm()), "{case}: {off} N are not carried");
@@ -70,9 +70,8 @@ fn a_pulled_body_settles_where_the_spring_balances() {
     }
 }
 
-/// A pointer that jumps about as no hand can: every motion stays finite under every integrator, its books stay closed,
-/// and what the hand has put in is all there is. Nothing implicit is stopped by it; an explicit motion may run away, of
-/// random jumps in one of ten, and is stopped then.
+/// Under a pointer that jumps wildly, every motion stays finite under every integrator, and its energy ledger balances.
+/// Implicit motions are never stopped; explicit ones may run away, in about one of ten cases, and are then stopped.
 #[test]
 fn no_pointer_is_too_wild() {
     for id in ids_of(Analysis::Dynamic) {
@@ -93,7 +92,7 @@ fn no_pointer_is_too_wild() {
                 (random >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
             };
             for frame in 0..40 {
-                // As far as the pointer of a large screen gets, and once as far as numbers do.
+                // Within the range of a large screen, and once far beyond it.
                 let reach = if frame == 20 { 1e9 } else { 3.0 };
                 simulation.pull_to(start + Vector2::new(next(), next()) * (reach * size)).unwrap();
                 simulation.step();
@@ -110,7 +109,7 @@ fn no_pointer_is_too_wild() {
     }
 }
 
-/// A hand on nothing, or nowhere, is refused, and one on a body that is not is let go with it.
+/// Non-finite targets and missing elements are refused, and a new mesh releases the spring.
 #[test]
 fn a_hand_needs_a_body_and_a_place() {
     let mut simulation = held(&scene("jelly"));
@@ -129,8 +128,8 @@ fn a_hand_needs_a_body_and_a_place() {
     assert!(simulation.state().is_finite());
 }
 
-/// A hand on the free end of a beam in a bent state, within its reach and far beyond it: the force that balances is minus
-/// the gradient of the energy, by differences.
+/// The spring pulls the free end of a bent beam, below its force limit and far beyond it: the balancing force is the
+/// negative gradient of the energy, by finite differences.
 #[test]
 fn a_hand_pulls_down_the_gradient_of_its_energy() {
     const STEP: f64 = 1e-6;
@@ -175,7 +174,7 @@ fn a_hand_pulls_down_the_gradient_of_its_energy() {
     }
 }
 
-/// The energy of a hand goes on smoothly where its force stops growing.
+/// The energy of the spring is smooth where its force reaches its limit.
 #[test]
 fn a_hands_energy_is_smooth_at_its_reach() {
     let scene = Scene::beam(4.0, 1.0).with_cells(4, 1).clamp("left").with_method(MethodKind::Newton);
@@ -192,9 +191,9 @@ fn a_hands_energy_is_smooth_at_its_reach() {
     }
 }
 
-/// How firm a hand is: it makes the whole mass of a body that nothing else holds swing at 5 Hz, damped by 0.7 of what is
-/// critical; where a body is held, and stiffer, it is ten times as stiff as that where it takes hold. In linear theory
-/// one solve finds where that settles.
+/// Stiffness of the spring: a free body swings on it at 5 Hz by its whole mass, damped by 0.7 of the critical damping.
+/// On a supported body that is stiffer than that, it is ten times as stiff as the body at the grabbed point. In linear
+/// theory one solve finds the equilibrium.
 #[test]
 fn a_hand_is_as_firm_as_it_says() {
     let scene = Scene::beam(4.0, 1.0).with_cells(8, 2).with_material(Material::new(1e6, 0.3));
@@ -211,7 +210,8 @@ fn a_hand_is_as_firm_as_it_says() {
     let critical = 2.0 * (hand.stiffness() * mass).sqrt();
     assert!((damper / (-0.7 * critical) - Vector2::new(0.01, -0.02)).norm() < 1e-12, "{damper}");
 
-    // A stiff cantilever: the softest direction at its upper corner, from three loads and the polarisation of their work.
+    // A stiff cantilever: the softest direction at its upper corner, from three loads and the
+    // polarization of their work.
     let mut scene = scene.clamp("left").with_method(MethodKind::Linear);
     scene.material.young = 1e9;
     let corner = Vector2::new(4.0, 0.5);
@@ -230,7 +230,7 @@ fn a_hand_is_as_firm_as_it_says() {
     held.pull_to(corner + pull).unwrap();
     assert_eq!(*held.solve(), Status::Converged);
     assert_eq!(held.iterations(), 1, "its matrix has the spring in it");
-    // Springs in a row: x C⁻¹-soft and k-stiff.
+    // Springs in series: the body with compliance C, and the spring with stiffness k.
     let c = Matrix2::from_columns(&[x, y]);
     let expected = c * (c + Matrix2::identity() / stiffness).try_inverse().unwrap() * pull;
     let found = held.hand().unwrap().0.position(held.displacement()) - corner;
@@ -241,8 +241,8 @@ fn a_hand_is_as_firm_as_it_says() {
     assert!(held.displacement().iter().all(|u| u.norm() < 1e-12), "let go, it goes back");
 }
 
-/// A pointer that moves on steadily takes a free body along: after a while the body goes with it, the spring slack, at
-/// every instant of every step.
+/// A free body follows a pointer that moves steadily: after a while it moves at the same velocity, with a slack spring
+/// at every instant of every step.
 #[test]
 fn a_body_goes_along_with_a_steady_pointer() {
     let (h, velocity) = (1.0 / 60.0, Vector2::new(0.3, -0.2));
@@ -270,7 +270,7 @@ fn a_body_goes_along_with_a_steady_pointer() {
             let (hand, _) = simulation.hand().unwrap();
             let target = middle + velocity * simulation.state().time();
             assert!((hand.target() - target).norm() < 1e-9, "{}: {}", integrator.id, hand.target());
-            // Integrators that keep energy keep what is left of the body's vibrations too, which short steps see more of.
+            // Integrators that conserve energy also keep the body's vibrations, which short steps resolve better.
             let slack = if integrator.is_explicit() { 0.5 } else { 0.02 };
             let behind = hand.target() - hand.position(simulation.displacement());
             let way = velocity.norm() * h;
@@ -279,8 +279,8 @@ fn a_body_goes_along_with_a_steady_pointer() {
     }
 }
 
-/// A body in a hand gets a support: the hand keeps its hold, and its spring stands where it belongs in the new matrix,
-/// so that steps converge as before.
+/// If a grabbed body gets a support, it stays grabbed, and the spring's stiffness is entered correctly in the new
+/// matrix, so that steps converge as before.
 #[test]
 fn a_hand_keeps_its_hold_when_a_support_comes() {
     let mut scene = Scene::beam(2.0, 0.5).with_cells(8, 2).with_material(Material::new(1e5, 0.3));
@@ -305,8 +305,8 @@ fn a_hand_keeps_its_hold_when_a_support_comes() {
     assert!(lifted.y > 0.15 && force.norm() > 0.0, "{lifted}");
 }
 
-/// An explicit step bears a hand no stiffer than a quarter of the mass it moves over h²; held against that of a beam it
-/// leads a corner so far, and comes to rest there: its damper is no harder than the step bears either.
+/// An explicit step limits the spring's stiffness to a quarter of the moved mass over h². Against the stiffness of a
+/// beam, it displaces a corner accordingly, and the corner comes to rest there, because the damping is limited too.
 #[test]
 fn an_explicit_step_softens_the_hand() {
     let static_scene = Scene::beam(1.0, 0.5).with_cells(3, 1).with_material(Material::new(1e6, 0.3)).clamp("left");
@@ -349,8 +349,8 @@ fn an_explicit_step_softens_the_hand() {
     }
 }
 
-/// A jelly that was pulled hard and let go: the drift is a share of what the hand has put in. Energy–momentum has lost
-/// next to nothing of it, implicit Euler what it takes from any motion, and no integrator more than there was.
+/// After a jelly has been pulled hard and released, the drift is a share of the energy from the spring: almost zero for
+/// energy–momentum, the usual dissipation for implicit Euler, and no gain of energy for any integrator.
 #[test]
 fn a_hard_pull_leaves_a_drift_that_says_something() {
     for (integrator, range) in [
@@ -360,7 +360,7 @@ fn a_hard_pull_leaves_a_drift_that_says_something() {
     ] {
         let mut scene = scene("jelly");
         scene.dynamics.integrator = integrator;
-        // One solve of implicit Euler is too far off under such a pull: it adds energy.
+        // One solve of implicit Euler per step is too inaccurate under such a pull: it adds energy.
         scene.dynamics.iterations = if integrator == IntegratorKind::ImplicitEuler { 0 } else { 1 };
         let mut simulation = Simulation::new(&scene).unwrap();
         let steps = |simulation: &mut Simulation, count: u32| (0..count).for_each(|_| _ = simulation.step());
@@ -383,7 +383,7 @@ fn a_hard_pull_leaves_a_drift_that_says_something() {
     }
 }
 
-/// A free motion has lost that share of its first energy; a body at rest has lost nothing.
+/// The drift of a free motion is the lost share of its initial energy; a body at rest has lost nothing.
 #[test]
 fn the_drift_is_a_share_of_what_was_put_in() {
     let mut spin = scene("spin");
@@ -394,7 +394,7 @@ fn the_drift_is_a_share_of_what_was_put_in() {
     let ledger = *simulation.motion().unwrap().ledger();
     let lost = (ledger.kinetic + ledger.elastic + ledger.dissipated) / (first.kinetic + first.elastic) - 1.0;
     assert!(lost < -0.002 && (ledger.drift_of_input() - lost).abs() < 1e-9, "{lost} {ledger:?}");
-    // Nothing is put into a body at rest.
+    // A body at rest gets no energy.
     let still = Scene::beam(2.0, 1.0).clamp("left").moving(IntegratorKind::EnergyMomentum, 0.01);
     let mut still = Simulation::new(&still).unwrap();
     assert!((0..5).all(|_| *still.step() == Status::Running));

@@ -1,4 +1,4 @@
-//! The pointer on the body, its loads and its values, and what edits go through, without a display or a GPU.
+//! Tests of pointer interaction with the body, its loads and its values, and of edits, without a display or a GPU.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -14,7 +14,7 @@ use warpbeam::app::Lab;
 use warpbeam::scene::{Analysis, Load, MethodKind, Source};
 use warpbeam::simulation::{Field, PointValues, Simulation, Status};
 
-/// Time between frames, s: two clicks within some of them are a double click.
+/// Time between frames, s; short enough for double clicks within a few frames.
 const STEP: f32 = 0.05;
 
 fn harness(id: &str) -> Harness<'static, Lab> {
@@ -43,13 +43,13 @@ fn tip(lab: &Lab) -> Pos2 {
     lab.arrow_tips()[0].1
 }
 
-/// Where a point of the plane is in the window.
+/// Returns the window position of a point of the plane.
 fn in_window(lab: &Lab, place: Vector2<f64>) -> Pos2 {
     let [x, y] = lab.camera().to_view(place);
     lab.view_rect().center() + vec2(x as f32, y as f32)
 }
 
-/// Where a material point of the body is in the window.
+/// Returns the window position of a material point.
 fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
     let mesh = lab.simulation().system().mesh();
     let weights = mesh.weights(mesh.locate(at).unwrap()).unwrap();
@@ -57,7 +57,7 @@ fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
     in_window(lab, weights.iter().map(|&(n, w)| (mesh.nodes()[n as usize] + u[n as usize]) * w).sum())
 }
 
-/// Drags from one place to another, by way of some between, and lets go.
+/// Drags from one position to another through some in between, and releases.
 fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2, modifiers: Modifiers) {
     let button = |pos, pressed| Event::PointerButton { pos, button: egui::PointerButton::Primary, pressed, modifiers };
     harness.hover_at(from);
@@ -74,7 +74,7 @@ fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2, modifiers: Modifie
     harness.run();
 }
 
-/// The number in the field of this label.
+/// Returns the text in the number field of this label.
 fn shown(harness: &Harness<'_, Lab>, label: &str) -> String {
     harness.get_by_role_and_label(Role::SpinButton, label).accesskit_node().value().unwrap_or_default()
 }
@@ -103,14 +103,14 @@ fn dragging_the_tip_of_the_arrow_sets_the_force() {
     let solved = [0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap());
     let u = lab.simulation().solution().probes[0].u;
     assert!((u - Vector2::from(solved)).norm() < 1e-5 * u.norm(), "{u} {solved:?}");
-    // The arrow is as long as it was dragged, wherever the body has gone.
+    // The arrow keeps its dragged length, wherever the body has moved.
     let length = (tip(lab) - on_body(lab, Vector2::new(10.0, 0.0))).length();
     assert!((length - way.length()).abs() < 1.5, "{length} {}", way.length());
     assert_ne!(lab.camera(), camera, "the view did not follow the body afterwards");
 }
 
-/// On opening, a tip that is dragged by the length of its arrow doubles the force; a pixel changes it by 1 to 2 %, a tenth of
-/// that with Ctrl. A drag of 10 points on the article's beam bends it a little more, and no more than that.
+/// When a scene has been opened, dragging the tip by the length of its arrow doubles the force. A pixel changes the
+/// force by 1 to 2 %, and by a tenth of that with Ctrl. A drag of 10 points bends the article's beam by a small amount.
 #[test]
 fn an_arrow_of_twice_the_length_is_twice_the_force() {
     for id in ["article", "cantilever", "elastica", "clip", "jump"] {
@@ -136,7 +136,7 @@ fn an_arrow_of_twice_the_length_is_twice_the_force() {
     }
 }
 
-/// No message lies over the tip of an arrow, in any window that is allowed and wherever the tip is dragged.
+/// No message covers the tip of an arrow, for any allowed window size and any position of the tip.
 #[test]
 fn messages_stay_off_the_tips_of_arrows() {
     for size in [[640.0, 480.0], [900.0, 600.0], [1280.0, 800.0]] {
@@ -155,8 +155,8 @@ fn messages_stay_off_the_tips_of_arrows() {
     }
 }
 
-/// A load that the method cannot follow keeps the last equilibrium where it was, in a view that has not moved, and says so;
-/// the remedy is one click away.
+/// Under a load that the method cannot follow, the last equilibrium stays in place, in an unchanged view, and the
+/// window reports this. The remedy is one click away.
 #[test]
 fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     let mut harness = harness("article");
@@ -182,7 +182,7 @@ fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     harness.drop_at(to + vec2(0.0, 200.0));
     harness.run();
     assert!(harness.query_all_by_label_contains("Shown is the last equilibrium").next().is_some());
-    // The state that is not shown has no error.
+    // No error is shown for the hidden state.
     let mut frames = 0;
     while harness.state().is_searching() {
         std::thread::sleep(std::time::Duration::from_millis(10));
@@ -197,7 +197,7 @@ fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
 }
 
-/// What is taken is what was pressed, also where the pointer has moved on before the next frame.
+/// A drag moves the object that was pressed, even if the pointer has moved on before the next frame.
 #[test]
 fn a_press_takes_what_was_under_it_however_late_the_frame() {
     let mut harness = harness("cantilever");
@@ -215,7 +215,8 @@ fn a_press_takes_what_was_under_it_however_late_the_frame() {
     harness.run();
 }
 
-/// With Shift the direction is a multiple of 15°; dragged onto its foot the arrow is no force, and can be dragged out.
+/// With Shift, the direction is a multiple of 15°. An arrow dragged onto its foot is a zero force,
+/// and can be dragged out again.
 #[test]
 fn shift_snaps_the_direction_and_a_force_can_be_dragged_away_and_back() {
     let mut harness = harness("cantilever");
@@ -233,11 +234,11 @@ fn shift_snaps_the_direction_and_a_force_can_be_dragged_away_and_back() {
     assert!(force(harness.state())[1] > 0.0, "{:?}", force(harness.state()));
 }
 
-/// A press takes one thing: the tip before the body it lies over, the body before the space around it.
+/// A press selects one object: the tip before the body below it, the body before the background.
 #[test]
 fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
     let mut harness = harness("article");
-    // An arrow along the beam, its tip over the body.
+    // An arrow along the beam, whose tip is over the body.
     let mut inwards = harness.state().scene().clone();
     inwards.set_force(0, [-2_000.0, 0.0]).unwrap();
     harness.state_mut().set_scene(inwards).unwrap();
@@ -284,7 +285,7 @@ fn key(harness: &mut Harness<'_, Lab>, modifiers: Modifiers, key: Key) {
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-/// What was paused is the motion, not the scene that comes back in its place.
+/// Pausing a motion does not pause the static scene that replaces it.
 #[test]
 fn a_scene_that_comes_back_is_solved() {
     let mut harness = harness("article");
@@ -302,7 +303,7 @@ fn a_scene_that_comes_back_is_solved() {
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
 }
 
-/// A drag is one step, whatever it passed through; steps are undone and done again in order.
+/// A drag is one undo step, whatever its intermediate values; steps are undone and redone in order.
 #[test]
 fn edits_are_undone_and_done_again() {
     let mut harness = harness("cantilever");
@@ -328,7 +329,7 @@ fn edits_are_undone_and_done_again() {
     key(&mut harness, COMMAND_SHIFT, Key::Z);
     assert_eq!((force(harness.state()), harness.state().scene().material.poisson), (dragged, poisson));
     assert!(!harness.state().can_redo());
-    // Another scene is a step too; what it was opened over comes back with its edits.
+    // Opening another scene is a step too; undo restores the previous scene with its edits.
     harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
     harness.run();
     harness.get_by_label("bridge").click();
@@ -350,7 +351,7 @@ fn edits_are_undone_and_done_again() {
     assert!((u.y - json["probes"][0]["u"][1].as_f64().unwrap()).abs() < 1e-5 * u.norm());
 }
 
-/// A double click on the tip brings the scene's own force back, and does not fit the view.
+/// A double click on the tip restores the scene's own force, and does not fit the view.
 #[test]
 fn a_double_click_on_the_tip_resets_the_force() {
     let mut harness = harness("cantilever");
@@ -370,7 +371,7 @@ fn a_double_click_on_the_tip_resets_the_force() {
     assert_eq!(force(harness.state()), before);
 }
 
-/// Clicks twice in one place, as fast as a double click is.
+/// Clicks twice in one place, as fast as a double click.
 fn double_click(harness: &mut Harness<'_, Lab>, at: Pos2) {
     harness.hover_at(at);
     harness.run();
@@ -383,7 +384,7 @@ fn double_click(harness: &mut Harness<'_, Lab>, at: Pos2) {
     harness.run();
 }
 
-/// A double click on a slider or its number, or Delete on the slider, brings the scene's own value back, in one step.
+/// A double click on a slider or its number, or Delete on the slider, restores the scene's own value in one step.
 #[test]
 fn values_go_back_to_those_of_the_scene() {
     let mut harness = harness("cantilever");
@@ -427,7 +428,7 @@ fn values_go_back_to_those_of_the_scene() {
     drag(&mut harness, at(0.5), at(0.6), Modifiers::NONE);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(*harness.state().scene(), once);
-    // It is said beside the control.
+    // The tooltip of the control says so.
     harness.hover_at(at(0.2));
     harness.run_steps(60);
     assert!(harness.query_all_by_label_contains("Double click, or Delete on the slider: 1 kN").next().is_some());
@@ -438,8 +439,8 @@ fn moment(lab: &Lab) -> f64 {
     moments.filter_map(|l| if let Load::Moment { moment, .. } = l { Some(*moment) } else { None }).next().unwrap()
 }
 
-/// The end of a moment's arrow is dragged round: further round is more, back beyond its beginning is the other sense;
-/// the body follows as `solve` says, and a drag is one step.
+/// Dragging the end of a moment's arrow around its centre changes the moment: further is larger, and back beyond the
+/// start is the opposite sense. The body follows as with `solve`, and a drag is one step.
 #[test]
 fn the_end_of_a_moments_arrow_sets_it() {
     let mut harness = harness("roll-up");
@@ -450,7 +451,7 @@ fn the_end_of_a_moments_arrow_sets_it() {
         let sum: Vector2<f64> = nodes.iter().map(|&n| mesh.nodes()[n as usize] + u[n as usize]).sum();
         in_window(lab, sum / nodes.len() as f64)
     };
-    // By way of many places, as a hand goes round; clockwise in the window is less.
+    // In many small steps; clockwise in the window decreases the moment.
     let turn = |harness: &mut Harness<'_, Lab>, degrees: f32, modifiers: Modifiers| {
         let (middle, from) = (center(harness.state()), tip(harness.state()));
         harness.hover_at(from);
@@ -481,7 +482,7 @@ fn the_end_of_a_moments_arrow_sets_it() {
     let u = harness.state().simulation().solution().probes[0].u;
     let solved = Vector2::from([0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap()));
     assert!((u - solved).norm() < 1e-5 * solved.norm(), "{u} {solved}");
-    // On through nothing to the other sense: the beam bends down.
+    // Through zero to the opposite sense: the beam bends down.
     turn(&mut harness, 300.0, Modifiers::NONE);
     assert!(moment(harness.state()) < -0.01 * before, "{}", moment(harness.state()));
     assert!(harness.state().simulation().solution().probes[0].u.y < 0.0);
@@ -492,7 +493,7 @@ fn the_end_of_a_moments_arrow_sets_it() {
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(*harness.state().scene(), scene("roll-up"));
-    // A double click on the end brings the scene's own back.
+    // A double click on the end restores the scene's own moment.
     turn(&mut harness, 20.0, Modifiers::NONE);
     assert_ne!(moment(harness.state()), before);
     harness.run_steps(10);
@@ -501,8 +502,7 @@ fn the_end_of_a_moments_arrow_sets_it() {
     assert_eq!(moment(harness.state()), before);
 }
 
-/// The middle of the force slider is a force that does something: not so little that nothing moves, not so much that
-/// nothing is left.
+/// The middle third of the force slider has the scene's own force; small and large forces are within reach.
 #[test]
 fn the_force_slider_spans_what_a_slender_body_can_bear() {
     for id in ["article", "cantilever", "elastica", "bracket", "clip", "jump"] {
@@ -530,7 +530,8 @@ fn the_force_slider_spans_what_a_slender_body_can_bear() {
     }
 }
 
-/// A wheel that still turns in the gallery when a scene is clicked leaves the new view alone: it shows the whole body.
+/// A wheel that still turns in the gallery when a scene is clicked does not change the new view,
+/// which shows the whole body.
 #[test]
 fn a_wheel_in_the_gallery_does_not_zoom_the_view() {
     let opened = harness;
@@ -550,12 +551,12 @@ fn a_wheel_in_the_gallery_does_not_zoom_the_view() {
     };
     harness.event(wheel(-40.0));
     harness.step();
-    // Back up, with a long way to go.
+    // Scrolls back up by a large distance.
     harness.event(wheel(400.0));
     harness.get_by_role_and_label(Role::Button, "cantilever").click();
     harness.step();
     harness.run();
-    // The list has scrolled on under the pointer.
+    // The list has scrolled further under the pointer.
     let name = &harness.state().scene().name;
     let id = common::ids_of(Analysis::Static).into_iter().find(|id| *scene(id).name == **name).unwrap();
     assert_ne!(id, "article");
@@ -563,7 +564,7 @@ fn a_wheel_in_the_gallery_does_not_zoom_the_view() {
     assert!((camera.scale / fitted.scale - 1.0).abs() < 1e-6, "{camera:?} {fitted:?}");
 }
 
-/// The gallery is a list of all scenes with what they are, within a window of any size, and is gone through by keys.
+/// The gallery lists all scenes with descriptions, fits in a window of any size, and can be operated by keys.
 #[test]
 fn the_gallery_is_gone_through_by_keys() {
     for size in [[640.0, 480.0], [1280.0, 800.0]] {
@@ -583,7 +584,7 @@ fn the_gallery_is_gone_through_by_keys() {
         let window = egui::Rect::from_min_size(Pos2::ZERO, size.into());
         let present = harness.get_by_role_and_label(Role::Button, "cantilever");
         assert!(present.accesskit_node().is_focused() && window.contains_rect(present.rect()), "{size:?}");
-        // Down to one that is not seen at first, and opened.
+        // Moves down to an entry that is not visible at first, and opens it.
         let mut presses = 0;
         while !harness.get_by_role_and_label(Role::Button, "chime").accesskit_node().is_focused() {
             key(&mut harness, Modifiers::NONE, Key::Tab);
@@ -601,7 +602,8 @@ fn the_gallery_is_gone_through_by_keys() {
     }
 }
 
-/// Resting on the body shows the field there; a click keeps the numbers of the point, another one on them lets them go.
+/// The tooltip shows the field's value at the pointer. A click opens a card with the numbers of the point, and a click
+/// on the card closes it.
 #[test]
 fn the_body_says_its_values_and_a_click_keeps_them() {
     let mut harness = harness("article");
@@ -634,7 +636,7 @@ fn the_body_says_its_values_and_a_click_keeps_them() {
         let number = format!("{number:.4}");
         assert!(texts.iter().any(|text| text.contains(&number)), "{what}: no {number} in {texts:?}");
     }
-    // It follows the material point, not the place.
+    // The card follows the material point, not the position in the window.
     harness.state_mut().set_scene(scene("article")).unwrap();
     harness.run();
     assert!(harness.state().probed().is_some());
@@ -645,7 +647,7 @@ fn the_body_says_its_values_and_a_click_keeps_them() {
     let card = harness.get_by_label("Click or Escape closes it").rect().center();
     click(&mut harness, card);
     assert!(harness.state().probed().is_none(), "a click on the card does not close it");
-    // A quick click: pressed and released between two frames.
+    // A quick click is pressed and released between two frames.
     harness.hover_at(pos);
     harness.run();
     let button = |pressed| Event::PointerButton {
@@ -658,13 +660,13 @@ fn the_body_says_its_values_and_a_click_keeps_them() {
     harness.run();
     assert!(harness.state().probed().is_some(), "a quick click is missed");
     key(&mut harness, Modifiers::NONE, Key::Escape);
-    // A dragged body keeps nothing.
+    // A drag of the body opens no card.
     let pos = on_body(harness.state(), at);
     drag(&mut harness, pos, pos + vec2(0.0, 60.0), Modifiers::NONE);
     assert!(harness.state().probed().is_none());
 }
 
-/// What does not converge may be anywhere: the view does not go after it.
+/// The view does not follow a body that has not converged, because it may be anywhere.
 #[test]
 fn the_view_does_not_follow_what_has_not_converged() {
     let mut harness = harness("cantilever");
@@ -683,7 +685,7 @@ fn the_view_does_not_follow_what_has_not_converged() {
     assert!((now.scale / camera.scale - 1.0).abs() < 0.2, "{camera:?} {now:?}");
 }
 
-/// A view that eases is on its way for some frames, then it is where one that jumps is, and nothing is redrawn.
+/// An animated view moves for some frames, ends where the view without animation is, and then nothing is redrawn.
 #[test]
 fn the_view_eases_to_where_it_would_jump() {
     let mut jumps = harness("elastica");
@@ -721,8 +723,8 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
-/// Files are opened by dropping them and by a dialog, saved to where they came from or elsewhere, and offered again when
-/// somebody else has written them.
+/// Files can be opened by dropping them or in a dialog, and saved to their own path or another. If another program has
+/// changed a file, the window offers to reload it.
 #[test]
 fn files_are_dropped_opened_saved_and_offered_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -737,7 +739,7 @@ fn files_are_dropped_opened_saved_and_offered_again() {
     harness.run();
     assert_eq!(harness.state().scene().name, "Mine");
     assert!(harness.state().can_undo());
-    // Edited and saved.
+    // Edits the scene and saves it.
     let from = tip(harness.state());
     drag(&mut harness, from, from + vec2(-6.0, -6.0), Modifiers::NONE);
     let edited = harness.state().scene().clone();
@@ -748,7 +750,7 @@ fn files_are_dropped_opened_saved_and_offered_again() {
     assert!(harness.state().title().contains(&*file), "{}", harness.state().title());
     let read = |path: &std::path::Path| warpbeam::Scene::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap();
     assert_eq!(read(&path), edited);
-    // Saved to another file by the dialog, which adds what the name lacks.
+    // Saves to another file in the dialog, which adds the extension.
     key(&mut harness, COMMAND_SHIFT, Key::S);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.step();
@@ -757,7 +759,7 @@ fn files_are_dropped_opened_saved_and_offered_again() {
     key(&mut harness, Modifiers::NONE, Key::Enter);
     let other = folder.path().join("other.toml");
     assert_eq!(read(&other), edited);
-    // Nobody else has written it: nothing is offered. Then somebody does.
+    // No other program has changed the file, so that no reload is offered. Then one does.
     harness.event(Event::WindowFocused(true));
     harness.run();
     assert!(harness.query_by_label("Reload").is_none());
@@ -772,7 +774,7 @@ fn files_are_dropped_opened_saved_and_offered_again() {
     harness.run();
     assert_eq!(harness.state().scene().name, "Theirs");
     assert!(harness.query_by_label("Reload").is_none());
-    // Opened by the dialog; what is no scene is refused there, and the dialog stays.
+    // Opens files in the dialog; an invalid scene is refused there, and the dialog stays open.
     std::fs::write(folder.path().join("bad.toml"), "name = 3").unwrap();
     for (name, scene) in [("bad.toml", "Theirs"), ("mine.toml", "Mine")] {
         if harness.query_by_label("Open a scene").is_none() {
@@ -785,13 +787,13 @@ fn files_are_dropped_opened_saved_and_offered_again() {
         assert_eq!(harness.state().scene().name, scene);
         assert_eq!(harness.query_by_label("Open a scene").is_some(), name == "bad.toml");
     }
-    // Only scene files are there: nothing was left beside them.
+    // The folder contains the scene files only, and no temporary files.
     let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     names.sort();
     assert_eq!(names, ["bad.toml", "mine.toml", "other.toml"]);
 }
 
-/// What a user has set is as it was in another lab that takes the settings on.
+/// A user's settings are the same in another lab that loads them.
 #[test]
 fn settings_go_from_one_lab_to_the_next() {
     let mut first = harness("article");
@@ -809,7 +811,7 @@ fn settings_go_from_one_lab_to_the_next() {
     assert_eq!(second.ctx.theme(), first.ctx.theme());
 }
 
-/// A moment goes on an edge that can turn, whatever the edges are called, and moves the body there.
+/// A moment is applied to an edge that can rotate, whatever the names of the edges, and moves the body there.
 #[test]
 fn a_moment_goes_on_an_edge_that_can_turn() {
     for (id, moment, held) in [("bracket", "200", "wall"), ("cook", "1", "clamp"), ("bridge", "500", "right")] {
@@ -827,7 +829,7 @@ fn a_moment_goes_on_an_edge_that_can_turn() {
     }
 }
 
-/// The edge of a load is picked from a list, and is shown in the view while the pointer is on its name.
+/// The edge of a load is selected in a list, and is highlighted in the view while the pointer is over its name.
 #[test]
 fn loads_and_supports_are_put_on_other_edges() {
     let mut harness = harness("cantilever");
@@ -849,8 +851,8 @@ fn loads_and_supports_are_put_on_other_edges() {
     assert_eq!(*harness.state().scene(), scene("cantilever"));
 }
 
-/// Edits that no file has are not lost without a question: by another scene, by a file that is dropped, by closing. Undo
-/// brings discarded edits back.
+/// Unsaved edits are not lost without a question: when another scene is selected, a file is dropped, or the window is
+/// closed. Undo restores discarded edits.
 #[test]
 fn unsaved_edits_are_asked_about() {
     const QUESTION: &str = "Save the changes to \u{201c}Cantilever\u{201d}?";
@@ -880,11 +882,11 @@ fn unsaved_edits_are_asked_about() {
         harness.input_mut().dropped_files.clear();
         harness.run();
     };
-    // Cancelled, by the button or by Escape, nothing happens.
+    // Cancelled by the button or by Escape, nothing changes.
     for cancel in [0, 1] {
         drop_it(&mut harness);
         harness.get_by_label(QUESTION);
-        // Keys of the window wait for the answer.
+        // Shortcuts of the window are inactive until the question is answered.
         key(&mut harness, Modifiers::NONE, Key::P);
         assert!(harness.query_by_role_and_label(Role::Slider, "Force").is_some());
         match cancel {
@@ -895,14 +897,14 @@ fn unsaved_edits_are_asked_about() {
         assert!(harness.query_by_label(QUESTION).is_none());
         assert_eq!(*harness.state().scene(), edited);
     }
-    // Discarded, they can be brought back.
+    // Discarded edits can be restored.
     drop_it(&mut harness);
     harness.get_by_role_and_label(Role::Button, "Discard").click();
     harness.run();
     assert_eq!(*harness.state().scene(), scene("shear"));
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(*harness.state().scene(), edited);
-    // Saved: a built-in scene has no file yet, and the window closes once it has one.
+    // Saves: a built-in scene has no file yet, and the window closes once it has one.
     assert!(!harness.state_mut().request_close(&ctx), "it asks first");
     harness.run();
     key(&mut harness, Modifiers::NONE, Key::Enter);
@@ -925,8 +927,8 @@ fn unsaved_edits_are_asked_about() {
     assert!(harness.state_mut().request_close(&ctx), "all is saved");
 }
 
-/// Length and height are set in the panel. Cells keep their size, what is at points of the beam moves along, and undo brings
-/// everything back.
+/// Length and height are set in the panel. The size of the cells is kept, supports, loads and probes at points of the
+/// beam move with it, and undo restores everything.
 #[test]
 fn a_beam_gets_another_length_and_height() {
     let mut harness = harness("cantilever");
@@ -945,14 +947,14 @@ fn a_beam_gets_another_length_and_height() {
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(*harness.state().scene(), before);
-    // Small steps add up.
+    // Many small changes add up to the right number of cells.
     for step in 1..=12 {
         type_into(&mut harness, "Length", &format!("{}", (1.0 + 0.0043 * f64::from(step)) * beam.length));
     }
     assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, cells(1.0516, 1.0));
 }
 
-/// A cantilever becomes a simply supported beam under two loads, by buttons alone; every step can be undone.
+/// Buttons alone turn a cantilever into a simply supported beam under two loads; every step can be undone.
 #[test]
 fn loads_and_supports_are_added_and_removed() {
     let mut harness = harness("cantilever");
@@ -984,7 +986,7 @@ fn loads_and_supports_are_added_and_removed() {
     pick_place(&mut harness, ("Force on", 0), "middle of the top");
     press(&mut harness, "Force");
     assert_eq!(harness.state().scene().loads.len(), 2);
-    // The sliders set the force that is chosen.
+    // The sliders change the selected force.
     let forces = |lab: &Lab| -> Vec<[f64; 2]> {
         lab.scene()
             .loads
@@ -1001,7 +1003,7 @@ fn loads_and_supports_are_added_and_removed() {
     let [left, second] = <[[f64; 2]; 2]>::try_from(forces(harness.state())).unwrap();
     assert!(left == first && (second[0].hypot(second[1]) - 10.0).abs() < 1e-9, "{left:?} {second:?}");
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
-    // Reactions carry both.
+    // The reactions carry both forces.
     let reactions = harness.state().simulation().support_reactions();
     let up: f64 = reactions.iter().map(|r| r.force.y).sum();
     assert!((up + left[1] + second[1]).abs() < 1e-6 * up, "{up} {left:?} {second:?}");
@@ -1017,12 +1019,12 @@ fn loads_and_supports_are_added_and_removed() {
     assert_eq!(*harness.state().scene(), before);
 }
 
-/// The clipboard gets the scene as it stands, as a program.
+/// The current scene is copied to the clipboard as a Rust program.
 #[test]
 fn the_scene_is_copied_as_a_rust_program() {
     let mut harness = harness("article");
     type_into(&mut harness, "Force", "12345.5");
-    // Pressed only: a release would be a frame of its own, with its own output.
+    // Only pressed: a release would be another frame with its own output.
     harness.event(Event::Key {
         key: Key::C,
         physical_key: None,
@@ -1044,7 +1046,7 @@ fn the_scene_is_copied_as_a_rust_program() {
     assert!(harness.query_by_role_and_label(Role::Button, "Copy as Rust").is_some());
 }
 
-/// Values on the card of a point, by the name of the row.
+/// Returns the values on the card of a point by the names of the rows.
 fn card(harness: &Harness<'_, Lab>) -> std::collections::BTreeMap<String, String> {
     let nodes = harness.get_all_by_role(Role::Label).map(|node| node.accesskit_node());
     let texts: Vec<String> = nodes.filter_map(|node| node.value().or_else(|| node.label())).collect();
@@ -1052,7 +1054,7 @@ fn card(harness: &Harness<'_, Lab>) -> std::collections::BTreeMap<String, String
     rows.map(|pair| (pair[0].clone(), pair[1].clone())).collect()
 }
 
-/// F, S, ε and σ on the card of a point follow from each other to the digits that are printed, and the card names their kind.
+/// F, S, ε and σ on the card of a point agree with each other to the printed digits, and the card names their kind.
 #[test]
 fn the_card_of_a_point_is_of_one_deformation() {
     for (id, at) in
@@ -1109,7 +1111,7 @@ fn the_card_of_a_point_is_of_one_deformation() {
     }
 }
 
-/// All shapes that are painted, with those inside of others.
+/// Returns all painted shapes, including nested ones.
 fn shapes(harness: &Harness<'_, Lab>) -> Vec<egui::Shape> {
     fn flatten(shape: &egui::Shape, found: &mut Vec<egui::Shape>) {
         match shape {
@@ -1122,7 +1124,7 @@ fn shapes(harness: &Harness<'_, Lab>) -> Vec<egui::Shape> {
     found
 }
 
-/// In a low view the arrow of a weight stands under the colour bar that is at the top.
+/// In a low view, the arrow of a weight is below the colour bar at the top.
 #[test]
 fn the_colour_bar_is_not_on_the_arrow_of_a_weight() {
     for size in [[640.0, 480.0], [900.0, 420.0], [1280.0, 800.0]] {
@@ -1150,7 +1152,7 @@ fn the_colour_bar_is_not_on_the_arrow_of_a_weight() {
     }
 }
 
-/// Whatever the force, the view that is fitted to it has the arrow's tip beside the colour bar.
+/// For any force, the tip of the arrow is outside the colour bar in the fitted view.
 #[test]
 fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
     let mut met = 0;
@@ -1173,7 +1175,7 @@ fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
     assert!(met > 0, "no arrow is over the bar");
 }
 
-/// The Enter that picks another scene in the gallery is no answer to the question that it leads to.
+/// The key Enter that selects another scene in the gallery does not answer the question that follows.
 #[test]
 fn enter_in_the_gallery_answers_no_question() {
     let mut harness = harness("cantilever");

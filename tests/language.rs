@@ -1,4 +1,4 @@
-//! The window in Chinese: nothing of it is missing from the catalogue, the fonts have every letter, and nothing is clipped.
+//! Tests of the window in Chinese: the catalogue has every text, the fonts have every letter, and nothing is clipped.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -21,17 +21,17 @@ use warpbeam::scene::{Source, registry};
 use warpbeam::simulation::{Field, Simulation};
 use warpbeam::study::{Extent, Study};
 
-/// The Chinese texts by the English ones.
+/// Returns the Chinese texts by their English ones.
 fn catalogue() -> BTreeMap<String, String> {
     toml::from_str(include_str!("../assets/locales/zh-CN.toml")).unwrap()
 }
 
-/// The Chinese text of an English one.
+/// Returns the Chinese text for an English one.
 fn zh(english: &str) -> String {
     catalogue().get(english).cloned().unwrap_or_else(|| unreachable!("{english:?} is not in the catalogue"))
 }
 
-/// A window that speaks Chinese; `size` in points.
+/// Returns a window in Chinese; `size` in points.
 fn harness_of(id: &str, size: [f32; 2]) -> Harness<'static, Lab> {
     let scene = scene(id);
     let simulation = Simulation::new(&scene).unwrap();
@@ -46,7 +46,7 @@ fn harness_of(id: &str, size: [f32; 2]) -> Harness<'static, Lab> {
     )
 }
 
-/// The same at rest, with the truth found.
+/// Returns a window in Chinese whose body is at rest and whose background solves have ended.
 fn settled(id: &str, size: [f32; 2]) -> Harness<'static, Lab> {
     let mut harness = harness_of(id, size);
     harness.run();
@@ -66,7 +66,7 @@ fn wait(harness: &mut Harness<'_, Lab>, done: impl Fn(&Lab) -> bool) {
     unreachable!("waited in vain")
 }
 
-/// Every text that is painted, and every name and value that is told to who cannot see it.
+/// Returns every painted text, and every name and value that is given to screen readers.
 fn shown(harness: &Harness<'_, Lab>) -> BTreeSet<String> {
     fn painted(shape: &egui::Shape, texts: &mut BTreeSet<String>) {
         match shape {
@@ -82,7 +82,7 @@ fn shown(harness: &Harness<'_, Lab>) -> BTreeSet<String> {
     texts
 }
 
-/// What is the same in every language: units, formats, keys, and names of programs.
+/// Words that are the same in every language: units, formats, keys, and names of programs.
 const SAME: &[&str] = &[
     "rad",
     "RTR",
@@ -110,7 +110,7 @@ const SAME: &[&str] = &[
     "warpbeam",
     "faer",
     "sym",
-    // The names of the article and of the paper that it explains.
+    // Names in the titles and authors of the article and of the paper that it explains.
     "Warped",
     "Stiffness",
     "Matthias",
@@ -124,14 +124,14 @@ const SAME: &[&str] = &[
     "Interface",
 ];
 
-/// Words of three or more Latin letters that are no names: scenes are opened by theirs, and what stands between backticks is
-/// typed as it is.
+/// Returns the words of three or more Latin letters that should have been translated: without scene ids, and without
+/// text between backticks, which is typed literally.
 fn english(text: &str) -> Vec<String> {
     let ids = || registry::BUILT_IN.iter().map(|built_in| built_in.id);
     if ids().any(|id| id == text) {
         return Vec::new();
     }
-    // In the gallery the name under which it is opened ends the line.
+    // In the gallery, a scene's id ends the line.
     let text = ids().fold(text.to_owned(), |text, id| text.replace(&format!("{id}\n"), "\n"));
     let plain: String = text.split('`').step_by(2).collect::<Vec<_>>().join(" ");
     let words = plain.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| word.len() >= 3);
@@ -140,13 +140,13 @@ fn english(text: &str) -> Vec<String> {
 }
 
 fn assert_chinese(harness: &Harness<'_, Lab>, what: &str) {
-    // egui names the cross of its windows itself.
+    // egui names the close button of its windows itself.
     for text in shown(harness).into_iter().filter(|text| text != "Close window") {
         assert_eq!(english(&text), [""; 0], "{what}: {text:?}");
     }
 }
 
-/// Points at everything that can be pointed at, and reads what pops up.
+/// Points at every control, and checks the text of its tooltip.
 fn assert_tips_are_chinese(harness: &mut Harness<'_, Lab>, what: &str) {
     harness.ctx.all_styles_mut(|style| {
         style.interaction.tooltip_delay = 0.0;
@@ -167,7 +167,7 @@ fn assert_tips_are_chinese(harness: &mut Harness<'_, Lab>, what: &str) {
     harness.run_steps(2);
 }
 
-/// Presses what has this text, or one that begins with it.
+/// Presses the control with this text, or with one that begins with it.
 fn press(harness: &mut Harness<'_, Lab>, english: &str) {
     let text = zh(english);
     let mut all = harness.query_all_by_label(&text).collect::<Vec<_>>();
@@ -181,7 +181,7 @@ fn press(harness: &mut Harness<'_, Lab>, english: &str) {
     harness.run_steps(6);
 }
 
-/// The text literals of a source, without those of comments, tests and errors, and without ids.
+/// Returns the text literals of a source, without comments, tests, errors and ids.
 fn literals(source: &str) -> Vec<String> {
     const OTHER: &[&str] = &["error(", "log::", "id_salt", "Id::unique", "include_", "serde(", "value(", ".name("];
     let code = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
@@ -204,7 +204,7 @@ fn literals(source: &str) -> Vec<String> {
     literals
 }
 
-/// A literal as it is read.
+/// Returns the text of a literal with its escape sequences resolved.
 fn unescaped(literal: &str) -> String {
     let mut text = String::new();
     let mut rest = literal;
@@ -237,8 +237,8 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files.into_iter().chain(folders.iter().flat_map(|folder| sources(folder))).collect()
 }
 
-/// Literals of the window's sources that are not shown in it: what is copied, ids, variables, and what is said where there
-/// is no window.
+/// Literals of the window's sources that are not shown in it: copied texts, ids, variables, and messages
+/// of programs without a window.
 const NOT_SHOWN: &[&str] = &[
     "# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}",
     "English",
@@ -262,8 +262,8 @@ const NOT_SHOWN: &[&str] = &[
      film of",
 ];
 
-/// Every text in the sources of the window is in the catalogue, or known not to be shown. A single small word may be an id:
-/// where it is shown after all, the tests that read the window see it.
+/// Every text in the window's sources is in the catalogue, or listed as not shown. A single word in lower case may be
+/// an id: if it is shown, the tests that read the window find it.
 #[test]
 fn every_text_of_the_sources_is_in_the_catalogue() {
     let known = catalogue();
@@ -272,7 +272,7 @@ fn every_text_of_the_sources_is_in_the_catalogue() {
         for literal in literals(&std::fs::read_to_string(&path).unwrap()) {
             let mut rest = literal.as_str();
             let mut words = String::new();
-            // Without the places of a format.
+            // Placeholders of formats are removed.
             while let Some((before, behind)) = rest.split_once('{') {
                 words.push_str(before);
                 rest = behind.split_once('}').map_or("", |(_, rest)| rest);
@@ -298,7 +298,7 @@ fn every_text_of_the_sources_is_in_the_catalogue() {
     }
 }
 
-/// What the library has names and sentences for has them in Chinese, too.
+/// The names and sentences of the library are in the catalogue, too.
 #[test]
 fn everything_of_the_library_that_has_a_name_is_in_the_catalogue() {
     let known = catalogue();
@@ -319,7 +319,7 @@ fn everything_of_the_library_that_has_a_name_is_in_the_catalogue() {
     }
 }
 
-/// The same places in both languages, and nothing left in English.
+/// Translations have the placeholders of their English texts, and no English words.
 #[test]
 fn translations_have_the_places_of_what_they_translate() {
     let places = |text: &str| -> BTreeSet<String> {
@@ -351,7 +351,8 @@ fn the_fonts_have_every_letter() {
     assert!(!harness.ctx.fonts_mut(|fonts| fonts.has_glyph(&rare, '\u{9f98}')), "the check is blind");
 }
 
-/// The switch in the toolbar speaks the other language at once, names it in itself, and the settings keep it.
+/// The button in the toolbar changes the language at once and is labelled in the other language. The
+/// settings keep the language.
 #[test]
 fn the_switch_changes_the_language_and_the_settings_keep_it() {
     let mut harness = settled("article", [1280.0, 800.0]);
@@ -362,7 +363,7 @@ fn the_switch_changes_the_language_and_the_settings_keep_it() {
     harness.get_by_label("Language").click();
     harness.run();
     assert!(harness.query_by_label(&zh("Run")).is_some());
-    // On a card, and back from it.
+    // The same on a card of Learn, and after it.
     press(&mut harness, "Learn");
     press(&mut harness, "Language");
     assert!(harness.query_by_label("Linear theory makes it grow").is_some());
@@ -385,7 +386,8 @@ fn the_switch_changes_the_language_and_the_settings_keep_it() {
     assert_eq!(Settings::default().language, Language::English);
 }
 
-/// Explore: every fold, the pickers, the drawer, the card of a point, messages and remedies, the help and the dialog.
+/// Explore is in Chinese: every fold, the pickers, the drawer, the card of a point, messages and
+/// remedies, the help and the dialog.
 #[test]
 fn exploring_is_in_chinese() {
     let mut harness = settled("article", [1280.0, 2400.0]);
@@ -424,7 +426,7 @@ fn exploring_is_in_chinese() {
     assert_chinese(&harness, "copied as a program");
 }
 
-/// What a scene says of its state, its load path and its supports.
+/// Text about a scene's state, load path and supports is in Chinese.
 #[test]
 fn scenes_of_every_kind_are_in_chinese() {
     let size = [1280.0, 2000.0];
@@ -441,7 +443,7 @@ fn scenes_of_every_kind_are_in_chinese() {
     }
 }
 
-/// A motion: its time, its plots, other integrators beside it.
+/// The window of a motion is in Chinese: its time, its plots, and the other integrators.
 #[test]
 fn motions_are_in_chinese() {
     let mut harness = harness_of("swing", [1280.0, 2000.0]);
@@ -499,7 +501,7 @@ fn every_card_is_in_chinese() {
     }
 }
 
-/// In a window of any size every control is in it, and wide enough for its words.
+/// In a window of any size, every control is inside and wide enough for its text.
 #[test]
 fn nothing_is_clipped_in_windows_of_any_size() {
     for size in [[640.0, 480.0], [800.0, 600.0], [1280.0, 800.0]] {
@@ -542,7 +544,7 @@ fn nothing_is_clipped_in_windows_of_any_size() {
     }
 }
 
-/// From the smallest window to wide ones, in both languages.
+/// Controls of the toolbar do not overlap in windows from the smallest to wide ones, in both languages.
 #[test]
 fn nothing_of_the_toolbar_overlaps_in_windows_of_any_width() {
     let names = ["Scene", "Step", "Reset", "Undo", "Redo", "Explore", "Learn", "Compare", "Budget"];

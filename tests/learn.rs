@@ -1,4 +1,4 @@
-//! The cards of the mode Learn: each sets its scene up, and its numbers are the library's.
+//! Tests of the cards of the mode Learn: each sets up its scene, and its numbers are the library's.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -34,7 +34,7 @@ fn harness(size: [f32; 2]) -> Harness<'static, Lab> {
     harness
 }
 
-/// A window at a card, from 1, with all that the card looks for.
+/// Returns a window at a card, counted from 1, whose background solves have ended.
 fn at_card(number: usize) -> Harness<'static, Lab> {
     let mut harness = harness([1280.0, 800.0]);
     harness.state_mut().show_card(number);
@@ -60,7 +60,7 @@ fn texts(harness: &Harness<'_, Lab>) -> Vec<String> {
     labels.flat_map(|node| [node.label(), node.value()]).flatten().collect()
 }
 
-/// The one text that begins so.
+/// Returns the first text with this beginning.
 fn text(harness: &Harness<'_, Lab>, start: &str) -> String {
     let all = texts(harness);
     all.iter().find(|text| text.starts_with(start)).cloned().unwrap_or_else(|| unreachable!("no {start:?}: {all:?}"))
@@ -83,7 +83,7 @@ fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// Keys go from card to card, and leaving gives back the scene, the body and the view that were.
+/// Keys switch between the cards; leaving restores the previous scene, body and view.
 #[test]
 fn leaving_restores_what_was() {
     let mut harness = harness([1280.0, 800.0]);
@@ -116,7 +116,7 @@ fn leaving_restores_what_was() {
     assert_eq!((after.scene(), after.camera()), (&scene, camera));
     assert_eq!((after.simulation().displacement(), after.simulation().iterations()), (&body[..], iterations));
     assert!(after.frame().lines.is_empty() && !after.iterates());
-    // The way goes on where it was left.
+    // Learn continues at the last card.
     harness.get_by_label("Learn").click();
     harness.run();
     assert_eq!(harness.state().card(), Some((2, 9)));
@@ -125,7 +125,7 @@ fn leaving_restores_what_was() {
     assert_eq!(harness.state().scene(), &scene);
 }
 
-/// Everything is within the window and can be pressed, however small that is.
+/// In a window of any size, every control of a card is inside and can be pressed.
 #[test]
 fn every_card_can_be_read_and_left_in_a_small_window() {
     for size in [[1280.0, 800.0], [800.0, 600.0], [640.0, 480.0]] {
@@ -150,7 +150,7 @@ fn every_card_can_be_read_and_left_in_a_small_window() {
     }
 }
 
-/// Card 1: the area of linear theory's body, from the corners of its triangles.
+/// Card 1: the area of linear theory's body equals that of the corners of its triangles.
 #[test]
 fn the_area_grows_under_linear_theory() {
     let mut harness = at_card(1);
@@ -177,7 +177,7 @@ fn the_area_grows_under_linear_theory() {
     let after = growth(harness.state());
     assert!(after < 0.5 * before, "{before} {after}");
     assert_eq!(text(&harness, "area, linear"), format!("area, linear: +{}", percent(after)));
-    // The area goes with the square of the turn, and that with the force.
+    // The area grows with the square of the rotation, which is proportional to the force.
     let force = |lab: &Lab| match &lab.scene().loads[0] {
         warpbeam::Load::Force { force, .. } => force[1] / -30e3,
         _ => unreachable!(),
@@ -186,7 +186,7 @@ fn the_area_grows_under_linear_theory() {
     assert!((after / before / square - 1.0).abs() < 0.1, "{after} {before} {square}");
 }
 
-/// Card 2: F, R and S of the clicked triangle.
+/// Card 2 shows F, R and S of the clicked triangle.
 #[test]
 fn a_clicked_triangle_says_its_f_r_and_s() {
     let mut harness = at_card(2);
@@ -215,7 +215,7 @@ fn a_clicked_triangle_says_its_f_r_and_s() {
     }
 }
 
-/// Card 3: every triangle is turned back by its own R, and put together again by the slider.
+/// Card 3: every triangle is rotated back by its own R, and the slider moves the triangles back together.
 #[test]
 fn triangles_are_turned_back_onto_their_shape_at_rest() {
     let mut harness = at_card(3);
@@ -232,7 +232,7 @@ fn triangles_are_turned_back_onto_their_shape_at_rest() {
             let j = (i + 1) % 3;
             assert!((drawn[j] - drawn[i] - back * (now[j] - now[i])).norm() < 1e-12);
         }
-        // What is left is a stretch: the best rotation onto the shape at rest is none.
+        // The remaining map is a stretch: its rotation is zero.
         let left = Affine2::from_triangle(rest, drawn).unwrap().linear;
         assert!(polar(&left).unwrap().angle().abs() < 1e-9);
         assert!((left - Matrix2::identity()).norm() < 0.4);
@@ -246,7 +246,7 @@ fn triangles_are_turned_back_onto_their_shape_at_rest() {
         text(&harness, "strain \u{3b5}"),
         format!("strain \u{3b5}: along {along}, across {across}, shear {shear}")
     );
-    // A press on triangles that are elsewhere pulls nothing, and takes the triangle that is seen there.
+    // A press on a triangle that is drawn elsewhere does not pull the body, and selects the triangle drawn there.
     let seen = drawn(harness.state(), 1).iter().sum::<Vector2<f64>>() / 3.0;
     let at = in_window(harness.state(), seen);
     harness.hover_at(at);
@@ -269,7 +269,7 @@ fn triangles_are_turned_back_onto_their_shape_at_rest() {
     }
 }
 
-/// The text beside the pointer over a cell of a matrix.
+/// Returns the tooltip of a cell of a matrix.
 fn cell(harness: &mut Harness<'_, Lab>, matrix: &str, count: usize, row: usize, column: usize) -> String {
     let rect = harness.get_by_label_contains(matrix).rect();
     let at = |i: usize| (i as f32 + 0.5) * rect.width() / count as f32;
@@ -285,7 +285,7 @@ fn text_containing(harness: &Harness<'_, Lab>, part: &str) -> String {
     texts(harness).into_iter().find(|text| text.contains(part)).unwrap_or_default()
 }
 
-/// Card 4: the entries of Ke, R Ke Rᵀ and their sum are those that the solver works with.
+/// Card 4: the entries of Ke, R Ke Rᵀ and their sum are the solver's.
 #[test]
 fn the_matrices_are_the_solvers() {
     let mut harness = at_card(4);
@@ -320,11 +320,12 @@ fn the_matrices_are_the_solvers() {
         let expected = format!("{}force: {}, moved: {}", words(product[row]), name(i), name(j));
         assert_eq!(shown, expected);
     }
-    // Nodes that share no triangle.
+    // These nodes share no triangle.
     assert!(cell(&mut harness, "the body's matrix", 24, 0, 23).starts_with("no entry"));
 }
 
-/// Card 6: an iteration a press; the residual falls by ρ, which newton's equilibrium knows too.
+/// Card 6: each press iterates once; the residual falls by ρ, which equals the certificate's ρ for
+/// the equilibrium of `newton`.
 #[test]
 fn the_residual_falls_by_rho() {
     let mut harness = at_card(6);
@@ -352,7 +353,7 @@ fn the_residual_falls_by_rho() {
     assert!(harness.query_by_label(&words).is_some(), "{words}: {:?}", texts(&harness));
 }
 
-/// Card 7: ρ is above 1, warped gives up, newton gets there.
+/// Card 7: ρ is above 1, so that `warped` diverges, while `newton` converges.
 #[test]
 fn beyond_rho_one_newton_gets_there() {
     let mut harness = at_card(7);
@@ -367,7 +368,7 @@ fn beyond_rho_one_newton_gets_there() {
     assert!(simulation.certificate().and_then(|c| c.fixed_point_rho).is_some_and(|rho| rho > 1.0));
 }
 
-/// Card 8: each element's error is what `solve` says of it.
+/// Card 8: each element's error is the one that `solve` reports.
 #[test]
 fn locking_has_each_elements_error() {
     let mut harness = at_card(8);
@@ -404,11 +405,11 @@ fn the_trade_is_measured_when_asked() {
     let seconds: f64 = format!("{:.1e}", 1e-3 * fastest.milliseconds()).parse().unwrap();
     let words = engineering(seconds, "s");
     assert!(harness.query_all_by_label(&words).next().is_some(), "{words}: {:?}", texts(&harness));
-    // What keeps no such error says how close it gets.
+    // An element that does not reach this error shows its smallest one.
     assert!(texts(&harness).iter().any(|t| t.starts_with("at most ")));
 }
 
-/// Every text that is painted.
+/// Returns every painted text.
 fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
     fn texts(shape: &egui::Shape, found: &mut Vec<String>) {
         match shape {
@@ -422,7 +423,7 @@ fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
     found
 }
 
-/// Card 5: a step lights the next line; one line iterates, and the numbers are the simulation's.
+/// Card 5: a step highlights the next line; one of the lines iterates, and the numbers are the simulation's.
 #[test]
 fn steps_walk_through_the_pseudocode() {
     let mut harness = at_card(5);
@@ -466,7 +467,7 @@ fn steps_walk_through_the_pseudocode() {
         };
         assert!(words.ends_with(&numbers), "{words}: {numbers}");
     }
-    // To the end, and again from rest.
+    // Continues to the end, and then again from rest.
     harness.get_by_label("Go on").click();
     harness.run();
     let iterations = harness.state().simulation().iterations();
@@ -478,7 +479,8 @@ fn steps_walk_through_the_pseudocode() {
     assert_eq!(harness.state().simulation().iterations(), 0);
 }
 
-/// One force slider on a card; the panel comes with its key, and how it was before comes back at the end.
+/// A card has a single force slider. The panel is hidden on cards and opened with its key; leaving
+/// restores its previous state.
 #[test]
 fn the_panel_is_folded_away_on_the_cards() {
     let has_panel = |harness: &Harness<'_, Lab>| harness.query_by_role_and_label(Role::Slider, "Force").is_some();
@@ -502,7 +504,7 @@ fn the_panel_is_folded_away_on_the_cards() {
     }
 }
 
-/// Card 1: the view has room for all that the slider reaches, and stands still while the force is dragged.
+/// Card 1: the view has room for the largest force of the slider, and does not move while the force is dragged.
 #[test]
 fn growth_is_seen_as_growth() {
     for size in [[1280.0, 800.0], [900.0, 600.0], [640.0, 480.0]] {
@@ -549,7 +551,7 @@ fn the_article_and_its_source_are_named() {
     assert!(text(&harness, "K: ").contains("stiffness matrix (N/m). u: displacements of the nodes (m)"));
 }
 
-/// A formula that is wider than its column is set in smaller letters.
+/// A formula wider than its column is set in a smaller font.
 #[test]
 fn no_formula_is_wider_than_its_column() {
     let mut harness = harness([640.0, 480.0]);

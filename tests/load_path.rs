@@ -1,4 +1,5 @@
-//! Load paths: critical loads against Euler's, the work of supports against the energy stored, and paths that end early.
+//! Compares load paths with theory: critical loads with Euler's, and the work of supports with the stored energy. Also
+//! tests paths that end early.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -12,7 +13,7 @@ use warpbeam::{Axis, ElementKind, Scene};
 
 const LENGTH: f64 = 40.0;
 
-/// A straight column of height and thickness 1, E = 1 MPa, compressed by this part of π² E I/L².
+/// Returns a straight column of height and thickness 1, E = 1 MPa, compressed by `part` times π² E I/L².
 fn column(part: f64, hold: impl Fn(Scene) -> Scene) -> Scene {
     let mut scene = Scene::beam(LENGTH, 1.0).with_cells(24, 1);
     (scene.material.young, scene.material.poisson) = (1e6, 0.0);
@@ -20,14 +21,15 @@ fn column(part: f64, hold: impl Fn(Scene) -> Scene) -> Scene {
     hold(scene).force("right", [-part * euler, 0.0]).probe("tip", "right")
 }
 
-/// Every end of a column has its critical load, and a longer path passes the higher ones, each with a mode more.
+/// Every kind of support has its critical load; a longer path passes the higher ones, each of
+/// which adds an unstable mode.
 #[test]
 fn columns_buckle_at_eulers_loads() {
     type Hold = fn(Scene) -> Scene;
     let free: Hold = |scene| scene.clamp("left");
     let pinned: Hold = |scene| scene.clamp("left").support("right", &[Axis::Y]);
     for (name, hold, part, factors) in [
-        // Load over π² E I/L²: 1/4, 9/4, 25/4 of a free end; 2.0457 of a pinned one (tan k = k).
+        // Critical loads over π² E I/L²: 1/4, 9/4, 25/4 for a free end; 2.0457 for a pinned one (tan k = k).
         ("free", free, 0.4, &[0.25][..]),
         ("free", free, 3.0, &[0.25, 2.25]),
         ("free", free, 7.0, &[0.25, 2.25, 6.25]),
@@ -39,7 +41,8 @@ fn columns_buckle_at_eulers_loads() {
             assert!(path.end.is_none() && path.jump.is_none(), "{words}");
             assert_eq!(path.bifurcations.len(), factors.len(), "{words}");
             for (i, (found, factor)) in path.bifurcations.iter().zip(factors).enumerate() {
-                // Shear and shortening of a beam this slender change a few thousandths, of higher modes a few hundredths.
+                // For a beam this slender, shear and shortening change the load by a few thousandths, and for higher
+                // modes by a few hundredths.
                 let bound = [0.01, 0.03, 0.08][i];
                 assert!((found.factor * part / factor - 1.0).abs() < bound, "{words}");
                 assert_eq!(found.unstable_modes, [i, i + 1], "{words}");
@@ -50,7 +53,7 @@ fn columns_buckle_at_eulers_loads() {
             }
         }
     }
-    // Below the critical load, and with a side load, nothing buckles.
+    // Below the critical load, or with a side load, the column does not buckle.
     assert_eq!(LoadPath::of(&column(0.2, free)).unwrap().bifurcations, []);
     assert_eq!(LoadPath::of(&column(0.4, free).force("right", [0.0, 0.3])).unwrap().bifurcations, []);
 }
@@ -90,7 +93,7 @@ fn a_path_that_is_called_off_says_so() {
     assert!(end.factor > 0.0 && end.factor < 1.0 && end.to_string().contains("interrupted"), "{end}");
 }
 
-/// `curve` names the critical load, draws it, and calls what is beyond unstable; `solve` beyond it says so.
+/// The command `curve` names the critical load, draws it, and calls states beyond it unstable; so does `solve`.
 #[test]
 fn commands_name_the_critical_load() {
     // Euler's load is 514 N.
@@ -111,12 +114,12 @@ fn commands_name_the_critical_load() {
     let json = solve_json(&set);
     assert!((json["buckles_at"].as_f64().unwrap() - 0.493).abs() < 1e-3 && json["stable"] == false, "{json}");
     assert!((buckles(&stdout(&warpbeam(&[&["solve"][..], &set].concat()))) - 49.3).abs() < 0.1);
-    // An unstable equilibrium has no reference.
+    // An unstable equilibrium has no reference solution.
     assert!(json["probes"][0]["error_percent"].is_null(), "{json}");
     assert!(solve_json(&["column"])["buckles_at"].is_null());
 }
 
-/// With supports that move, the residual is a number, not a zero that stands for rounding.
+/// With moving supports, the residual is a positive number, not a zero in place of the rounding error.
 #[test]
 fn moved_supports_have_a_residual() {
     for moved in ["[0.0,0.0]", "[0.3,-2.0]"] {
@@ -126,7 +129,7 @@ fn moved_supports_have_a_residual() {
         assert!(residual.unwrap() > 0.0, "{json}");
         assert!(residual.unwrap() <= 1e-8 || floor.is_some_and(|floor| residual.unwrap() <= floor), "{json}");
     }
-    // A body that is only carried along has no forces to compare a residual with.
+    // A body that is only translated has no forces to compare the residual with.
     let carried = scene_with("stretch", &["load.0.force=[0,0]", "support.0.displacement=[0.5,0]"]);
     let simulation = solved(&carried);
     assert!(simulation.residual().is_finite());

@@ -1,4 +1,4 @@
-//! Meshes: what is accepted, what is refused and how.
+//! Tests of meshes given by the caller: accepted and refused ones, and their errors.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::collections::BTreeMap;
@@ -26,7 +26,7 @@ fn meshes_without_area_are_refused_and_clockwise_triangles_turned() {
     assert!(matches!(missing, Err(MeshError::NoSuchNode { element: 0, node: 9, count: 4 })));
 }
 
-/// Whatever is wrong is an error that names it; nothing panics later.
+/// An invalid mesh gives an error that names the problem; nothing panics later.
 #[test]
 fn what_is_no_mesh_is_refused() {
     let triangles = || vec![0, 1, 2, 0, 2, 3];
@@ -46,7 +46,7 @@ fn what_is_no_mesh_is_refused() {
     let mut far = square();
     far[1].x = 1e200;
     assert!(mesh(far, ElementKind::T3, triangles(), none()).is_err());
-    // Edges: a node that is not there, nodes that no element's side has, too many nodes.
+    // Edges with a missing node, with nodes that are no element's side, or with too many nodes are refused.
     for nodes in [&[0, 9][..], &[1, 3], &[0, 0], &[0, 1, 2]] {
         let refused = mesh(square(), ElementKind::T3, triangles(), edge("e", &[nodes]));
         let expected = MeshError::NoSuchSide { edge: "e".to_owned(), nodes: nodes.to_vec() };
@@ -55,16 +55,16 @@ fn what_is_no_mesh_is_refused() {
     for nodes in [&[][..], &[1], &[0, 1, 2, 3]] {
         assert_eq!(Segment::new(nodes), None);
     }
-    // Either direction of a side will do, and a diagonal inside.
+    // A side may have either direction, and may be a diagonal inside the mesh.
     assert_eq!(mesh(square(), ElementKind::T3, triangles(), edge("e", &[&[1, 0], &[0, 2]])), Ok(()));
-    // A side so curved that its element folds over.
+    // The side is so curved that its element folds over.
     let mut nodes = square();
     nodes.extend([[0.5, 0.8], [1.0, 0.5], [0.5, 0.5]].map(Vector2::from));
     let folded = mesh(nodes, ElementKind::T6, vec![0, 1, 2, 4, 5, 6], none());
     assert_eq!(folded, Err(MeshError::Folded { element: 0 }));
 }
 
-/// A mesh of the caller's, with its own edges, is solved on like any other.
+/// A mesh of the caller, with its own edges, can be solved like any other.
 #[test]
 fn a_mesh_of_ones_own_is_solved_on() {
     let mesh = Mesh::new(square(), ElementKind::T3, vec![0, 1, 2, 0, 2, 3], edge("foot", &[&[0, 1]])).unwrap();

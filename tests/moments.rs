@@ -1,4 +1,4 @@
-//! Moments that turn with their edge: potential, work and full turns.
+//! Tests of moments that rotate with their edge: potential, work and full turns.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 use warpbeam::assembly::{Kinematics, Problem, System};
 use warpbeam::{Material, Scene, Simulation, State, Status};
 
-/// The scene of the rolled-up beam with this many times the moment that closes it, 2πEI/L.
+/// Returns the scene of the rolled-up beam with `turns` times the moment that closes it, 2πEI/L.
 fn rolled(turns: f64) -> Scene {
     let mut scene = scene("roll-up");
     scene.scale_loads(turns);
@@ -18,7 +18,7 @@ fn rolled(turns: f64) -> Scene {
     scene
 }
 
-/// M θ, and θ = M L / E I.
+/// Returns the work M θ with θ = M L / E I.
 fn expected_work(turns: f64) -> f64 {
     let scene = scene("roll-up");
     let beam = scene.beam.as_ref().unwrap();
@@ -26,12 +26,12 @@ fn expected_work(turns: f64) -> f64 {
     TAU * TAU * turns * turns * bending / beam.length
 }
 
-/// The loads do the work M θ, however often the edge has turned: twice what is stored, as Clapeyron says.
+/// The loads do the work M θ for any number of turns of the edge: twice the stored energy, by Clapeyron's theorem.
 #[test]
 fn the_work_of_a_moment_counts_full_turns() {
     for turns in [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, -1.0] {
         let mut simulation = Simulation::new(&rolled(turns)).unwrap();
-        // In steps of half a turn: a beam that is rolled up twice in one go finds other equilibria.
+        // Steps of half a turn: a beam rolled up twice in one step finds other equilibria.
         for i in 1..=(2.0 * f64::abs(turns)).ceil() as u32 {
             let reached = (0.5 * f64::from(i)).min(turns.abs()) * turns.signum();
             simulation.change_scene(&rolled(reached)).unwrap();
@@ -46,7 +46,7 @@ fn the_work_of_a_moment_counts_full_turns() {
     }
 }
 
-/// In one go too: from rest to a closed circle, and to half of one.
+/// The same in one step, from rest to a half and to a full circle.
 #[test]
 fn the_work_is_right_from_rest() {
     for turns in [0.5, 1.0] {
@@ -73,7 +73,7 @@ fn problem() -> Problem {
     Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap()
 }
 
-/// A beam rolled up by `angle`, reached from rest without a jump.
+/// Returns the state of a beam rolled up by `angle`, reached from rest in small steps.
 fn rolled_state(problem: &Problem, angle: f64) -> State {
     let mut state = problem.system().at_rest();
     let mut now = 0.0f64;
@@ -89,7 +89,7 @@ fn rolled_state(problem: &Problem, angle: f64) -> State {
     state
 }
 
-/// f_ext is minus the gradient of the loads' potential, before and beyond one full turn.
+/// f_ext is the negative gradient of the loads' potential, before and beyond a full turn.
 #[test]
 fn the_force_is_the_gradient_of_the_potential_beyond_a_full_turn() {
     const STEP: f64 = 1e-6;
@@ -118,7 +118,7 @@ fn the_force_is_the_gradient_of_the_potential_beyond_a_full_turn() {
     }
 }
 
-/// The potential is the work along the way, whatever the way: ∫ f · du by the trapezoid, through more than a full turn.
+/// The potential is the work along any path: ∫ f · du by the trapezoidal rule, over more than a full turn.
 #[test]
 fn the_potential_is_the_work_along_a_path() {
     let problem = problem();
@@ -141,8 +141,8 @@ fn the_potential_is_the_work_along_a_path() {
     assert!((work - difference).abs() < 1e-3 * difference.abs(), "{work} {difference}");
 }
 
-/// Between two states the loads' force works by exactly what their potential falls, however far the edge has turned, and
-/// is their ordinary force where the two are one.
+/// Between two states, the work of the loads' force is exactly the decrease of their potential, for any rotation of the
+/// edge. If both states are equal, it is the ordinary force.
 #[test]
 fn between_two_states_the_loads_work_by_their_potential() {
     let problem = problem();

@@ -1,4 +1,4 @@
-//! Motions in the window: their colours, their past, their speed, and bodies that pass through themselves.
+//! Tests of motions in the window: colours, time line, speed, and self-intersecting bodies.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -29,7 +29,7 @@ fn harness(id: &str) -> Harness<'static, Lab> {
     harness_of(id, scene(id))
 }
 
-/// Where a material point of the body is in the window.
+/// Returns the window position of a material point.
 fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
     let mesh = lab.simulation().system().mesh();
     let weights = mesh.weights(mesh.locate(at).unwrap()).unwrap();
@@ -49,14 +49,14 @@ fn key(harness: &mut Harness<'_, Lab>, key: Key) {
     harness.step();
 }
 
-/// The place on the time line at a part of its length.
+/// Returns the position on the time line at a fraction of its length.
 fn on_line(harness: &Harness<'_, Lab>, part: f32) -> Pos2 {
-    // Beyond its ends it takes the pointer, too.
+    // The control also accepts the pointer beyond the ends of the line.
     let line = harness.get_by_role_and_label(Role::Slider, "Time line").rect().shrink2(vec2(8.0, 0.0));
     egui::pos2(egui::lerp(line.x_range(), part), line.center().y)
 }
 
-/// Presses on the time line at a part of its length.
+/// Presses on the time line at a fraction of its length.
 fn press_line(harness: &mut Harness<'_, Lab>, part: f32) {
     let at = on_line(harness, part);
     harness.hover_at(at);
@@ -66,7 +66,7 @@ fn press_line(harness: &mut Harness<'_, Lab>, part: f32) {
     harness.step();
 }
 
-/// Frames of a motion, each with the state that it showed.
+/// Runs frames of a motion, and returns the state of each.
 fn states(harness: &mut Harness<'_, Lab>, frames: usize) -> Vec<State> {
     let mut states = Vec::new();
     for _ in 0..frames {
@@ -76,8 +76,7 @@ fn states(harness: &mut Harness<'_, Lab>, frames: usize) -> Vec<State> {
     states
 }
 
-/// After a hard pull the colours come back to what the motion shows: the range narrows smoothly, and not while it is
-/// paused.
+/// After a hard pull the colour range returns to the values of the motion: it narrows smoothly, but not while paused.
 #[test]
 fn the_range_of_colours_relaxes_after_a_hard_pull() {
     let mut harness = harness("jelly");
@@ -112,7 +111,7 @@ fn the_range_of_colours_relaxes_after_a_hard_pull() {
     assert!(before < 0.7 * pulled && before < 1.3 * at_first, "{before} Pa of {pulled}; the motion shows {at_first}");
 }
 
-/// The time line goes back through what was shown, to the last bit, by dragging and by keys. Run goes on from there.
+/// The time line shows earlier states exactly, by dragging and by keys. Run continues from the displayed state.
 #[test]
 fn the_last_seconds_can_be_shown_again() {
     for (id, integrator) in [
@@ -131,7 +130,7 @@ fn the_last_seconds_can_be_shown_again() {
         assert!(shown.contains(&there), "{id}: another state than was shown at {} s", there.time());
         harness.run_steps(5);
         assert!(*harness.state().simulation().state() == there, "{id}: it is paused");
-        // Dragged on, and by keys.
+        // Dragged further, and moved by keys.
         harness.hover_at(on_line(&harness, 0.8));
         harness.run_steps(2);
         assert!(time(&harness) > there.time() && shown.contains(harness.state().simulation().state()));
@@ -144,7 +143,7 @@ fn the_last_seconds_can_be_shown_again() {
         assert_eq!(time(&harness), later, "{id}: on");
         key(&mut harness, Key::Period);
         assert!(time(&harness) > later && shown.contains(harness.state().simulation().state()), "{id}: on");
-        // The energies are those of then.
+        // The energies belong to the displayed time.
         let ledger = *harness.state().simulation().motion().unwrap().ledger();
         assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{id}: {ledger:?}");
 
@@ -163,7 +162,7 @@ fn the_last_seconds_can_be_shown_again() {
         );
         let ledger = *harness.state().simulation().motion().unwrap().ledger();
         assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{id}: {ledger:?}");
-        // The line ends at the present: later moments are gone.
+        // The line ends at the present: later states have been discarded.
         key(&mut harness, Key::Space);
         let present = time(&harness);
         press_line(&mut harness, 1.0);
@@ -171,7 +170,7 @@ fn the_last_seconds_can_be_shown_again() {
     }
 }
 
-/// At the last moment the key for the next one takes a time step; an edit and a reset forget what was.
+/// At the present, the key for the next state takes a time step. An edit and a reset clear the history.
 #[test]
 fn the_past_ends_at_the_present_and_begins_with_the_scene() {
     let mut harness = harness("swing");
@@ -194,8 +193,8 @@ fn the_past_ends_at_the_present_and_begins_with_the_scene() {
     assert_eq!(time(&harness), 0.0);
 }
 
-/// Other integrators go back along with the body, to the moment that is shown; one that was not there then begins where the
-/// body goes on.
+/// Other integrators go back together with the body to the displayed time. One that did not run then
+/// starts from the body's state.
 #[test]
 fn companions_go_back_along() {
     let mut harness = harness("swing");
@@ -214,7 +213,7 @@ fn companions_go_back_along() {
     assert_eq!(time(&harness), 0.0);
 }
 
-/// A body that vibrates fast offers a period a second, and shows it: the pace is that.
+/// A body that vibrates fast offers a speed of one period per second, and shows the motion at this speed.
 #[test]
 fn a_chime_is_slowed_to_a_period_a_second() {
     let mut harness = harness("chime");
@@ -229,11 +228,11 @@ fn a_chime_is_slowed_to_a_period_a_second() {
     harness.run_steps(3);
     let before = time(&harness);
     harness.run_steps(20);
-    // A machine that cannot keep up makes fewer steps.
+    // A machine that cannot keep up takes fewer steps.
     let second = time(&harness) - before;
     assert!(second > 0.0 && second * 40.0 < 1.06, "a second is {second} s");
     assert!(harness.query_by_label_contains("× 1/4").is_some(), "the pace is said");
-    // A slow body offers nothing slower than 1/8.
+    // A slow body offers no speed below 1/8.
     let swing = harness_of("swing", scene("swing"));
     let slowest = swing.query_all_by_role_and_label(Role::Button, "1/8").count();
     assert_eq!((slowest, swing.query_all_by_label_contains("1/1").count()), (1, 0));
@@ -241,7 +240,7 @@ fn a_chime_is_slowed_to_a_period_a_second() {
 
 const CROSSES: &str = "The body passes through itself: contact is not modelled";
 
-/// Steps until it is said that the body passes through itself, so many frames at most. Returns whether it is.
+/// Runs frames, at most `frames`, until the window reports that the body intersects itself. Returns `true` if it does.
 fn is_said(harness: &mut Harness<'_, Lab>, frames: u32) -> bool {
     (0..frames).any(|_| {
         harness.step();
@@ -249,7 +248,8 @@ fn is_said(harness: &mut Harness<'_, Lab>, frames: u32) -> bool {
     })
 }
 
-/// A clip that is pressed into its own base says so, once. No other built-in scene does so at rest or where it leads.
+/// A clip that is pressed into its own base is reported once. No other built-in scene intersects
+/// itself, at rest or in its result.
 #[test]
 fn a_body_that_passes_through_itself_says_so_once() {
     let mut clip = harness("clip");

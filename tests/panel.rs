@@ -1,4 +1,4 @@
-//! The panel, driven as a person would: by labels, pointer and keys, without a display or a GPU.
+//! Tests of the panel, operated by labels, pointer and keys, without a display or a GPU.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -25,7 +25,7 @@ fn harness(id: &str) -> Harness<'static, Lab> {
     harness
 }
 
-/// One that may not come to rest.
+/// Returns a window with a scene that may not come to rest.
 fn harness_of(id: &str) -> Harness<'static, Lab> {
     harness_with(id, scene(id))
 }
@@ -57,7 +57,7 @@ fn tip(lab: &Lab) -> [f64; 2] {
     lab.simulation().solution().probes[0].u.into()
 }
 
-/// Dragging the force slider changes the deflection to what `solve` gives for that force.
+/// Dragging the force slider gives the deflection that `solve` gives for that force.
 #[test]
 fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
     let mut harness = harness("cantilever");
@@ -86,7 +86,7 @@ fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
     let json = solve_json(&["cantilever", "--set", &format!("load.0.force=[{fx},{fy}]")]);
     let solved = [0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap());
     let shown = tip(lab);
-    // Both within the solver's tolerance of the equilibrium, from different starts.
+    // Both are within the solver's tolerance of the equilibrium, from different starts.
     let error = (shown[0] - solved[0]).hypot(shown[1] - solved[1]);
     assert!(error < 1e-5 * solved[1].abs(), "{shown:?} {solved:?}");
     assert!((shown[1] - before.1[1]).abs() > 1e-3);
@@ -117,7 +117,7 @@ fn typed_values_take_effect_also_beyond_the_slider() {
     assert_eq!(harness.state().simulation().system().mesh().element_count(), 240);
 }
 
-/// Out of range: refused, with a message that says what was expected; never clamped, never taken.
+/// A value out of range is refused with a message about the expected range. It is neither clamped nor accepted.
 #[test]
 fn values_out_of_range_are_refused_with_a_message() {
     let cases = [
@@ -151,14 +151,14 @@ fn values_out_of_range_are_refused_with_a_message() {
             shown.top() >= field.bottom() - 1.0 && shown.top() < field.bottom() + 48.0,
             "{label}: not next to the field"
         );
-        // A good value makes the message go.
+        // A valid value removes the message.
         let good = if label.starts_with("Cells") { "4" } else { "0.25" };
         type_into(&mut harness, label, good);
         assert!(harness.query_by_label_contains(message).is_none(), "{label}: the message stays");
     }
 }
 
-/// What was refused stays in its field and can be mended there; Escape brings the value back.
+/// A refused text stays in its field, where it can be corrected; Escape restores the value.
 #[test]
 fn a_refused_text_stays_to_be_mended() {
     let mut harness = harness("cantilever");
@@ -168,7 +168,7 @@ fn a_refused_text_stays_to_be_mended() {
         let field = harness.get_by_role_and_label(Role::SpinButton, "Force").accesskit_node().value();
         assert_eq!(field.as_deref(), Some(refused));
         assert!(harness.query_by_label_contains("expected").is_some());
-        // A space belongs to the text: it is no shortcut.
+        // A space is part of the text, not a shortcut.
         harness.event(egui::Event::Text(" ".to_owned()));
         harness.key_press(Key::Space);
         harness.run();
@@ -179,7 +179,7 @@ fn a_refused_text_stays_to_be_mended() {
         assert!(harness.query_by_label_contains("expected").is_none(), "{refused}: the message stays");
         assert_eq!(force(harness.state()), before);
     }
-    // Escape takes a good value back as well.
+    // Escape discards a valid text as well.
     harness.get_by_role_and_label(Role::SpinButton, "Force").click();
     harness.run();
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -198,7 +198,7 @@ fn a_refused_text_stays_to_be_mended() {
     assert!((force(harness.state())[1] + 12e3).abs() < 1e-6, "{:?}", force(harness.state()));
 }
 
-/// A body that is turned inside out is not called well, whatever its equations say.
+/// A body with inverted elements is reported, even if its equations are solved.
 #[test]
 fn inside_out_is_said() {
     let mut harness = harness("cantilever");
@@ -246,13 +246,13 @@ fn run_pause_step_and_reset() {
     let mut harness = harness("article");
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
     let converged = harness.state().simulation().iterations();
-    // What has converged has nothing to pause, by button or by key.
+    // A converged body has nothing to pause, by button or by key.
     assert!(harness.query_by_label("Pause").is_none());
     assert!(harness.get_by_label("Run").accesskit_node().is_disabled());
     harness.key_press(Key::Space);
     harness.run();
     assert!(harness.query_by_label_contains("Paused").is_none());
-    // One step more begins again at rest.
+    // Another step starts again at rest.
     harness.get_by_label("Step").click();
     harness.run();
     assert_eq!(harness.state().simulation().iterations(), 1);
@@ -271,7 +271,7 @@ fn run_pause_step_and_reset() {
     assert_eq!(harness.state().simulation().iterations(), converged);
 }
 
-/// An edit while paused leaves an old picture, which says so and offers the step.
+/// An edit while paused leaves an outdated picture; the window reports this and offers the step.
 #[test]
 fn a_picture_older_than_its_load_says_so() {
     let mut harness = harness("article");
@@ -287,7 +287,7 @@ fn a_picture_older_than_its_load_says_so() {
     assert!(harness.query_by_label_contains("older than the load").is_none());
 }
 
-/// Space belongs to the control that has the focus.
+/// The key Space goes to the control that has the focus.
 #[test]
 fn space_on_a_focused_button_is_the_buttons() {
     let mut harness = harness("article");
@@ -302,7 +302,7 @@ fn space_on_a_focused_button_is_the_buttons() {
     assert_eq!(harness.state().simulation().iterations(), 1, "and nothing runs");
 }
 
-/// What is typed into a number is the number's, though it ends within the frame that it comes in.
+/// Text typed into a number field goes to the field, even if it is completed within one frame.
 #[test]
 fn keys_that_end_a_text_in_their_frame_are_the_texts() {
     let mut harness = harness("article");
@@ -314,7 +314,7 @@ fn keys_that_end_a_text_in_their_frame_are_the_texts() {
             egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
         [press, egui::Event::Text(text.to_owned())]
     };
-    // R resets, Space pauses.
+    // Outside the field, Space pauses and N steps.
     let typed = [key(Key::Num3, "30"), key(Key::Space, " "), key(Key::N, "kN")].into_iter().flatten();
     let [enter, _] = key(Key::Enter, "");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -326,8 +326,8 @@ fn keys_that_end_a_text_in_their_frame_are_the_texts() {
     assert!(harness.query_by_label_contains("Paused").is_none());
 }
 
-/// The ends of a fixed range of colours are set to anything, negative too; the scale stays where it is while one of them
-/// is dragged.
+/// The ends of a fixed colour range accept any value, including negative ones. The scale does not
+/// move while an end is dragged.
 #[test]
 fn a_fixed_range_of_colours_is_set() {
     let mut harness = harness("article");
@@ -364,7 +364,7 @@ fn a_fixed_range_of_colours_is_set() {
     assert_eq!(shown(&harness, "Highest"), first, "the scale has moved under the pointer");
 }
 
-/// Arrow keys change a value by a hundredth of it.
+/// Arrow keys change a value by one hundredth.
 #[test]
 fn arrow_keys_step_a_slider_finely() {
     let mut harness = harness("article");
@@ -381,7 +381,7 @@ fn arrow_keys_step_a_slider_finely() {
     assert!((fy.atan2(fx).to_degrees() + 91.0).abs() < 1e-9, "{fx} {fy}");
 }
 
-/// A wrong answer says why, and one click makes it a better one.
+/// An inaccurate result gives the reason, and one click improves it.
 #[test]
 fn remedies_are_one_click_away() {
     let mut harness = harness("article");
@@ -415,7 +415,7 @@ fn remedies_are_one_click_away() {
     assert!(harness.query_by_label_contains("linear theory does not turn").is_some(), "{:?}", texts(&harness));
 }
 
-/// ρ beyond 1 beside a result that has converged says what it means.
+/// If ρ is above 1 although the result has converged, the window explains why.
 #[test]
 fn rho_beyond_one_beside_a_converged_bar_is_explained() {
     let mut harness = harness("article");
@@ -445,7 +445,7 @@ fn presets_set_the_material_and_the_fold_says_it() {
     assert!(harness.query_by_label("Material: steel, 210 GPa").is_some());
 }
 
-/// In a window of any size every control is in it, has a name, and can be reached.
+/// In a window of any size, every control is inside, has a name, and can be reached.
 #[test]
 fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
     for size in [[640.0, 480.0], [800.0, 600.0], [1280.0, 800.0]] {
@@ -542,7 +542,7 @@ fn keys_are_listed_and_work() {
     harness.key_press(Key::P);
     harness.run();
     assert!(harness.query_by_role_and_label(Role::Slider, "Force").is_some());
-    // Pressed only: a release would be a frame of its own, with its own output.
+    // Only pressed: a release would be another frame with its own output.
     harness.key_down(Key::C);
     harness.step();
     let copied = harness.output().platform_output.commands.iter().find_map(|c| match c {
@@ -551,7 +551,7 @@ fn keys_are_listed_and_work() {
     });
     let text = copied.unwrap();
     assert!(text.starts_with("# Save as scene.toml, then: warpbeam solve scene.toml"), "{text}");
-    // What was copied solves to what is shown.
+    // The copied scene gives the displayed result.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, text).unwrap();
@@ -562,7 +562,7 @@ fn keys_are_listed_and_work() {
 #[test]
 fn scrolling_zooms_to_the_pointer_and_f_fits() {
     let mut harness = harness("article");
-    // The view is fitted to the true outline too.
+    // The view is also fitted to the outline of the reference solution.
     wait(&mut harness, "the truth", |lab| !lab.is_searching());
     harness.run();
     let rect = harness.state().view_rect();
@@ -596,7 +596,7 @@ fn scrolling_zooms_to_the_pointer_and_f_fits() {
     assert_eq!(harness.state().camera(), fitted);
 }
 
-/// At rest the lab asks for no further frame.
+/// At rest, no further frame is requested.
 #[test]
 fn at_rest_nothing_is_redrawn() {
     let mut harness = harness("article");
@@ -607,7 +607,7 @@ fn at_rest_nothing_is_redrawn() {
     assert!(delay > std::time::Duration::from_secs(3600), "{delay:?}");
 }
 
-/// The slider of a support that moves drags the body with it; the window says what it takes, and keeps the slider at 0.
+/// The slider of a moving support drags the body. The window shows the reaction, and the slider still exists at 0.
 #[test]
 fn a_support_is_dragged_and_its_reaction_is_shown() {
     let crown = |lab: &Lab| lab.simulation().probe("crown").unwrap();
@@ -638,12 +638,13 @@ fn a_support_is_dragged_and_its_reaction_is_shown() {
     assert!(crown(harness.state())[1].abs() < 1e-9);
     type_into(&mut harness, "Move y", "-1 mm");
     assert!((crown(harness.state())[1] + 0.001).abs() < 1e-5);
-    // Scenes whose supports stay have no such slider.
+    // Scenes with fixed supports have no such slider.
     let harness = harness_of("cantilever");
     assert!(harness.query_by_label("Move y").is_none());
 }
 
-/// What the window says of a result: certificate, ρ in words, the error against the exact beam, the load curve.
+/// The window shows for a result: certificate, ρ with an explanation, the error relative to the
+/// exact beam, and the load curve.
 #[test]
 fn results_are_certified_and_compared_with_the_truth() {
     let mut harness = harness("elastica");
@@ -682,7 +683,7 @@ fn every_scene_and_element_can_be_chosen() {
     }
 }
 
-/// A pointer over the view does not stop it from following the body.
+/// A pointer over the view does not stop the view from following the body.
 #[test]
 fn the_view_follows_the_body_under_a_resting_pointer() {
     let mut harness = harness("elastica");
@@ -699,7 +700,7 @@ fn the_view_follows_the_body_under_a_resting_pointer() {
     assert!(after.scale > 1.1 * before.scale, "{before:?} {after:?}");
 }
 
-/// Frames until `done`, with a little sleep: a study takes its own time.
+/// Runs frames until `done`, with a short sleep after each, because a background task takes its own time.
 fn wait(harness: &mut Harness<'_, Lab>, what: &str, done: impl Fn(&Lab) -> bool) -> u32 {
     for frame in 0..6000 {
         if done(harness.state()) {
@@ -715,8 +716,8 @@ fn measured(lab: &Lab) -> usize {
     lab.study().0.map_or(0, |s| s.measurements.len())
 }
 
-/// The study runs beside the window: results come in, the panel lives on, and it can be called off; what has been
-/// measured stays and can be applied with a click.
+/// The study runs in the background: results appear while the panel stays usable, and it can be cancelled. Measurements
+/// taken so far are kept and can be applied with a click.
 #[test]
 fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     let mut harness = harness("cantilever");
@@ -729,7 +730,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     harness.step();
     assert!(harness.state().study().1, "no study runs");
     wait(&mut harness, "a first mesh", |lab| measured(lab) > 0);
-    // The body follows its sliders meanwhile.
+    // Meanwhile the body follows its sliders.
     let before = force(harness.state());
     let slider = harness.get_by_role_and_label(Role::Slider, "Force").rect();
     let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
@@ -768,17 +769,17 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     assert_eq!(lab.scene().element(), best.element);
     assert_eq!(lab.scene().beam.as_ref().map(|b| b.cells), best.cells);
     assert_eq!((lab.scene().solver.method, lab.iterations()), (best.method, best.iterations));
-    // The scene stops where the measurement did, and so does a copy of it.
+    // The scene stops after as many iterations as the measurement, and so does a copy of it.
     let accepts = if meeting[0].converged { 0 } else { best.iterations };
     assert_eq!(lab.scene().solver.accept_after, accepts);
     assert!(lab.simulation().iterations() <= best.iterations, "{best}: {} iterations", lab.simulation().iterations());
     assert!(meeting.iter().all(|m| m.time.total() >= meeting[0].time.total()));
-    // Another scene is another study.
+    // Another scene starts another study.
     pick(&mut harness, "Scene", "bridge");
     assert!(harness.state().study().0.is_none());
 }
 
-/// What `auto` decides is said, frame by frame.
+/// The decisions of `auto` are shown in every frame.
 #[test]
 fn decisions_are_shown() {
     let mut harness = harness("elastica");
@@ -786,16 +787,16 @@ fn decisions_are_shown() {
     unfold(&mut harness, "stable");
     assert!(harness.query_by_label("Factorized anew.").is_some());
     type_into(&mut harness, "Force", "0.1");
-    // From where the large load was it takes steps; from there on linear theory does.
+    // From the state under the large load it iterates; from the next one it uses linear theory.
     type_into(&mut harness, "Force", "0.09");
     assert!(harness.query_by_label("Linear theory serves.").is_some());
-    // A name is no load.
+    // A density without gravity changes no load.
     type_into(&mut harness, "Density ρ", "1234");
     assert!(harness.query_by_label("Nothing changed: no solve.").is_some());
     assert_eq!(harness.state().simulation().iterations(), 0);
 }
 
-/// The window's fonts have every letter that its texts use.
+/// The window's fonts have every letter of its texts.
 #[test]
 fn no_text_has_letters_that_the_fonts_lack() {
     fn sources(folder: &std::path::Path, texts: &mut Vec<String>) {
@@ -828,13 +829,13 @@ fn no_text_has_letters_that_the_fonts_lack() {
     assert_eq!(lacks(egui::FontId::monospace(14.0)), Vec::<char>::new());
 }
 
-/// Every text in the window.
+/// Returns every text in the window.
 fn texts(harness: &Harness<'_, Lab>) -> Vec<String> {
     let labels = harness.get_all_by(|_| true).map(|node| node.accesskit_node());
     labels.flat_map(|node| [node.label(), node.value()]).flatten().collect()
 }
 
-/// Where a material point of the body is in the window.
+/// Returns the window position of a material point.
 fn on_body(lab: &Lab, at: Vector2<f64>) -> egui::Pos2 {
     let simulation = lab.simulation();
     let mesh = simulation.system().mesh();
@@ -845,8 +846,8 @@ fn on_body(lab: &Lab, at: Vector2<f64>) -> egui::Pos2 {
     lab.view_rect().center() + egui::vec2(x as f32, y as f32)
 }
 
-/// Pressed on the body and pulled, a beam at rest settles where the spring of the hand balances it; let go, it is where
-/// it was.
+/// A beam at rest that is pressed and pulled settles in equilibrium with the mouse spring; after release, it
+/// returns to its previous state.
 #[test]
 fn a_beam_is_pulled_and_springs_back() {
     let mut harness = harness("article");
@@ -867,7 +868,7 @@ fn a_beam_is_pulled_and_springs_back() {
     let held = hand.position(simulation.displacement());
     let place = lab.camera().to_world([pointer.x - rect.center().x, pointer.y - rect.center().y].map(f64::from));
     assert!((hand.target() - place).norm() < 1e-6, "the hand is at {}, the pointer at {place}", hand.target());
-    // The spring is firm: the point is near the pointer; and its force is what its stretch says.
+    // The spring is stiff, so that the point is near the pointer, and its force is its stretch times its stiffness.
     assert!((held - place).norm() < 0.1 * (place - Vector2::new(4.9, 0.1)).norm(), "{held} is pulled to {place}");
     assert!((force - (place - held) * hand.stiffness()).norm() < 1e-9 * force.norm());
     assert_eq!(lab.camera(), camera, "the view moved with the body");
@@ -880,7 +881,7 @@ fn a_beam_is_pulled_and_springs_back() {
     assert!(away < 1e-6, "it came back to within {away} m");
 }
 
-/// A motion runs in real time, can be paused and stepped, is pulled and let go, and goes back to its start or to a mark.
+/// A motion runs in real time, can be paused and stepped, pulled and released, and is reset to its start or to a mark.
 #[test]
 fn a_motion_is_run_paused_stepped_pulled_and_reset() {
     let mut harness = harness_of("swing");
@@ -894,13 +895,13 @@ fn a_motion_is_run_paused_stepped_pulled_and_reset() {
     harness.get_by_label("Step").click();
     harness.run_steps(2);
     assert!((time(&harness) - paused - 1.0 / 60.0).abs() < 1e-9, "one step is one time step");
-    // Marked here, a reset comes back to here.
+    // After `Reset to here`, a reset returns to this state.
     harness.get_by_label("Reset to here").click();
     harness.run_steps(2);
     let marked = harness.state().simulation().displacement().to_vec();
     harness.get_by_label("Run").click();
     wait(&mut harness, "the motion to go on", |lab| lab.simulation().state().time() > paused + 0.3);
-    // Pulled at the tip while it runs: the hand works.
+    // Pulled at the tip while the motion runs, the mouse spring does work.
     let grip = on_body(harness.state(), Vector2::new(0.98, 0.0));
     harness.drag_at(grip);
     harness.run_steps(2);
@@ -924,7 +925,7 @@ fn a_motion_is_run_paused_stepped_pulled_and_reset() {
     assert!(time(&harness) == 0.0, "at the start");
 }
 
-/// The panel of every scene in time can be used, with every integrator and every plot, and nothing not finite is shown.
+/// The panel of every dynamic scene works with every integrator and every plot, and shows finite values only.
 #[test]
 fn every_motion_is_shown_with_every_integrator_and_plot() {
     for id in common::ids_of(Analysis::Dynamic) {
@@ -945,7 +946,7 @@ fn every_motion_is_shown_with_every_integrator_and_plot() {
     }
 }
 
-/// An integrator whose motion blows up leaves the comparison, and the plots, with a message; the others go on.
+/// An integrator that becomes unstable leaves the comparison and the plots with a message; the others continue.
 #[test]
 fn an_unstable_integrator_leaves_the_comparison() {
     let mut harness = harness_of("swing");
@@ -964,7 +965,7 @@ fn an_unstable_integrator_leaves_the_comparison() {
 /// Budget measures motions too: the time of a displayed frame against the error of the path. A click applies a setting.
 #[test]
 fn a_motions_settings_are_measured_and_applied() {
-    // Short, for a test.
+    // The motion is shortened for the test.
     let mut harness = harness_with("swing", scene_with("swing", &["dynamics.duration=0.1"]));
     harness.key_press(Key::Space);
     harness.key_press(Key::B);
@@ -987,7 +988,7 @@ fn a_motions_settings_are_measured_and_applied() {
     harness.step();
     assert_eq!(MotionSetting::of(harness.state().scene()), best);
     assert_eq!(harness.state().scene().analysis, Analysis::Dynamic);
-    // Called off, a study keeps the measurements that it has, or none.
+    // A cancelled study keeps the measurements that it has, or none.
     harness.get_by_label("Measure").click();
     harness.step();
     harness.step();
@@ -996,8 +997,8 @@ fn a_motions_settings_are_measured_and_applied() {
     assert!(harness.state().motion_study().is_none_or(|study| study.is_partial));
 }
 
-/// Motions are compared in panes: one clock, and each integrator does to the energy what it does. A pane takes another element,
-/// and all start over.
+/// Motions are compared in panes with one clock. Each integrator has its characteristic energy drift. A pane can use
+/// another element, after which all motions restart.
 #[test]
 fn integrators_are_compared_in_panes() {
     // A coarse mesh keeps a busy machine near real time.
@@ -1020,7 +1021,7 @@ fn integrators_are_compared_in_panes() {
     let kept = drift(harness.state(), IntegratorKind::EnergyMomentum);
     let lost = drift(harness.state(), IntegratorKind::ImplicitEuler);
     assert!(kept.abs() < 1e-3 && lost < -0.02, "{kept} {lost}");
-    // Space pauses all of them.
+    // The key Space pauses all motions.
     harness.key_press(Key::Space);
     harness.run_steps(3);
     let paused = times(harness.state());
@@ -1035,7 +1036,7 @@ fn integrators_are_compared_in_panes() {
     assert!((explored - before).abs() < 1e-12, "the body of Explore waits");
 }
 
-/// While the reference solution is being computed, the error says so, and how far it is.
+/// While the reference solution is computed, the error field says so and shows the progress.
 #[test]
 fn the_error_says_that_the_reference_is_being_computed() {
     let mut harness = harness_of("cook");

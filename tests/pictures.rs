@@ -1,4 +1,4 @@
-//! Pictures without a window. Those of every scene, golden and checked against the solver, are in `tests/registry`.
+//! Tests of pictures without a window. The golden pictures of all scenes are tested in `tests/registry`.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -9,7 +9,7 @@ use warpbeam::app::picture;
 use warpbeam::picture::Picture;
 use warpbeam::render::Gpu;
 
-/// The golden comparison must see a beam that bends a little more.
+/// The golden comparison detects a beam that bends a little more.
 #[test]
 fn the_golden_comparison_sees_a_changed_load() {
     let folder = tempfile::tempdir().unwrap();
@@ -19,7 +19,7 @@ fn the_golden_comparison_sees_a_changed_load() {
     assert!(difference(&read_png(&path), &read_png("tests/golden/cantilever-dark.png".as_ref())) > 2e-3);
 }
 
-/// The body has most of the picture beside the panel, on the left of it; without panel and bars it has all of it.
+/// The body fills most of the picture to the left of the panel; without panel and bars it fills the whole picture.
 #[test]
 fn the_panel_can_be_left_out() {
     let gpu = Gpu::headless().unwrap();
@@ -37,7 +37,7 @@ fn the_panel_can_be_left_out() {
     assert!(difference(&with, &without) > 0.1);
 }
 
-/// Twice the pixels a point: twice the size, the same picture.
+/// With two pixels per point, the picture is the same at twice the size.
 #[test]
 fn high_density_shows_the_same_picture_sharper() {
     let gpu = Gpu::headless().unwrap();
@@ -58,7 +58,7 @@ fn high_density_shows_the_same_picture_sharper() {
     assert!(share < 0.02, "{share}");
 }
 
-/// Loads of any size leave a picture, in views of any size.
+/// Loads of any size give a picture, in views of any size.
 #[test]
 fn pictures_of_extremes_and_of_tiny_views() {
     let gpu = Gpu::headless().unwrap();
@@ -75,7 +75,7 @@ fn pictures_of_extremes_and_of_tiny_views() {
     }
 }
 
-/// Where nobody is logged in to a desktop the graphics libraries have nothing to say either.
+/// Without a desktop session, the graphics libraries print no messages.
 #[test]
 fn a_picture_without_a_desktop_prints_nothing() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What a body does at a material point: F, R and S, strain and stress.
+//! Tests of the values at a material point: F, R and S, strain and stress.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -11,7 +11,7 @@ use warpbeam::scene::{ElementKind, MethodKind};
 use warpbeam::simulation::{Field, PointState, PointValues, Simulation};
 use warpbeam::{Material, Plane, Scene};
 
-/// A body that is stretched by S and turned by R has F = R S everywhere, and the strain S − I makes its stress.
+/// A body that is stretched by S and rotated by R has F = R S everywhere, and its stress follows from the strain S − I.
 #[test]
 fn a_turned_and_stretched_body_has_its_f_r_and_s_at_every_point() {
     let rotation = Rotation::from_angle(1.1);
@@ -41,7 +41,7 @@ fn a_turned_and_stretched_body_has_its_f_r_and_s_at_every_point() {
             let stress = (stress + stress.transpose()) * 0.5;
             let own = point.cauchy.unwrap().plane;
             assert!((own - stress).norm() < 1e-7 * stress.norm(), "{element:?}: {own} {stress}");
-            // The recovered ones of a uniform deformation are the same.
+            // The recovered values of a uniform deformation are the same.
             let smooth = simulation.point_state(mesh.locate(at).unwrap(), PointValues::Recovered).unwrap();
             assert!((smooth.gradient - f).norm() < 1e-9, "{element:?}: {}", smooth.gradient);
             assert!((smooth.cauchy.unwrap().plane - stress).norm() < 1e-7 * stress.norm(), "{element:?}");
@@ -49,7 +49,7 @@ fn a_turned_and_stretched_body_has_its_f_r_and_s_at_every_point() {
     }
 }
 
-/// The point's numbers are those of the fields that colour the body: recovered ones, and the elements' own.
+/// A point's values are those of the fields that colour the body: recovered ones, and the elements' own.
 #[test]
 fn a_point_has_the_values_of_the_fields() {
     for (id, method) in
@@ -85,7 +85,8 @@ fn a_point_has_the_values_of_the_fields() {
     }
 }
 
-/// F, R, S, ε and σ of a point are of one deformation: each follows from the one before by its definition.
+/// Checks that F, R, S, ε and σ of a point belong to one deformation: each follows from the
+/// previous one by its definition.
 fn check_consistency(point: &PointState, material: &Material, about: &str) {
     let identity = Matrix2::identity();
     let (f, size) = (point.gradient, 1.0 + point.gradient.norm());
@@ -101,7 +102,7 @@ fn check_consistency(point: &PointState, material: &Material, about: &str) {
     assert!((strain - point.strain.plane).norm() < 1e-9 * size, "{about}: {strain} {}", point.strain.plane);
     let largest = strain.symmetric_eigenvalues().amax();
     assert!((largest - point.field(Field::LargestStrain).unwrap()).abs() < 1e-9 * size, "{about}: {largest}");
-    // σ = J⁻¹ R T S Rᵀ of plane strain and plane stress; T itself in linear theory.
+    // σ = J⁻¹ R T S Rᵀ in plane strain and plane stress; T itself in linear theory.
     let biot = material.lame().stress(&strain);
     let zz = if material.plane == Plane::Strain {
         0.0
@@ -114,7 +115,7 @@ fn check_consistency(point: &PointState, material: &Material, about: &str) {
         let r = point.rotation.matrix();
         r * biot * point.stretch * r.transpose() / (f.determinant() * (1.0 + zz))
     };
-    // A point that is turned inside out has no stress.
+    // An inverted point has no stress.
     let Some(own) = point.cauchy.map(|stress| stress.plane) else {
         return assert!(point.stretch.determinant() <= 0.0 || 1.0 + zz <= 0.0, "{about}: no stress");
     };
@@ -137,7 +138,7 @@ fn the_numbers_of_a_point_follow_from_each_other() {
     let mut differ = 0;
     for (about, scene) in scenes {
         let mut simulation = Simulation::new(&scene).unwrap();
-        // A motion in the middle of it; others to their equilibrium.
+        // Motions stop halfway; other scenes are solved to equilibrium.
         for _ in 0..40 {
             simulation.step();
         }

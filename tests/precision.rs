@@ -1,5 +1,5 @@
-//! The edge of double precision: how far down residuals go on slender bodies, and the bound of what rounding leaves in
-//! them, against the same residual in twice as many digits.
+//! Tests at the limit of double precision: the smallest residuals of slender bodies, and the bound of their rounding
+//! error, compared with the same residual in twice as many digits.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::f64::consts::PI;
@@ -16,7 +16,7 @@ use warpbeam::solver::Factor;
 use warpbeam::study::extremes::{Body, Case, Outcome, Start};
 use warpbeam::{ElementKind, MethodKind, Simulation, State, Status};
 
-/// A cantilever a thousand times as long as high under α = 1e-6.
+/// Returns a cantilever with L/H = 1000 under α = 1e-6.
 fn slender(element: ElementKind, method: MethodKind) -> Case {
     Case {
         body: Body::Beam,
@@ -33,7 +33,7 @@ fn slender(element: ElementKind, method: MethodKind) -> Case {
     }
 }
 
-/// The simulation of a case, solved as far as it goes.
+/// Solves a case until its residual stops decreasing.
 fn at_its_floor(case: Case) -> Simulation {
     let mut scene = case.scene();
     scene.solver.tolerance = 1e-14;
@@ -42,7 +42,7 @@ fn at_its_floor(case: Case) -> Simulation {
     simulation
 }
 
-/// The smallest residual of steps whose displacement is rounded to one number each.
+/// Returns the smallest residual of an iteration whose displacement has one f64 per component.
 fn plain_floor(problem: &Problem) -> f64 {
     let system = problem.system();
     let mut state = system.at_rest();
@@ -64,7 +64,7 @@ fn plain_floor(problem: &Problem) -> f64 {
     floor
 }
 
-/// What a displacement of one number a component leaves of the residual is fifteen times as much.
+/// With one f64 per component, the smallest residual is more than fifteen times as large.
 #[test]
 fn the_second_part_of_the_displacement_lowers_the_floor() {
     for element in ElementKind::all() {
@@ -77,7 +77,7 @@ fn the_second_part_of_the_displacement_lowers_the_floor() {
     }
 }
 
-/// An unevaluated sum of two numbers, as a number.
+/// An unevaluated sum of two f64, used as one number.
 #[derive(Clone, Copy, Debug)]
 struct Double(f64, f64);
 
@@ -145,7 +145,7 @@ impl From<f64> for Double {
     }
 }
 
-/// How a point is seen, in twice as many digits.
+/// Rotation, stretch and stress of a point, in twice as many digits.
 struct Seen {
     /// R.
     turn: [[Double; 2]; 2],
@@ -189,13 +189,13 @@ impl Seen {
         Self { turn, trace: size, stress }
     }
 
-    /// The force on every node, N.
+    /// Returns the force on every node, N.
     fn forces<const N: usize>(&self, point: &QuadraturePoint<N>) -> Vectors<N> {
         point.gradients.map(|g| product(&self.stress, [g.x.into(), g.y.into()]))
     }
 }
 
-/// The forces of an element that is a sum over points, N.
+/// Returns the nodal forces of an element that integrates over points, N.
 fn exact_forces<const N: usize>(
     element: &ElementType,
     (moduli, kinematics): (Lame, Kinematics),
@@ -211,11 +211,12 @@ fn exact_forces<const N: usize>(
     sum
 }
 
-/// The values at a quadrilateral's corners of ξη.
+/// Values of ξη at a quadrilateral's corners.
 const TWIST: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
 
-/// K of a quadrilateral over μ as the element has stored it, bit for bit: of a parallelogram, where γ is TWIST/4, the force
-/// on a body that bends at the rate 1 is a quarter of a column, and no operation on the way to it rounds.
+/// Returns K of a quadrilateral over μ as the element has stored it, bit for bit. In a parallelogram,
+/// where γ is TWIST/4, the force on a body that bends at the rate 1 is a quarter of a column, and no
+/// operation in its computation rounds.
 fn stored_stiffness(element: &ElementType, rest: &[Vector2<f64>; 4], moduli: Lame) -> [[f64; 2]; 2] {
     let elements = (element.loops)(rest, &[0, 1, 2, 3]);
     let over_mu = Lame { lambda: moduli.lambda / moduli.mu, mu: 1.0 };
@@ -229,8 +230,8 @@ fn stored_stiffness(element: &ElementType, rest: &[Vector2<f64>; 4], moduli: Lam
     })
 }
 
-/// The forces of the quadrilateral with incompatible modes, N: with q = Σ γₐ uₐ, q̃ = Rᵀ q and f = K q̃,
-/// P ∇Nₐ + γₐ R f − (f·J q̃) R J ∇Nₐ / tr S, the last only where R follows x.
+/// Returns the forces of the quadrilateral with incompatible modes, N: with q = Σ γₐ uₐ, q̃ = Rᵀ q and f = K q̃, they
+/// are P ∇Nₐ + γₐ R f − (f·J q̃) R J ∇Nₐ / tr S, the last term only where R follows x.
 fn exact_quad_forces(
     element: &ElementType,
     (moduli, kinematics): (Lame, Kinematics),
@@ -260,7 +261,7 @@ fn exact_quad_forces(
     forces
 }
 
-/// The residual force of a state in twice as many digits, for elements of `N` nodes with these forces.
+/// Returns the residual force of a state in twice as many digits, for elements of `N` nodes with these forces.
 fn exact_residual<const N: usize>(
     (mesh, state): (&Mesh, &State),
     external: &[Vector2<f64>],
@@ -279,17 +280,17 @@ fn exact_residual<const N: usize>(
     residual
 }
 
-/// What rounding does to the relative residual of a state.
+/// Rounding error of the relative residual of a state.
 #[derive(Debug)]
 struct Rounding {
-    /// The distance of the residual from that in twice as many digits …
+    /// Distance from the residual in twice as many digits.
     error: f64,
-    /// … and the bound of it.
+    /// Bound of this distance.
     bound: f64,
 }
 
 impl Rounding {
-    /// Every free node's error is checked against its own bound on the way.
+    /// Computes error and bound, and checks every free node's error against its own bound.
     fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
         let mut forces = Forces::new(state.displacement().len());
         problem.linearize(state, &mut forces, None);
@@ -318,7 +319,7 @@ impl Rounding {
     }
 }
 
-/// The bound is one: the residual in twice as many digits is no farther away, and not absurdly nearer.
+/// The bound holds for the distance from the residual in twice as many digits, and is not absurdly large.
 #[test]
 fn the_bound_of_rounding_holds() {
     for element in ElementKind::all() {
@@ -340,11 +341,12 @@ fn the_bound_of_rounding_holds() {
     }
 }
 
-/// So it is where forces do not balance: in bodies turned by any angle, and strained or bent in every cell for itself.
+/// The bound also holds for states out of balance: bodies rotated by any angle, with random
+/// strain or bending in every cell.
 #[test]
 fn the_bound_of_rounding_holds_out_of_balance() {
     let mut state = 1u64;
-    // Knuth's linear congruence: uniform in [-1, 1].
+    // Knuth's linear congruential generator, uniform in [-1, 1].
     let mut random = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 * 0.5f64.powi(52) - 1.0
@@ -364,7 +366,7 @@ fn the_bound_of_rounding_holds_out_of_balance() {
                 for _ in 0..100 {
                     let (turn, twist) = (Rotation::from_angle(angle * random()), Vector2::new(random(), random()));
                     let move_node = |x: &Vector2<f64>| {
-                        // Corners are where they are on a chessboard: ξη and nothing else in every cell.
+                        // The corners have alternating signs as on a chessboard, so that every cell deforms by ξη only.
                         let on = x.component_div(&cell).map(f64::round).sum();
                         let sign = if on.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
                         let own = Vector2::new(random(), random()) * strain + twist * (sign * bend);
@@ -383,7 +385,7 @@ fn the_bound_of_rounding_holds_out_of_balance() {
     }
 }
 
-/// A solve that ends where digits end says so, with the bound; one that stops above it does not.
+/// A solve that ends at the limit of precision reports the bound; one that stops above it does not.
 #[test]
 fn working_precision_is_called_what_it_is() {
     for element in ElementKind::all() {
@@ -394,7 +396,7 @@ fn working_precision_is_called_what_it_is() {
             assert!(simulation.residual() <= floor && floor < 1e-6, "{floor:e} {:e}", simulation.residual());
         }
     }
-    // Nearly incompressible, of cells fifty times as long as high: beyond the usual tolerance too.
+    // Nearly incompressible, with cells fifty times as long as high: the bound may exceed the usual tolerance.
     let mut at_floor = 0;
     for (element, alpha) in [ElementKind::T6, ElementKind::Q4].into_iter().flat_map(|e| [(e, 0.01), (e, 0.1)]) {
         let case = Case { alpha, poisson: 0.4999, aspect: 50.0, ..slender(element, MethodKind::Newton) };
@@ -407,11 +409,11 @@ fn working_precision_is_called_what_it_is() {
         at_floor += usize::from(entry.residual_floor.is_some());
     }
     assert!(at_floor > 0, "each of them meets its tolerance");
-    // What meets its tolerance needs no such words.
+    // A solve that meets its tolerance reports no bound.
     let mut simulation =
         Simulation::new(&Case { slenderness: 5.0, ..slender(ElementKind::T6, MethodKind::Newton) }.scene()).unwrap();
     assert_eq!((simulation.solve().clone(), simulation.residual_floor()), (Status::Converged, None));
-    // A slow iteration that is cut off is not there, whatever rounding does.
+    // A slow iteration that is stopped early is not at the limit of precision.
     let mut scene = Case { slenderness: 5.0, ..slender(ElementKind::T6, MethodKind::Newton) }.scene();
     scene.solver.max_iterations = 1;
     scene.scale_loads(1e6);

@@ -1,5 +1,5 @@
-//! The Rust program of every built-in scene is compiled here, gives the same scene, and runs. `UPDATE_GOLDEN=1` writes
-//! `tests/programs` with the present generator.
+//! Compiles the Rust program of every built-in scene, compares its scene with the original, and runs it.
+//! `UPDATE_GOLDEN=1` writes `tests/programs` with the current generator.
 #![allow(clippy::unwrap_used, reason = "a test may fail; programs are as they are generated")]
 
 mod common;
@@ -10,7 +10,7 @@ use common::scene;
 use warpbeam::scene::registry;
 use warpbeam::{Axis, Diagonals, ElementKind, IntegratorKind, Material, MethodKind, Plane, Scene, SceneError};
 
-/// Result of a program's `scene`, which can fail only where it reads a mesh file.
+/// Result of a program's `scene`, which can fail only if it reads a mesh file.
 trait Built {
     fn built(self) -> Scene;
 }
@@ -27,7 +27,8 @@ impl Built for Result<Scene, SceneError> {
     }
 }
 
-/// Compares the program in `tests/programs` with the one of `scene`, and the scene that it builds with `scene`.
+/// Compares the program in `tests/programs` with the one generated for `scene`, and the scene
+/// that it builds with `scene`.
 fn check(name: &str, written: &str, built: &Scene, scene: &Scene) {
     let program = scene.to_rust(Path::new(""));
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
@@ -88,12 +89,12 @@ fn every_built_in_scene_has_a_program() {
     }
 }
 
-/// The program names nothing that is the default.
+/// Returns a scene whose values are mostly defaults, which its program leaves out.
 fn short() -> Scene {
     Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1000.0]).probe("tip", "right")
 }
 
-/// Everything at rest that no built-in scene has, with numbers that need all their digits.
+/// Returns a static scene with all features that no built-in scene has, and numbers that need all their digits.
 fn at_rest() -> Scene {
     let material = Material { plane: Plane::Strain, ..Material::new(1e6 / 3.0, 0.1 + 0.2) };
     let mut scene = Scene::beam(10.0 / 3.0, 0.7)
@@ -116,7 +117,7 @@ fn at_rest() -> Scene {
     scene
 }
 
-/// Everything in motion that no built-in scene has.
+/// Returns a dynamic scene with all features that no built-in scene has.
 fn in_motion() -> Scene {
     let mut scene = Scene::mesh_file("../meshes/cook.msh", "")
         .unwrap()

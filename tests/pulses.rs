@@ -1,4 +1,4 @@
-//! Loads in time: whatever the step and the integrator, a pulse has its impulse, and a motion its duration.
+//! Tests of loads in time: a pulse has its impulse and a motion its duration, for every time step and integrator.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -13,7 +13,7 @@ use warpbeam::{IntegratorKind, MethodKind, Scene, Simulation, Status};
 
 const STEP: f64 = 1.0 / 60.0;
 
-/// A free, soft beam under a pulse; explicit steps are short enough to be stable.
+/// Returns a free, soft beam under a pulse. Explicit steps are short enough to be stable.
 fn pushed(kind: IntegratorKind, method: MethodKind, iterations: u32, load: Load, pulse: Pulse) -> Scene {
     let mut scene = Scene::beam(1.0, 0.2).with_cells(5, 1).with_method(method).moving(kind, STEP);
     (scene.material.young, scene.dynamics.iterations) = (1e3, iterations);
@@ -28,7 +28,7 @@ fn pushed(kind: IntegratorKind, method: MethodKind, iterations: u32, load: Load,
     scene
 }
 
-/// A pulse sin²(π t/d) of size F has the impulse F d/2: that is the momentum it leaves a free body, to rounding.
+/// A pulse sin²(π t/d) of size F has the impulse F d/2, and gives a free body this momentum, to rounding.
 #[test]
 fn a_pulse_leaves_its_impulse_whatever_the_step() {
     let mut random = Random(18);
@@ -45,7 +45,7 @@ fn a_pulse_leaves_its_impulse_whatever_the_step() {
                         let expected = force * (0.5 * pulse.duration);
                         let found = momentum(&simulation).linear;
                         let words = format!("{} {} {steps} {iterations}", integrator.id, method.id());
-                        // `auto` solves to a part of the error it is allowed.
+                        // `auto` solves to a fraction of its allowed error.
                         let rounding = if method == MethodKind::Auto { 1e-6 } else { 1e-10 };
                         assert!((found - expected).norm() < rounding * expected.norm(), "{words}: {found} {expected}");
                     }
@@ -55,7 +55,8 @@ fn a_pulse_leaves_its_impulse_whatever_the_step() {
     }
 }
 
-/// A pulse of a moment gives the energy–momentum method, which keeps angular momentum, exactly M d/2 of it.
+/// A pulse of a moment changes the angular momentum by exactly M d/2 under the energy–momentum
+/// method, which conserves it.
 #[test]
 fn a_pulse_of_a_moment_leaves_its_angular_impulse() {
     for steps in [0.2, 1.3, 4.0] {
@@ -70,10 +71,11 @@ fn a_pulse_of_a_moment_leaves_its_angular_impulse() {
     }
 }
 
-/// The ledger closes: a rigid push puts ½ p²/m into the body, and all of the ledger's entries sum to the energy there is.
+/// The ledger balances: a rigid push gives the body ½ p²/m, and all entries of the ledger sum to the total energy.
 #[test]
 fn the_ledger_has_the_work_of_pulses() {
-    // Masses lumped on nodes are not pulled as the body's weight is: it would vibrate.
+    // Explicit integrators are left out: the forces on lumped masses differ from the body's
+    // weight, so that it would vibrate.
     for integrator in INTEGRATORS.iter().filter(|integrator| !integrator.is_explicit()) {
         for steps in [0.3, 1.0, 2.5] {
             let pulse = Pulse { start: 0.4 * STEP, duration: steps * STEP };
@@ -88,13 +90,14 @@ fn the_ledger_has_the_work_of_pulses() {
             let words = format!("{} {steps}: {ledger:?}", integrator.id);
             assert!((ledger.kinetic - kinetic).abs() < 1e-9 * kinetic, "{words}, {kinetic} J");
             assert!(ledger.imbalance().abs() < 1e-10 * ledger.throughput, "{words}");
-            // Under a force that is constant over each step the work is the energy, but for what the integrator loses.
+            // Under a force that is constant over each step, the work is the energy except for
+            // the integrator's dissipation.
             assert!((ledger.pulses - ledger.integrator - kinetic).abs() < 1e-9 * kinetic, "{words}, {kinetic} J");
         }
     }
 }
 
-/// Integrators of second order keep it under pulses that they resolve.
+/// Second-order integrators keep their order under pulses that the step resolves.
 #[test]
 fn resolved_pulses_are_followed_in_second_order() {
     for kind in [IntegratorKind::TrBdf2, IntegratorKind::EnergyMomentum] {
@@ -141,7 +144,7 @@ fn a_motion_ends_at_its_duration() {
             assert_eq!(json["steps"].as_f64(), Some(steps), "{set:?}");
         }
     }
-    // A motion that goes on after its end takes whole steps again.
+    // A motion that continues after its end takes whole steps again.
     let mut simulation = Simulation::new(&scene_with("swing", &["dynamics.duration=0.11"])).unwrap();
     simulation.solve();
     simulation.step();

@@ -1,4 +1,4 @@
-//! Moving pictures: what a viewer decodes of them.
+//! Tests of recordings, decoded as a viewer decodes them.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -8,7 +8,7 @@ use std::path::Path;
 
 use common::{stderr, stdout, warpbeam_in};
 
-/// A decoded moving picture: its size, and each picture in RGB with the seconds it is shown.
+/// A decoded recording: its size, and each picture in RGB with the time that it is shown, s.
 struct Movie {
     size: [usize; 2],
     frames: Vec<(Vec<u8>, f64)>,
@@ -55,14 +55,14 @@ fn record(folder: &Path, args: &[&str]) -> String {
     stdout(&output)
 }
 
-/// The largest difference of two pictures, and the mean one.
+/// Returns the largest and the mean difference of two pictures.
 fn difference(a: &[u8], b: &[u8]) -> (u8, f64) {
     assert_eq!(a.len(), b.len());
     let off = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
     (off.clone().max().unwrap_or(0), off.map(f64::from).sum::<f64>() / a.len() as f64)
 }
 
-/// Both formats show the same: as many pictures as asked, each another one, GIF in its nearest colours.
+/// Both formats show the same: the requested number of pictures, all different, in GIF with its nearest colours.
 #[test]
 fn a_motion_is_recorded_in_every_format() {
     let folder = tempfile::tempdir().unwrap();
@@ -79,19 +79,19 @@ fn a_motion_is_recorded_in_every_format() {
         assert_eq!(*size, [320, 200], "picture {k}");
         let (_, mean) = difference(gif, png);
         assert!(mean < 0.5, "picture {k}: colours are off by {mean} on average");
-        // The background is exact.
+        // The background's colour is exact.
         assert_eq!(gif[..3], png[..3]);
     }
     assert!(
         gif.frames.windows(2).all(|w| w[0].0 != w[1].0) && pngs.windows(2).all(|w| w[0] != w[1]),
         "something moves"
     );
-    // The same again, to the byte.
+    // A second recording is identical to the byte.
     record(folder, &[&args[..], &["-o", "again.gif"]].concat());
     assert_eq!(fs::read(folder.join("swing.gif")).unwrap(), fs::read(folder.join("again.gif")).unwrap());
 }
 
-/// Neither the camera nor the colours move: at the clamp and in the legend nothing changes.
+/// Camera and colours are fixed: nothing changes at the clamp and in the legend.
 #[test]
 fn camera_and_colours_stand_still() {
     let folder = tempfile::tempdir().unwrap();
@@ -115,12 +115,12 @@ fn rates_are_what_the_format_has_and_slow_motion_is_slow() {
     assert!(decode_gif(&folder.join("a.gif")).frames.iter().all(|(_, delay)| (delay - 0.03).abs() < 1e-9));
     let words = record(folder, &[&short[..], &["--fps", "30", "-o", "frames"]].concat());
     assert!(words.contains("7 pictures, 30 a second\n"), "{words}");
-    // A tenth of the speed: ten times as many pictures of the same time.
+    // A tenth of the speed gives ten times as many pictures of the same time.
     record(folder, &[&short[..], &["--speed", "0.1", "-o", "slow.gif"]].concat());
     assert_eq!(decode_gif(&folder.join("slow.gif")).frames.len(), 51);
 }
 
-/// The way to an equilibrium: an iteration a picture, and the last one stays.
+/// The path to an equilibrium is recorded with one iteration per picture, and the last picture stays longer.
 #[test]
 fn a_search_is_recorded_iteration_by_iteration() {
     let folder = tempfile::tempdir().unwrap();
@@ -134,7 +134,7 @@ fn a_search_is_recorded_iteration_by_iteration() {
     let (last, others) = movie.frames.split_last().unwrap();
     assert!(others.iter().all(|(_, delay)| (delay - 0.25).abs() < 1e-9) && (last.1 - 2.25).abs() < 1e-9);
     assert_eq!(fs::read_dir(folder.join("frames")).unwrap().count(), iterations + 1 + 8);
-    // What does not converge is recorded too, and said.
+    // A diverging solve is recorded too, and reported.
     let diverged = warpbeam_in(
         folder,
         &["record", "cantilever", "--set", "load.0.force=[0,-9000]", "--size", "64x64", "-o", "diverged"],
@@ -144,7 +144,7 @@ fn a_search_is_recorded_iteration_by_iteration() {
     assert!(decode_folder(&folder.join("diverged")).len() > 1);
 }
 
-/// A motion that explodes is recorded as far as it went.
+/// A motion that explodes is recorded up to that point.
 #[test]
 fn an_explosion_is_recorded_and_said() {
     let folder = tempfile::tempdir().unwrap();
@@ -179,7 +179,7 @@ fn wrong_usage_is_refused_before_anything_is_drawn() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
-/// Ctrl-C leaves a shorter recording that every viewer opens.
+/// Ctrl-C leaves a shorter recording that every viewer can open.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_recording_is_shorter_and_valid() {
@@ -202,7 +202,7 @@ fn an_interrupted_recording_is_shorter_and_valid() {
         let said = format!("{pictures} picture");
         assert!(stdout(&output).contains(&said), "{said}: {}", stdout(&output));
     }
-    // Before the first picture there is none.
+    // Interrupted before the first picture, it writes no file.
     let running = start(folder.path(), &["record", "swing", "--seconds", "1e5", "-o", "none.gif"]);
     wait_for("an ear for signals", || running.listens());
     let output = running.interrupt();

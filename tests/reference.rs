@@ -1,4 +1,5 @@
-//! Reference solutions against independent solutions: the error that is claimed is true to within the reference's own error.
+//! Compares reference solutions with independent solutions: the claimed error is right to
+//! within the reference's own error.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod common;
@@ -14,8 +15,9 @@ use warpbeam::simulation::Status;
 use warpbeam::study::{Effort, Reference};
 use warpbeam::{ElementKind, Scene, Simulation};
 
-/// Six-node triangles on a grid that has a line at every point of a scene; cells from line to line are cut once, from lower
-/// left to upper right. Written for these tests: it shares nothing with the meshes of reference solutions.
+/// Returns a mesh of six-node triangles on a grid that has a line at every point of a scene. Cells between
+/// lines are cut once, from lower left to upper right. Written for these tests, it shares no code with the
+/// meshes of reference solutions.
 fn six_node_grid(scene: &Scene, beam: &Beam, cells: [usize; 2]) -> Mesh {
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut add = |place: &Place| {
@@ -31,7 +33,7 @@ fn six_node_grid(scene: &Scene, beam: &Beam, cells: [usize; 2]) -> Mesh {
         }
     }
     let ends = [[0.0, beam.length], [-0.5 * beam.height, 0.5 * beam.height]];
-    // Corners and midpoints in turn. Cells are smaller towards the ends, where slender beams are clamped.
+    // Corners and midpoints alternate. Cells are smaller towards the ends, where slender beams are clamped.
     let lines = [0, 1].map(|axis| {
         let [low, high] = ends[axis];
         let graded = |t: f64| 0.5 * (t + 0.5 * (1.0 - (std::f64::consts::PI * t).cos()));
@@ -81,11 +83,11 @@ fn six_node_grid(scene: &Scene, beam: &Beam, cells: [usize; 2]) -> Mesh {
     Mesh::new(nodes, ElementKind::T6, connectivity, edges).unwrap()
 }
 
-/// Displacement of the first probe of a scene on a mesh of about so many nodes.
+/// Returns the displacement of the first probe of a scene on a mesh of about `nodes` nodes.
 fn independent(scene: &Scene, nodes: f64) -> Option<Vector2<f64>> {
     let beam = scene.beam.clone().unwrap();
     let ratio = beam.length / beam.height;
-    // (2 nx + 1) (2 ny + 1) nodes, cells as long as high where there are enough.
+    // The grid has (2 nx + 1) (2 ny + 1) nodes, with square cells if there are enough of them.
     let across = (0.25 * nodes / ratio.max(1.0 / ratio)).sqrt().round().max(2.0);
     let along = (0.25 * nodes / across).round();
     let cells = if ratio >= 1.0 { [along, across] } else { [across, along] }.map(|n| n as usize);
@@ -96,20 +98,20 @@ fn independent(scene: &Scene, nodes: f64) -> Option<Vector2<f64>> {
     (*simulation.solve() == Status::Converged).then(|| simulation.probe("probe").unwrap())
 }
 
-/// The comparison of one scene with two independent solutions.
+/// Results of the comparison of scenes with two independent solutions each.
 #[derive(Debug, Default)]
 struct Tally {
     judged: usize,
-    /// References whose own error is below 0.3 %.
+    /// Number of references whose own error is below 0.3 %.
     sharp: usize,
-    /// Scenes in which the independent solutions are surer than the reference.
+    /// Number of scenes in which the independent solutions are more accurate than the reference.
     severe: usize,
     none: usize,
     wrong: Vec<String>,
 }
 
-/// Over random scenes, |claimed − true error| is at most the own error claimed, the true one being that from the finer of two
-/// independent solutions; to those their distance from each other is granted, and half of it again.
+/// Checks for random scenes that |claimed − true error| is at most the claimed own error. The true error is taken from
+/// the finer of two independent solutions, and 1.5 times their distance is allowed for their own error.
 fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
     let mut tally = Tally::default();
     for seed in seeds {
@@ -128,7 +130,7 @@ fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
         let percent = |a: Vector2<f64>, b: Vector2<f64>| 100.0 * (a - b).norm() / fine.norm();
         let apart = percent(coarse, fine);
         if apart > 5.0 {
-            // They know no better.
+            // The independent solutions are too inaccurate to judge.
             continue;
         }
         let error = percent(own.probe("probe").unwrap(), fine);
@@ -137,7 +139,7 @@ fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
             first.own_error_percent, first.source
         );
         println!("{words}");
-        // Percent of different displacements: a large error has a large difference of them.
+        // The errors are percentages of different displacements, so that a large error has a large difference.
         let scale = 1.0 + 0.01 * error;
         if (claimed - error).abs() > (first.own_error_percent + 1.5 * apart) * scale + 1e-5 {
             tally.wrong.push(words);
@@ -151,7 +153,7 @@ fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
 
 #[test]
 fn claimed_errors_are_true_within_the_own_error_of_the_reference() {
-    // All 300 take a quarter of an hour; without being asked for, every fifth is taken.
+    // All 300 scenes take a quarter of an hour; by default, every fifth is used.
     let all = std::env::var_os("WARPBEAM_ALL_SCENES").is_some();
     let tally = judge((0..300).step_by(if all { 1 } else { 5 }));
     println!("{tally:?}");

@@ -1,4 +1,5 @@
-//! rapier2d as an independent truth, and as a rival: it comes to rest where we do, on the same mesh.
+//! Compares warpbeam with rapier2d as an independent implementation: both come to rest in the
+//! same state on the same mesh.
 #![cfg(feature = "rivals")]
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
@@ -13,7 +14,7 @@ use common::{scene_with, solved, stdout};
 use rapier::{Rapier, RapierSolver, Swing};
 use warpbeam::assembly::{Problem, System};
 
-/// Plane stress and plane strain: another implementation of the same energy has the same equilibrium.
+/// In plane stress and plane strain, rapier2d's implementation of the same energy has the same equilibrium.
 #[test]
 fn rapier_rests_where_we_do() {
     for set in [
@@ -50,12 +51,12 @@ fn rapier_says_what_it_cannot_have() {
     }
 }
 
-/// The command measures it beside our own methods.
+/// The command measures rapier2d and warpbeam's methods side by side.
 #[test]
 fn the_program_measures_rivals() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    // One small mesh from a file: the least that can be measured.
+    // One small mesh from a file is the fastest case to measure.
     let mesh = include_str!("data/square.msh");
     std::fs::write(folder.path().join("square.msh"), mesh).unwrap();
     let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\ndensity = 20\n[[support]]\nedge = \"wall\"\n\

@@ -1,11 +1,11 @@
-//! The closed-form rotation against exact arithmetic and the SVD.
+//! Tests of the closed-form rotation against exact arithmetic and the SVD.
 
 use nalgebra::Matrix2;
 use num_bigint::BigInt;
 use warpbeam::lanes::{LANES, Lanes};
 use warpbeam::rotation::{Rotation, polar, polar_or};
 
-/// A finite f64 as an integer times 2^−1074, exactly.
+/// Returns a finite f64 as an integer times 2^−1074, exactly.
 fn exact(value: f64) -> BigInt {
     let bits = value.to_bits();
     let exponent = (bits >> 52) & 0x7ff;
@@ -17,7 +17,7 @@ fn exact(value: f64) -> BigInt {
     if value.is_sign_negative() { -magnitude } else { magnitude }
 }
 
-/// The definition, in exact arithmetic: RᵀF is symmetric, its trace is positive, and R is a rotation.
+/// Checks the definition in exact arithmetic: RᵀF is symmetric, its trace is positive, and R is a rotation.
 fn check_exactly(f: &Matrix2<f64>, r: Rotation) {
     assert!((r.c.hypot(r.s) - 1.0).abs() < 4.0 * f64::EPSILON, "not a rotation: {r:?} of {f:?}");
     let (a, b) = (exact(f.m11) + exact(f.m22), exact(f.m21) - exact(f.m12));
@@ -25,7 +25,7 @@ fn check_exactly(f: &Matrix2<f64>, r: Rotation) {
     let skew = &c * &b - &s * &a;
     let trace = &c * &a + &s * &b;
     assert!(trace > BigInt::ZERO, "a turn too far: {r:?} of {f:?}");
-    // |skew| ≤ 4 ε · trace, that is: the angle is right to four units in the last place.
+    // |skew| ≤ 4 ε · trace means that the angle is exact to four units in the last place.
     assert!((skew.magnitude() << 50u32) <= *trace.magnitude(), "wrong angle: {r:?} of {f:?}");
 }
 
@@ -73,7 +73,7 @@ fn a_million_matrices_against_exact_arithmetic() {
         let [a, b, c, d] = match i % 5 {
             // Ordinary numbers.
             0 => [(); 4].map(|()| random.uniform()),
-            // Any bit pattern: subnormal to the largest, entries hundreds of decades apart.
+            // Any bit pattern: subnormal to the largest, with entries hundreds of decades apart.
             1 => [(); 4].map(|()| random.any_finite()),
             // Almost a scaled reflection: the sums cancel.
             2 => {
@@ -133,7 +133,7 @@ fn rotations_agree_with_the_svd() {
         let f = Matrix2::from_fn(|_, _| random.uniform());
         let svd = f.svd(true, true);
         let (u, v_t) = (svd.u.unwrap(), svd.v_t.unwrap());
-        // The nearest proper rotation: U diag(1, det(U Vᵀ)) Vᵀ, the smaller singular value taking the sign.
+        // The nearest proper rotation is U diag(1, det(U Vᵀ)) Vᵀ: the smaller singular value takes the sign.
         let sign = (u * v_t).determinant().signum();
         let nearest = u * Matrix2::new(1.0, 0.0, 0.0, sign) * v_t;
         let gap = svd.singular_values[0] + sign * svd.singular_values[1];
@@ -184,7 +184,7 @@ fn the_previous_rotation_is_kept_where_none_is_defined() {
     }
 }
 
-/// In every lane what one element alone would get, whatever the others are.
+/// Every SIMD lane gives the result of a single element, independent of the other lanes.
 #[test]
 fn elements_side_by_side_have_the_rotations_of_one_by_one() {
     let ordinary = [Matrix2::new(0.3, -1.0, 2.0, 0.7), Matrix2::identity(), Matrix2::new(-1.0, 0.1, 0.0, -3.0)];

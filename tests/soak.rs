@@ -1,5 +1,5 @@
-//! Long runs: nothing grows, nothing drifts away, nothing ends. `WARPBEAM_SOAK=50 cargo test --release --test soak` runs
-//! fifty times as long.
+//! Long runs: memory does not grow, results do not drift, and the program does not end. `WARPBEAM_SOAK=50 cargo test
+//! --release --test soak` runs fifty times as long.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 #![cfg(feature = "app")]
 
@@ -15,12 +15,12 @@ use nalgebra::Vector2;
 use warpbeam::app::Lab;
 use warpbeam::{ElementKind, IntegratorKind, Simulation, Status};
 
-/// How many times as long as usual.
+/// Returns the factor by which runs are longer than usual.
 fn longer() -> u32 {
     std::env::var("WARPBEAM_SOAK").ok().and_then(|text| text.parse().ok()).unwrap_or(1)
 }
 
-/// Numbers from −1 to 1, the same in every run.
+/// Random numbers from −1 to 1, the same in every run.
 struct Random(u64);
 
 impl Random {
@@ -30,7 +30,7 @@ impl Random {
     }
 }
 
-/// Fails where `work` leaves more bytes allocated than `most`; on Linux, where the process has grown by more, other threads included.
+/// Fails if `work` leaves more than `most` bytes allocated or, on Linux, if the process (all threads) grows by more.
 fn assert_keeps_no_more(most: u32, of: &str, work: impl FnOnce()) {
     let before = resident();
     let kept = measure(work).bytes_current;
@@ -40,14 +40,14 @@ fn assert_keeps_no_more(most: u32, of: &str, work: impl FnOnce()) {
     }
 }
 
-/// Resident memory, bytes; `None` where the system does not tell.
+/// Returns the resident memory, bytes; `None` if the system does not report it.
 fn resident() -> Option<u64> {
     const PAGE: u64 = 4096;
     let text = std::fs::read_to_string("/proc/self/statm").ok()?;
     Some(text.split_whitespace().nth(1)?.parse::<u64>().ok()? * PAGE)
 }
 
-/// The swing, and a hand that takes hold of it now and then.
+/// The swing moves for a long time and is pulled by a mouse spring now and then.
 #[test]
 fn a_swing_goes_on() {
     let mut scene = scene("swing");
@@ -85,7 +85,7 @@ fn a_swing_goes_on() {
     }
 }
 
-/// Where a node is in the window, points: at this part of all of them.
+/// Returns the window position of a node, points. `part` selects the node, as a fraction of all nodes.
 fn on_the_body(lab: &Lab, part: f64) -> egui::Pos2 {
     let (nodes, u) = (lab.simulation().system().mesh().nodes(), lab.simulation().displacement());
     let node = ((part * nodes.len() as f64) as usize).min(nodes.len() - 1);
@@ -93,7 +93,7 @@ fn on_the_body(lab: &Lab, part: f64) -> egui::Pos2 {
     lab.view_rect().center() + egui::vec2(x as f32, y as f32)
 }
 
-/// A window whose body is pulled about at random: it lives on, and shows what is finite.
+/// A window whose body is dragged at random keeps running and shows finite values.
 #[test]
 fn a_window_is_played_with() {
     for id in ["jelly", "flick", "article"] {

@@ -1,4 +1,4 @@
-//! Recovered stresses against closed forms, and the estimate of the mesh's error against fine solutions; every element.
+//! Compares recovered stresses with closed forms, and the estimated mesh error with fine solutions, for every element.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod common;
@@ -12,10 +12,10 @@ use warpbeam::stress::strain_warning;
 use warpbeam::study::Reference;
 use warpbeam::{Axis, ElementKind, Load, Material, Plane, Scene, Simulation, Status};
 
-/// Young's modulus of all scenes here, Pa.
+/// Young's modulus of all scenes in this file, Pa.
 const YOUNG: f64 = 1e6;
 
-/// Cells as fine as their nodes allow: two-noded sides get twice as many.
+/// Returns cell counts with equal node spacing: elements with two-noded sides get twice as many cells.
 fn cells(kind: ElementKind, along: u32, across: u32) -> [u32; 2] {
     let pieces = if kind.entry().sides[0].len() == 2 { 2 } else { 1 };
     [along * pieces, across * pieces]
@@ -28,7 +28,7 @@ fn solved_on(scene: &Scene, mesh: Mesh) -> Simulation {
     simulation
 }
 
-/// Kirsch 1898: stresses of a plate with a hole of radius 1 pulled along x by a unit stress.
+/// Returns the stresses of a plate with a hole of radius 1 under a unit stress along x (Kirsch 1898).
 fn kirsch(x: Vector2<f64>) -> Matrix2<f64> {
     let (r2, angle) = (x.norm_squared(), x.y.atan2(x.x));
     let (a, b) = (1.0 / r2, 1.0 / (r2 * r2));
@@ -40,8 +40,8 @@ fn kirsch(x: Vector2<f64>) -> Matrix2<f64> {
     turn * Matrix2::new(rr, rt, rt, tt) * turn.transpose()
 }
 
-/// A quarter of a ring around the hole, out to four radii, with Kirsch's tractions on all of its sides: no plate need be
-/// infinite, no support need be oblique when it is turned.
+/// Solves a quarter of a ring around the hole, out to four radii, with Kirsch's tractions on all of its sides. The
+/// plate therefore need not be infinite, and no oblique support is needed when it is rotated.
 fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -> Simulation {
     let plain = Scene::beam(1.0, 1.0).with_element(kind).with_cells(cells[0], cells[1]);
     let ring = |x: Vector2<f64>| {
@@ -49,7 +49,7 @@ fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -
         r * Vector2::new(angle.cos(), angle.sin())
     };
     let mesh = Mesh::beam(plain.beam.as_ref().unwrap()).unwrap().moved(ring).unwrap();
-    // Consistent nodal forces of the tractions, by Gauss's three points a side.
+    // Consistent nodal forces of the tractions, by Gauss's rule with three points per side.
     let mut forces = vec![Vector2::zeros(); mesh.nodes().len()];
     let gauss = [(-0.6f64.sqrt(), 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.6f64.sqrt(), 5.0 / 9.0)];
     let inside = 2.0 * Vector2::new(PI / 4.0, PI / 4.0).map(f64::cos);
@@ -62,7 +62,7 @@ fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -
             };
             let at: Vector2<f64> = x.iter().zip(&shape).map(|(x, w)| x * *w).sum();
             let along: Vector2<f64> = x.iter().zip(&slope).map(|(x, w)| x * *w).sum();
-            // The normal times the length, outwards.
+            // The outward normal times the length.
             let normal = Vector2::new(along.y, -along.x);
             let normal = normal * normal.dot(&(at - inside)).signum();
             for (&n, w) in side.nodes().iter().zip(&shape) {
@@ -70,7 +70,7 @@ fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -
             }
         }
     }
-    // What the polygon and the rule miss of the balance, spread evenly: supports carry nothing then.
+    // The imbalance due to the polygon and the quadrature rule is spread evenly, so that the supports carry no load.
     let loaded: Vec<usize> = (0..forces.len()).filter(|&n| forces[n].norm() > 0.0).collect();
     let count = loaded.len() as f64;
     let centre = loaded.iter().map(|&n| mesh.nodes()[n]).sum::<Vector2<f64>>() / count;
@@ -91,7 +91,8 @@ fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -
     solved_on(&scene, mesh)
 }
 
-/// Kirsch's plate at ever finer meshes: the stresses at all nodes, on the outline or not, and the largest at the hole, 3.
+/// On finer and finer meshes of Kirsch's plate, the stresses converge at all nodes, including the outline, and the
+/// largest one at the hole converges to 3.
 #[test]
 fn stresses_at_a_hole_converge() {
     let pull = 1e-6 * YOUNG;
@@ -117,7 +118,7 @@ fn stresses_at_a_hole_converge() {
     }
 }
 
-/// A ring of 120° with radii 2 and 3, held at one end and bent by a moment at the other, turned.
+/// Solves a ring of 120° with radii 2 and 3, rotated by `turn`, clamped at one end and bent by a moment at the other.
 fn curved_beam(kind: ElementKind, moment: f64, turn: Rotation) -> Simulation {
     let [along, across] = cells(kind, 32, 6);
     let plain = Scene::beam(1.0, 1.0).with_element(kind).with_cells(along, across);
@@ -130,8 +131,8 @@ fn curved_beam(kind: ElementKind, moment: f64, turn: Rotation) -> Simulation {
     solved_on(&scene.clamp("left").moment("right", moment), mesh)
 }
 
-/// Golovin's curved bar (Timoshenko and Goodier, *Theory of Elasticity*, art. 29): where Winkler and Bach's theory has the
-/// hoop stress, this is exact. The moment opens the ring: positive turns its end against its own curvature.
+/// Golovin's curved bar (Timoshenko and Goodier, *Theory of Elasticity*, art. 29) is exact, unlike the hoop stress of
+/// Winkler and Bach's theory. The moment opens the ring: a positive one rotates its end against its own curvature.
 #[test]
 fn stresses_of_a_curved_beam_are_golovins() {
     let (a, b, moment) = (2.0f64, 3.0f64, 1e-4 * YOUNG / 12.0);
@@ -144,7 +145,7 @@ fn stresses_of_a_curved_beam_are_golovins() {
         let mut worst = 0.0f64;
         for (x, stress) in simulation.system().mesh().nodes().iter().zip(nodal.cauchy()) {
             let (r, angle) = (x.norm(), x.y.atan2(x.x));
-            // Away from both ends, where the tractions are others.
+            // Only nodes away from both ends count, where the tractions differ.
             if (angle + PI / 3.0).abs() > PI / 9.0 {
                 continue;
             }
@@ -162,7 +163,7 @@ fn stresses_of_a_curved_beam_are_golovins() {
     }
 }
 
-/// L/H = 10, ν = 0, small loads, turned.
+/// Solves a beam with L/H = 10 and ν = 0 under small loads, rotated by `turn`.
 fn straight_beam(kind: ElementKind, moment: f64, force: f64, turn: Rotation) -> Simulation {
     let [along, across] = cells(kind, 40, 4);
     let scene = Scene::beam(10.0, 1.0).with_element(kind).with_cells(along, across);
@@ -171,7 +172,7 @@ fn straight_beam(kind: ElementKind, moment: f64, force: f64, turn: Rotation) -> 
     solved_on(&scene.force("right", turn.apply(Vector2::new(0.0, force)).into()), mesh)
 }
 
-/// σ_xx = −M y / I, and τ = 3/2 Q/A (1 − 4 y²/h²), at every node away from the ends, on the faces too.
+/// σ_xx = −M y / I and τ = 3/2 Q/A (1 − 4 y²/h²) hold at every node away from the ends, including the faces.
 #[test]
 fn stresses_of_a_beam_are_those_of_the_book() {
     let load = 1e-5 * YOUNG / 12.0;
@@ -192,13 +193,14 @@ fn stresses_of_a_beam_are_those_of_the_book() {
         println!("{kind:?}: M y/I to {:.3} %, shear to {:.2} % of the largest", 100.0 * normal, 100.0 * shear);
         let simple = kind.entry().points.len() == 1;
         assert!(normal < if simple { 0.06 } else { 0.005 }, "{kind:?}: {normal}");
-        // A parabola by linear patches, worst on the faces; and by quadratic ones.
+        // Linear patches approximate the parabola worst on the faces; quadratic ones are more accurate.
         let linear = kind.entry().sides[0].len() == 2;
         assert!(shear < if linear { 0.25 } else { 0.03 }, "{kind:?}: {shear}");
     }
 }
 
-/// Everything turned by 37°: the Cauchy stresses turn along, what is seen from the body stays.
+/// In a scene rotated by 37°, the Cauchy stresses rotate with the body, and quantities
+/// relative to the body are unchanged.
 #[test]
 fn stresses_turn_with_the_body() {
     let turn = Rotation::from_angle(37f64.to_radians());
@@ -224,8 +226,8 @@ fn stresses_turn_with_the_body() {
     }
 }
 
-/// A bar pulled to 18 % strain: Cauchy's stress is the force on the section as it is now, thinner in both directions,
-/// Biot's that on the section at rest. And the law is said to be stretched.
+/// A bar is pulled to 18 % strain: Cauchy's stress is the force on the current section, which is thinner in both
+/// directions; Biot's is the force on the section at rest. The strain is reported as beyond the material law's range.
 #[test]
 fn cauchy_is_the_force_on_the_area_there_is() {
     for kind in ElementKind::all() {
@@ -251,12 +253,12 @@ fn cauchy_is_the_force_on_the_area_there_is() {
     assert_eq!(strain_warning(0.09), None);
 }
 
-/// Errors of a mesh, percent.
+/// Errors of a mesh, percent of the fine solution's energy norm.
 #[derive(Debug)]
 struct Errors {
-    /// The distance of the elements' strains from those of a fine solution, in the energy norm, of the fine solution's …
+    /// Distance of the elements' strains from those of a fine solution.
     exact: f64,
-    /// … and what the recovered ones say of it.
+    /// Estimate of this error from the recovered strains.
     estimate: Option<f64>,
 }
 
@@ -290,7 +292,7 @@ impl Errors {
     }
 }
 
-/// On smooth scenes the estimate is between half and twice the true error, of every element.
+/// On smooth scenes, the estimate is between half and twice the true error for every element.
 #[test]
 fn the_mesh_error_is_about_the_true_one() {
     for (id, tip) in [("cantilever", 1), ("gravity", 2), ("elastica", 1), ("incline", 1), ("roll-up", 1)] {
@@ -304,7 +306,7 @@ fn the_mesh_error_is_about_the_true_one() {
                 let found = Errors::of(&scene, fine);
                 let words = format!("{id} {kind:?} {along}×{across}: {found:?}");
                 if kind == ElementKind::Q4 && across == 1 {
-                    // Every cell of a single row is wrong alike, which recovery cannot see.
+                    // In a single row every cell has the same error, which recovery cannot detect.
                     assert_eq!(found.estimate, None, "{words}");
                     continue;
                 }
@@ -316,12 +318,12 @@ fn the_mesh_error_is_about_the_true_one() {
     }
 }
 
-/// What locks is not mistaken for the truth, however well converged.
+/// The estimate detects elements that lock, however well the solution has converged.
 #[test]
 fn the_mesh_error_shouts_where_elements_lock() {
     let t3 = common::scene("elastica").with_element(ElementKind::T3).with_cells(20, 1);
     let article = common::scene_with("article", &["solver.method=\"newton\""]);
-    // Six-node triangles fifty times as long as high, in volume: 65 % off.
+    // Six-node triangles fifty times as long as high lock in volume: the error is 65 %.
     let mut material = Material::new(YOUNG, 0.4999);
     material.plane = Plane::Strain;
     let flat = Scene::beam(1000.0, 1.0)
@@ -338,7 +340,7 @@ fn the_mesh_error_shouts_where_elements_lock() {
         println!("{name}: mesh error {percent:.1} % in the energy norm");
         assert!(percent > 30.0, "{name}: {percent}");
         if name == "flat" {
-            // E' = E/(1 − ν²): w = P L³ / 3 E' I.
+            // With E' = E/(1 − ν²), w = P L³ / 3 E' I.
             let w = -0.01 * 1000.0 / 3.0 * (1.0 - 0.4999 * 0.4999);
             println!("  tip {} % off", 100.0 * (u.y - w) / w);
             assert!((u.y / w - 0.35).abs() < 0.1, "{} {w}", u.y);
@@ -351,7 +353,7 @@ fn the_mesh_error_shouts_where_elements_lock() {
     }
 }
 
-/// One number everywhere: JSON, CSV and VTU, with the node's number in the mesh file.
+/// JSON, CSV and VTU contain the same number, with the node's number in the mesh file.
 #[test]
 fn files_and_json_agree_to_the_last_digit() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! The trade of a body at rest and of one in motion, the atlas in time, and how an iteration scales.
+//! Tests of the speed–accuracy study of bodies at rest and in motion, the atlas of motions, and
+//! the scaling of an iteration.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -19,8 +20,8 @@ fn go_on(_: warpbeam::study::Progress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// What one row of quadrilaterals can do is measured, under every method: an error that takes six-node triangles at least
-/// twice the unknowns. What that is in time is the machine's.
+/// The study measures single rows of quadrilaterals under every method. They reach an error for which six-node
+/// triangles need at least twice the unknowns. The corresponding times depend on the machine.
 #[test]
 fn single_rows_of_bending_elements_are_studied() {
     for id in ["cantilever", "elastica"] {
@@ -50,8 +51,8 @@ fn single_rows_of_bending_elements_are_studied() {
     }
 }
 
-/// The bar of a study goes forward all the time and to its end; what converges fastest is measured first, and the list is
-/// in its order all the same.
+/// The progress of a study never decreases and reaches its end. The element that converges fastest is measured first,
+/// and the measurements of each element are listed from coarse to fine.
 #[test]
 fn a_study_says_how_far_it_is_and_has_the_likely_answers_first() {
     let (mut last, mut elements) = (0.0, Vec::new());
@@ -77,8 +78,8 @@ fn a_study_says_how_far_it_is_and_has_the_likely_answers_first() {
     assert!(all.into_iter().all(|element| unknowns(element).is_sorted()), "coarse to fine");
 }
 
-/// The swing's study: its errors go with the step as the integrators' orders say, its energy as they promise, and its
-/// front is one.
+/// The swing's study: errors follow the orders of the integrators, energies behave as the integrators promise, and no
+/// setting on the front is dominated.
 #[test]
 fn a_swing_is_studied() {
     let study = MotionStudy::new(&scene("swing"), Extent::Quick, &mut go_on).unwrap();
@@ -113,7 +114,7 @@ fn a_swing_is_studied() {
         let e = m.error.unwrap();
         let parts = [e.total, e.rms, e.discretization, e.integration, e.model, m.drift_percent, m.milliseconds];
         assert!(parts.iter().all(|v| v.is_finite()) && m.milliseconds > 0.0 && m.counts.halvings == 0, "{m:?}");
-        // The parts are distances on the way from the path to the reference's.
+        // The parts are distances along a chain from the path to the reference's path.
         assert!(e.total <= e.bound() * (1.0 + 1e-9) && e.rms <= e.total, "{setting}: {e:?}");
         assert_eq!(e.model == 0.0, setting.method != MethodKind::Linear, "{setting}");
         match setting.integrator {
@@ -122,13 +123,14 @@ fn a_swing_is_studied() {
             _ => {}
         }
     }
-    // The ends of explicit steps are those of the others: 0.9 of the critical one, rounded to parts of a sixtieth.
+    // Explicit steps are 0.9 of the critical step, rounded to integer parts of 1/60 s, so that they
+    // end with those of the others.
     let explicit = study.measurements.iter().filter(|m| m.setting.integrator == IntegratorKind::SymplecticEuler);
     for m in explicit {
         let parts = 1.0 / 60.0 / m.setting.time_step;
         assert!(parts > 2.0 && (parts - parts.round()).abs() < 1e-6, "{}", m.setting);
     }
-    // Nothing beats the front, everything else is beaten, and the front is sorted both ways.
+    // No setting is better than the front, every other setting is worse, and the front is sorted by time and by error.
     let pair = |m: &MotionMeasurement| (m.milliseconds, study.resolved(m.error.unwrap().bound()));
     for m in &study.measurements {
         let (time, error) = pair(m);
@@ -138,14 +140,14 @@ fn a_swing_is_studied() {
     }
     let front: Vec<_> = study.front().into_iter().map(pair).collect();
     assert!(front.len() > 2 && front.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 > w[1].1), "{front:?}");
-    // What is said to be within an error is, the reference's own included.
+    // A setting that claims to be within an error is so, including the reference's own error.
     let chosen = study.fastest_within(10.0).unwrap();
     assert!(chosen.error.unwrap().bound() + own <= 10.0);
     assert!(study.fastest_within(0.5 * own).is_none());
 }
 
-/// The bar of a motion's study goes forward all the time. Called off among what is timed, or among what is not, it keeps
-/// what has been measured.
+/// The progress of a motion study never decreases. Cancelled during timed or untimed runs, the
+/// study keeps its measurements.
 #[test]
 fn a_study_of_a_motion_says_how_far_it_is_and_keeps_what_is_measured() {
     let scene = scene_with("swing", &["dynamics.duration=0.1"]);
@@ -169,17 +171,17 @@ fn a_study_of_a_motion_says_how_far_it_is_and_keeps_what_is_measured() {
         meshes.dedup();
         (study.is_partial, meshes.len(), study.measurements.len())
     };
-    // Told that it is measured, the fourth setting is not any more.
+    // The study is cancelled when it reports the fourth setting, which is then not measured.
     assert_eq!(until(&|_, timed| timed == 4), (true, 1, 3));
     let (is_partial, meshes, measured) = until(&|meshes, _| meshes == 2);
     assert!(is_partial && meshes == 1 && measured > 20, "{is_partial} {meshes} {measured}");
     assert_eq!(until(&|_, _| false), (false, 6, 6 * measured));
 }
 
-/// The reference against a trajectory computed independently on the same mesh: `tests/data/swing.py`.
+/// Compares the reference with a trajectory computed independently on the same mesh: `tests/data/swing.py`.
 #[test]
 fn the_reference_is_the_truth() {
-    // Twice as fine as this in six-node triangles is the independent mesh.
+    // The independent mesh has six-node triangles, twice as fine as these cells.
     let scene = scene_with("swing", &["beam.element=t3"]);
     let reference = MotionReference::new(&scene, Extent::Quick, &mut go_on).unwrap();
     assert_eq!(reference.cells, Some([20, 1]));
@@ -190,7 +192,7 @@ fn the_reference_is_the_truth() {
             (v[0], Vector2::new(v[1], v[2]))
         })
         .collect();
-    // Of 240 places a second every fourth.
+    // Every fourth of the 240 samples per second.
     let truth: Vec<_> = truth.iter().skip(3).step_by(4).take(reference.path.len()).collect();
     assert_eq!(truth.len(), 60);
     for (i, (time, _)) in truth.iter().enumerate() {
@@ -199,7 +201,7 @@ fn the_reference_is_the_truth() {
     let places: Vec<_> = truth.iter().map(|(_, u)| *u).collect();
     let [distance, _] = reference.distance(&places, &reference.path);
     assert!(distance <= reference.error_percent, "{distance} {}", reference.error_percent);
-    // The mesh is the same: nothing is left but the time step.
+    // The mesh is the same, so that the only difference is due to the time step.
     assert!(distance < 0.01, "{distance}");
     let size = places.iter().map(|u| u.norm()).fold(0.0, f64::max);
     assert!((reference.size / size - 1.0).abs() < 1e-3);
@@ -225,8 +227,8 @@ fn what_cannot_be_studied_is_refused() {
     }
 }
 
-/// Where no bound of the error is known that is below what is asked, it is not known what meets that: a block sheared until its
-/// elements invert, a force on the point that is measured, an error smaller than the reference's.
+/// Tuning refuses to choose a setting if no bound of the error below the requested one is known: a block sheared until
+/// its elements invert, a force on the measured point, and an error smaller than the reference's.
 #[test]
 fn tuning_does_not_claim_what_is_not_known() {
     let block = scene_with("shear", &["load.0.force=[1e6,0]"]);
@@ -241,7 +243,7 @@ fn tuning_does_not_claim_what_is_not_known() {
     assert!(stdout(&output).contains("not known which settings meet at most 0.01 % error"), "{}", stdout(&output));
 }
 
-/// A search for a setting that is cancelled has what was measured until then.
+/// A cancelled search for a setting chooses from the measurements taken so far.
 #[test]
 fn a_cancelled_tuning_chooses_from_what_was_measured() {
     let demand = Demand { max_error_percent: Some(1e-3), max_time_ms: None };
@@ -258,8 +260,8 @@ fn a_cancelled_tuning_chooses_from_what_was_measured() {
     assert!(tuning.study.measurements.len() < 60);
 }
 
-/// The same from the command line: files, columns, no number that is none; a step too short to be run to the end is said
-/// to be.
+/// The command writes the same study: its files, columns and finite numbers. A step that is too short to be
+/// run to the end is reported.
 #[test]
 fn study_of_a_motion_writes_its_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -287,7 +289,7 @@ fn study_of_a_motion_writes_its_files() {
             assert_eq!(row.len(), header.len());
             let finished = row[8] == "finished";
             for (column, value) in header.iter().zip(row).filter(|(column, _)| !words.contains(column)) {
-                // No error without an end.
+                // A run that did not finish has no error.
                 let empty = value.is_empty() && !finished && column.ends_with("_percent");
                 assert!(empty || value.parse::<f64>().unwrap().is_finite(), "{column}: {row:?}");
             }
@@ -308,8 +310,8 @@ fn study_of_a_motion_writes_its_files() {
     assert!(stderr(&refused).contains("expected a scene with analysis = \"static\""), "{}", stderr(&refused));
 }
 
-/// Whatever the stiffness, the step and the weight: a motion ends in words, its numbers finite; what is implicit goes on
-/// to the end, and energy comes from nowhere under none.
+/// For any stiffness, step and weight, a motion ends with a message and finite numbers. Implicit integrators run to the
+/// end, and no integrator gains energy.
 #[test]
 fn motions_at_the_extremes_end_in_words() {
     let cases = cases(Extent::Quick);
@@ -324,14 +326,15 @@ fn motions_at_the_extremes_end_in_words() {
             MotionOutcome::Exploded => assert!(explicit && entry.steps < 100, "{entry:?}"),
             MotionOutcome::GainedEnergy | MotionOutcome::Stopped => unreachable!("{entry:?}"),
         }
-        // Far above its critical step the explicit integrator explodes, and is said to.
+        // Far above its critical step, the explicit integrator explodes and is reported.
         if explicit && case.young >= 1e6 {
             assert_eq!(entry.outcome, MotionOutcome::Exploded, "{entry:?}");
         }
     }
 }
 
-/// The time of an iteration over the unknowns: every element from coarse to fine, as table, picture and words.
+/// The time of an iteration against the number of unknowns, for every element from coarse to fine,
+/// as table, picture and text.
 #[test]
 fn scaling_is_measured() {
     let folder = tempfile::tempdir().unwrap();

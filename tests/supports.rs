@@ -1,4 +1,4 @@
-//! Supports that move: what they do to the body, what it costs them, and what is refused.
+//! Tests of moving supports: their effect on the body, their reactions and work, and their errors.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -21,14 +21,14 @@ fn rotated(v: Vector2<f64>, angle: f64) -> Vector2<f64> {
     Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y)
 }
 
-/// A beam clamped at both ends.
+/// Returns a beam clamped at both ends.
 fn clamped() -> Scene {
     let mut scene = Scene::beam(10.0, 1.0).with_cells(16, 2).clamp("left").clamp("right").probe("middle", [5.0, 0.0]);
     scene.solver.tolerance = 1e-11;
     scene
 }
 
-/// Edges that are taken apart along x and together along y strain every element alike, whatever its shape.
+/// Edges that are moved apart along x and together along y strain all elements equally, whatever their shape.
 #[test]
 fn edges_that_are_moved_strain_a_patch_alike() {
     let (a, b) = (0.03, -0.05);
@@ -44,7 +44,7 @@ fn edges_that_are_moved_strain_a_patch_alike() {
             .support("top", &[Axis::Y])
             .moved([0.0, b], 0.0);
         let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
-        // Cells of all shapes; the sides of the rectangle stay.
+        // The cells have irregular shapes; the sides of the rectangle are unchanged.
         let mesh = mesh.moved(|x| {
             let bump = (PI * x.x / 2.0).sin() * (PI * (x.y + 0.5)).sin();
             x + Vector2::new(0.06, 0.04) * (bump * (1.0 + x.x * x.y))
@@ -65,7 +65,7 @@ fn edges_that_are_moved_strain_a_patch_alike() {
             },
         );
         assert!(points >= 12);
-        // σ t of the whole side.
+        // Reactions are σ t times the length of the side.
         let stress = lame.stress(&expected);
         let [left, bottom, right, top] = [0, 1, 2, 3].map(|i| simulation.support_reactions()[i].force);
         assert!((right.x - stress.m11).abs() < 1e-8 * stress.m11.abs(), "{}: {right}", element.id);
@@ -74,7 +74,7 @@ fn edges_that_are_moved_strain_a_patch_alike() {
     }
 }
 
-/// All supports turned about one point carry the body along, without stress, however far.
+/// If all supports rotate about one point, the body rotates with them without stress, by any angle.
 #[test]
 fn a_rigid_turn_of_all_supports_leaves_no_stress() {
     let centre = Vector2::new(3.0, 2.0);
@@ -91,7 +91,7 @@ fn a_rigid_turn_of_all_supports_leaves_no_stress() {
             }
             let simulation = solved(&scene);
             let solution = simulation.solution();
-            // Of what the same way would take as a strain.
+            // Forces and energies are compared with those that a strain of about 1 would need.
             let scale = 1e6 * 10.0;
             assert!(solution.energy.elastic < 1e-18 * scale, "{} {}: {:?}", element.id, method.id, solution.energy);
             assert!(solution.supports.iter().all(|s| s.force.norm() < 1e-7 * scale), "{:?}", solution.supports);
@@ -102,7 +102,7 @@ fn a_rigid_turn_of_all_supports_leaves_no_stress() {
                 let expected = rotated(x - centre, angle) + centre - x;
                 assert!((u - expected).norm() < 1e-9, "{} {} {angle}: {u} {expected}", element.id, method.id);
             }
-            // The turns of edges count full turns.
+            // The rotations of edges count full turns.
             assert!(
                 simulation.state().turns().iter().all(|t| (t - angle).abs() < 1e-9),
                 "{:?}",
@@ -112,7 +112,7 @@ fn a_rigid_turn_of_all_supports_leaves_no_stress() {
     }
 }
 
-/// One clamp that turns takes a cantilever along; its weight then bends it as it would one that was built so.
+/// A rotating clamp carries a cantilever along. Its weight then bends it like a cantilever built in that direction.
 #[test]
 fn a_turned_clamp_is_another_direction_of_the_weight() {
     for method in METHODS.iter().filter(|m| m.kind != MethodKind::Linear) {
@@ -128,7 +128,8 @@ fn a_turned_clamp_is_another_direction_of_the_weight() {
     }
 }
 
-/// A turn beyond a full one winds the beam up: it is another state than that at rest, with its supports in the same place.
+/// A rotation of more than a full turn winds up the beam: it differs from the state at rest with
+/// the same support positions.
 #[test]
 fn a_full_turn_of_one_end_is_not_rest() {
     let mut scene = Scene::beam(20.0, 0.5).with_cells(40, 1).clamp("left").clamp("right");
@@ -140,7 +141,7 @@ fn a_full_turn_of_one_end_is_not_rest() {
     assert!((turn - TAU).abs() < 1e-9, "{turn}");
     assert!(simulation.solution().energy.elastic > 10.0, "{:?}", simulation.solution().energy);
     assert!(simulation.load_stepping().1 > 6);
-    // Turned back in small steps, it is at rest again.
+    // Rotated back in small steps, it is at rest again.
     let mut angle = TAU;
     while angle > 0.0 {
         angle = f64::max(angle - 0.4, 0.0);
@@ -150,13 +151,13 @@ fn a_full_turn_of_one_end_is_not_rest() {
     assert!(simulation.solution().energy.elastic < 1e-9);
 }
 
-/// The supports take what the loads give, as forces and as moments.
+/// The supports carry the loads, as forces and as moments.
 #[test]
 fn reactions_balance_the_loads() {
     for element in ELEMENTS {
         let scene = clamped().with_element(element.kind).gravity([0.0, -0.1]).force("top", [40.0, -30.0]);
         let scene = scene.moment("right", 20.0);
-        // A moment on an edge that is held goes into its support.
+        // A moment on a supported edge goes into its support.
         let mut scene = scene;
         scene.move_support(1, [-0.3, 0.8], 0.4).unwrap();
         let simulation = solved(&scene);
@@ -180,7 +181,7 @@ fn reactions_balance_the_loads() {
     }
 }
 
-/// The force that a moved support is found to need moves the free body as far.
+/// The reaction force of a moved support displaces the free body by the same distance.
 #[test]
 fn displacement_control_agrees_with_force_control() {
     for (element, method) in
@@ -200,14 +201,14 @@ fn displacement_control_agrees_with_force_control() {
     }
 }
 
-/// A scene in which the right end is taken along all of its ways at once.
+/// Returns a scene in which the right end is displaced and rotated at once.
 fn wrenched(factor: f64) -> Scene {
     let mut scene = clamped();
     scene.move_support(1, [-2.0 * factor, 3.0 * factor], 1.2 * factor).unwrap();
     scene
 }
 
-/// What supports do along their way is what the body stores, and Clapeyron's theorem holds for linear theory.
+/// The work of supports along their path is the elastic energy, and Clapeyron's theorem holds for linear theory.
 #[test]
 fn the_work_of_the_reactions_is_the_elastic_energy() {
     const STEPS: u32 = 48;
@@ -225,7 +226,7 @@ fn the_work_of_the_reactions_is_the_elastic_energy() {
     }
     let energy = simulation.solution().energy;
     assert!((work - energy.elastic).abs() < 2e-5 * energy.elastic, "{work} {energy:?}");
-    // On the same path in one go.
+    // The same path in one step.
     let direct = solved(&wrenched(1.0)).solution().energy;
     assert!((direct.elastic - energy.elastic).abs() < 1e-8 * energy.elastic, "{direct:?} {energy:?}");
 
@@ -233,11 +234,11 @@ fn the_work_of_the_reactions_is_the_elastic_energy() {
     let energy = linear.solution().energy;
     let supports = energy.supports.unwrap();
     assert!(energy.external.abs() > 1.0 && supports.abs() > 1.0, "{energy:?}");
-    // The loads do their work at full size; the supports along the path, half of what they would do at full size.
+    // The loads do their work at full size. The work of the supports along the path is half of that at full size.
     assert!((energy.external + 2.0 * supports - 2.0 * energy.elastic).abs() < 1e-9 * energy.elastic, "{energy:?}");
 }
 
-/// Force and moment of a support are the derivatives of the energy with respect to its way and its turn.
+/// Force and moment of a support are the derivatives of the energy with respect to its displacement and rotation.
 #[test]
 fn reactions_are_derivatives_of_the_energy() {
     const H: f64 = 1e-4;
@@ -259,7 +260,7 @@ fn reactions_are_derivatives_of_the_energy() {
     assert!((reaction.moment - by_turn).abs() < 1e-5 * scale, "{} {by_turn}", reaction.moment);
 }
 
-/// A support that is dragged ends where it would have ended from rest; let go of, the body is at rest again.
+/// A dragged support gives the same result as a solve from rest; dragged back, the body is at rest again.
 #[test]
 fn dragged_supports_end_where_they_would_from_rest() {
     for method in METHODS {
@@ -283,7 +284,7 @@ fn dragged_supports_end_where_they_would_from_rest() {
     }
 }
 
-/// `start_from` and a result under another stiffness begin with supports in their places.
+/// `start_from` and a change of stiffness begin with the supports in their prescribed positions.
 #[test]
 fn other_starts_and_stiffnesses_end_in_the_same_place() {
     let mut simulation = solved(&wrenched(0.5));
@@ -300,9 +301,10 @@ fn other_starts_and_stiffnesses_end_in_the_same_place() {
     assert!(values.iter().all(Option::is_some));
 }
 
-/// The limit load of a clamped shallow arch under a force in its middle, N, and the way of its middle there, m: beam theory
-/// of small slopes, EI w⁗ + N (w″ − 1/R) = −P δ with the thrust N = EI k² from the shortening of the axis. For every k the
-/// deflection is linear in P, and the shortening a quadratic equation for it.
+/// Returns the limit load of a clamped shallow arch under a force in its middle, N, and the displacement of
+/// its middle there, m. The source is beam theory of small slopes, EI w⁗ + N (w″ − 1/R) = −P δ, with the
+/// thrust N = EI k² from the shortening of the axis. For every k the deflection is linear in P, and the
+/// shortening gives a quadratic equation for P.
 fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) -> [f64; 2] {
     use nalgebra::{Matrix4, Vector4};
     const POINTS: usize = 400;
@@ -338,7 +340,7 @@ fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) ->
             let force = (-q[1] + sign * root.sqrt()) / (2.0 * q[2]);
             let middle = |v: &Vector4<f64>| v[0] + v[1] * half + v[2] * c + v[3] * s;
             let way = -(middle(&alone) + 0.5 * curvature * half * half + force * middle(&unit));
-            // Before the crown is as low as its ends.
+            // Only states count in which the crown is above the ends.
             if force > best[0] && (0.0..rise).contains(&way) {
                 best = [force, way];
             }
@@ -347,15 +349,15 @@ fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) ->
     best
 }
 
-/// The arch of `snap` passes the limit load of beam theory; where it is unstable under force control its exact tangent
-/// with the crown free is indefinite, and held at the crown it is stable everywhere.
+/// The arch of `snap` passes the limit load of beam theory. Where it is unstable under force control, its exact tangent
+/// with a free crown is indefinite; with the crown supported, it is stable everywhere.
 #[test]
 fn the_arch_passes_its_limit_load() {
     let scene = common::scene("snap");
     let path = LoadPath::of(&scene).unwrap();
     assert!(path.end.is_none() && path.jump.is_none());
     let pairs: Vec<[f64; 2]> = path.states.iter().map(|s| path.driven_pair(&scene, s).unwrap()).collect();
-    // A parabola through the highest three.
+    // A parabola through the three highest points.
     let top = pairs[..30].iter().enumerate().max_by(|a, b| a.1[1].total_cmp(&b.1[1])).unwrap().0;
     let [a, b, c] = [0, 1, 2].map(|i| pairs[top - 1 + i][1]);
     let limit = b + (c - a).powi(2) / (8.0 * (2.0 * b - a - c));
@@ -368,7 +370,7 @@ fn the_arch_passes_its_limit_load() {
     );
     assert!((limit - expected).abs() < 0.005 * expected, "{limit} {expected}");
     assert!((pairs[top][0] - way).abs() < 3e-4, "{} {way}", pairs[top][0]);
-    // The crown free along its way, and nothing else changed.
+    // The same scene with the crown free along its path.
     let mut free = scene.clone();
     free.supports[2] = Support::new(free.supports[2].place.clone(), &[Axis::X]);
     let free = Simulation::new(&free).unwrap();
@@ -415,7 +417,7 @@ fn what_supports_cannot_do_is_refused_with_its_reason() {
         let message = refused(&scene);
         assert!(message.contains(expected), "{message}");
     }
-    // Within an element a node is meant.
+    // A point inside an element selects a node.
     assert!(Simulation::new(&beam().force([10.4, 0.0], [0.0, 1.0])).is_ok());
     assert!(Simulation::new(&Scene::beam(10.0, 1.0)).is_err());
     assert!(beam().move_support(3, [0.0, 0.0], 0.0).is_err_and(|e| e.to_string().contains("support.3")));

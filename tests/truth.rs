@@ -1,4 +1,4 @@
-//! The beam theories against the independent reference table, closed forms, and each other.
+//! Compares the beam theories with the independent reference table, with closed forms, and with each other.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -7,7 +7,7 @@ use common::{scene, scene_with};
 use nalgebra::Vector2;
 use warpbeam::truth::{BeamTruth, ClampedBeam};
 
-/// ν = 0, unit length and bending stiffness.
+/// Returns a beam with ν = 0, unit length and unit bending stiffness.
 fn beam(length_over_height: f64) -> ClampedBeam {
     // EA = 12 (L/H)² EI/L², GA = 5/6 · EA/2.
     let axial = 12.0 * length_over_height * length_over_height;
@@ -42,7 +42,7 @@ fn every_row_of_the_reference_table_to_1e_6() {
     }
 }
 
-/// Mattiasson 1981: w/L and u/L of the elastica under a dead tip load.
+/// Values of w/L and u/L of the elastica under a dead tip load (Mattiasson 1981).
 #[test]
 fn the_elastica_of_the_literature() {
     for (alpha, w, u) in
@@ -53,7 +53,7 @@ fn the_elastica_of_the_literature() {
     }
 }
 
-/// Under an end moment the beam is an arc: κ = M/EI, exactly, also all the way round.
+/// Under an end moment the beam is an arc of exactly κ = M/EI, also beyond a full circle.
 #[test]
 fn an_end_moment_makes_an_arc() {
     for turns in [0.1, 0.5, 1.0, 1.7, -1.0] {
@@ -81,17 +81,17 @@ fn small_loads_give_linear_beam_theory() {
         };
         let exact = small.tip().unwrap().x - Vector2::new(1.0, 0.0);
         let linear = small.linear_tip_displacement();
-        // The second order: 1e-4 of the displacement, which is itself 1e-4 or so.
+        // The second-order term is 1e-4 of the displacement, which is itself about 1e-4.
         assert!((exact - linear).norm() < 2e-8, "{load:?}: {exact} {linear}");
     }
 }
 
-/// Loads far beyond the table: the beam hangs like a rope from its clamp.
+/// Under loads far beyond the table, the beam hangs from its clamp like a rope.
 #[test]
 fn very_large_loads_are_followed() {
     for alpha in [100.0, 1000.0] {
         let tip = ClampedBeam { tip_force: Vector2::new(0.0, -alpha), ..beam(50.0) }.elastica().tip().unwrap();
-        // A boundary layer of length √(EI/P): x = √2 · that, and y short of L by 2 − √2 of it.
+        // The boundary layer has the length √(EI/P): x is √2 times that, and y is short of L by 2 − √2 times that.
         let layer = 1.0 / f64::sqrt(alpha);
         assert!((tip.x.x - std::f64::consts::SQRT_2 * layer).abs() < 0.02 * layer, "{alpha}: {tip:?}");
         assert!((1.0 + tip.x.y - (2.0 - std::f64::consts::SQRT_2) * layer).abs() < 0.02 * layer, "{alpha}: {tip:?}");
@@ -108,6 +108,6 @@ fn scenes_with_a_truth_are_recognised() {
     for id in ["bridge", "shear", "cook", "bracket"] {
         assert_eq!(BeamTruth::of(&scene(id)), None, "{id}");
     }
-    // A load elsewhere has no such truth.
+    // No exact beam exists for a load elsewhere.
     assert_eq!(BeamTruth::of(&scene_with("cantilever", &["load.0.edge=top"])), None);
 }

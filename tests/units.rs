@@ -1,4 +1,4 @@
-//! Numbers with units, wherever a number is typed.
+//! Tests of numbers with units, in every place that accepts numbers.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -51,7 +51,7 @@ fn units_are_read_to_the_last_digit() {
         let read = parse(text, unit).unwrap();
         assert!((read - value).abs() <= 2.0 * f64::EPSILON * value.abs(), "{text} is {read} {unit}");
     }
-    // Powers of ten round once.
+    // Powers of ten are rounded once.
     assert_eq!(
         (parse("3 mm", "m"), parse("0.7 mm", "m"), parse("7.8 g/cm³", "kg/m³")),
         (Ok(3e-3), Ok(7e-4), Ok(7.8e3))
@@ -155,14 +155,14 @@ velocity = [0.001, 2.0]
 spin = 3.141592653589793
 "#;
 
-/// A scene with units is the same as one without, and is written without.
+/// A scene with units equals the same scene without units, and is written without units.
 #[test]
 fn scene_files_take_units() {
     let scene = Scene::from_toml(WITH_UNITS).unwrap();
     assert_eq!(scene, Scene::from_toml(PLAIN).unwrap());
     assert_eq!(Scene::from_toml(&scene.to_toml().unwrap()).unwrap(), scene);
     assert!(scene.to_toml().unwrap().contains("young = 210000000000.0"));
-    // Errors after units have the line of the file.
+    // Errors of numbers with units name the line of the file.
     for (old, new, line) in [
         ("poisson = \"30 %\"", "poisson = 0.9", 7),
         ("spin = \"180 °/s\"", "spon = 1.0", 39),
@@ -188,14 +188,14 @@ fn assignments_take_units_with_and_without_quotes() {
     assert_eq!(scene_with("article", &["material.young=210 GPa", "load.0.force.0=0", "load.0.force.1=-12 kN"]), plain);
     let material = scene_with("article", &["material={ young = \"1 GPa\", poisson = 0.3 }"]).material;
     assert_eq!((material.young, material.poisson), (1e9, 0.3));
-    // Words are words.
+    // Text fields are not parsed as numbers.
     assert_eq!(scene_with("article", &["name=12 kN"]).name, "12 kN");
 }
 
-/// No scene of plain numbers changes by being read with units.
+/// A scene of plain numbers is unchanged by the parser of units.
 #[test]
 fn plain_numbers_are_si() {
-    // Some ship with units.
+    // Some built-in scenes have units and are left out.
     let plain = registry::BUILT_IN.iter().filter_map(|b| Some((b, toml::from_str::<Scene>(b.toml).ok()?)));
     assert!(plain.clone().count() > 12);
     for (built_in, direct) in plain {
@@ -207,7 +207,8 @@ fn plain_numbers_are_si() {
     }
 }
 
-/// Thousands are parted by commas or spaces; what could be a decimal comma is refused, with what to write.
+/// Groups of three digits may be separated by commas or spaces. A possible decimal comma is
+/// refused, with the correct notation.
 #[test]
 fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
     for (text, value) in [

@@ -1,6 +1,6 @@
-//! The real window on a virtual display, driven by xdotool as a person would.
+//! Tests of the real window on a virtual display, driven by xdotool.
 //!
-//! Where Xvfb, xdotool or openbox is missing the test says so and passes, unless `WARPBEAM_REQUIRE_XVFB` is set, as
+//! If Xvfb, xdotool or openbox is missing, the test reports this and passes, unless `WARPBEAM_REQUIRE_XVFB` is set, as
 //! `scripts/test` does after installing them.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 #![cfg(target_os = "linux")]
@@ -23,21 +23,21 @@ use warpbeam::scene::{Load, Source};
 use warpbeam::simulation::Simulation;
 use x11rb::protocol::xproto::{ConnectionExt, ImageFormat, MapState};
 
-/// How long a condition may take: a fresh machine that does other things too compiles shaders for half a minute.
+/// Longest time to wait for a condition: a busy machine takes half a minute to compile shaders for the first time.
 const PATIENCE: Duration = Duration::from_secs(240);
-/// How long a key or a click may take to show an effect before it is taken for lost and given again.
+/// Time after which a key or a click without an effect is repeated, because it may be lost.
 const AGAIN: Duration = Duration::from_secs(5);
 
-/// One desktop at a time: windows that wait for each other's processors prove nothing.
+/// Runs one desktop at a time, so that windows do not compete for processors.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// A virtual display with a window manager; both end with it.
+/// A virtual display with a window manager. Both end when the value is dropped.
 struct Desktop {
     _turn: MutexGuard<'static, ()>,
     server: Child,
     manager: Child,
     name: String,
-    /// Where the programs have their settings: never among those of who runs the tests.
+    /// Folder for the programs' settings, so that those of the user are not touched.
     config: tempfile::TempDir,
 }
 
@@ -51,7 +51,7 @@ impl Drop for Desktop {
 }
 
 impl Desktop {
-    /// `None` where a program is missing.
+    /// Starts the display and the window manager; returns `None` if a program is missing.
     fn start() -> Option<Self> {
         let turn = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let there = |program: &str| {
@@ -61,7 +61,7 @@ impl Desktop {
         let missing: Vec<_> = ["Xvfb", "xdotool", "openbox"].into_iter().filter(|p| !there(p)).collect();
         if !missing.is_empty() {
             assert!(std::env::var_os("WARPBEAM_REQUIRE_XVFB").is_none(), "missing: {missing:?}");
-            // Straight to the stream: the test harness shows what it captures of failed tests only.
+            // Writes to the stream directly: the test harness shows captured output of failed tests only.
             let _ =
                 writeln!(std::io::stderr(), "skipped: {missing:?} not installed; `scripts/setup test` installs them");
             return None;
@@ -76,8 +76,8 @@ impl Desktop {
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let name = format!(":{}", number.trim());
         let config = tempfile::tempdir().unwrap();
-        // openbox announces itself before it has read its files, and loses windows that are mapped meanwhile; it runs this
-        // command when it is ready.
+        // openbox announces itself before it has read its files, and loses windows that are mapped in the meantime. It
+        // runs this command when it is ready.
         let ready = config.path().join("ready");
         let manager = Command::new("openbox")
             .args(["--startup", &format!("touch '{}'", ready.display())])
@@ -104,12 +104,12 @@ impl Desktop {
     }
 }
 
-/// The program in its window.
+/// The program and its window.
 struct Window<'a> {
     desktop: &'a Desktop,
     process: Child,
     id: String,
-    /// What the program prints goes to a file: a pipe that nobody reads would stop it.
+    /// Output of the program. It is a file because a pipe that is not read would block the program.
     output: tempfile::NamedTempFile,
 }
 
@@ -144,22 +144,22 @@ impl<'a> Window<'a> {
         window
     }
 
-    /// What the program has printed so far.
+    /// Returns the program's output up to now.
     fn said(&self) -> String {
         std::fs::read_to_string(self.output.path()).unwrap()
     }
 
-    /// Whether every thread of the program sleeps: one that only waits for a processor is runnable.
+    /// Returns `true` if every thread of the program sleeps; a thread that waits for a processor counts as running.
     fn sleeps(&self) -> bool {
         let tasks = std::fs::read_dir(format!("/proc/{}/task", self.process.id())).unwrap();
         tasks.flatten().all(|task| {
-            // A thread may end meanwhile.
+            // A thread may end in the meantime.
             let stat = std::fs::read_to_string(task.path().join("stat")).unwrap_or_default();
             stat.rsplit(')').next().is_none_or(|rest| !rest.trim_start().starts_with(['R', 'D']))
         })
     }
 
-    /// The window's pixels, four bytes each; none while it is not on the screen.
+    /// Returns the window's pixels, four bytes each; empty while the window is not on the screen.
     fn image(&self) -> Vec<u8> {
         let (connection, _) = x11rb::connect(Some(&self.desktop.name)).unwrap();
         let id: u32 = self.id.parse().unwrap();
@@ -168,7 +168,7 @@ impl<'a> Window<'a> {
         image.unwrap().reply().map(|reply| reply.data).unwrap_or_default()
     }
 
-    /// Waits until the program sleeps over a picture that does not change, and returns the picture.
+    /// Waits until the program sleeps and its picture does not change, and returns the picture.
     fn settle(&self) -> Vec<u8> {
         const LOOKS: u32 = 6;
         let mut last = Vec::new();
@@ -183,7 +183,7 @@ impl<'a> Window<'a> {
         last
     }
 
-    /// The window's size, and whether it is on the screen.
+    /// Returns the window's size, and `true` if it is on the screen.
     fn geometry(&self) -> ([u16; 2], bool) {
         let (connection, _) = x11rb::connect(Some(&self.desktop.name)).unwrap();
         let id: u32 = self.id.parse().unwrap();
@@ -200,7 +200,7 @@ impl<'a> Window<'a> {
         });
     }
 
-    /// Presses a key; says whether there was a window to press it in.
+    /// Presses a key; returns `true` if there was a window to receive it.
     fn key(&self, key: &str) -> bool {
         let keys = ["windowactivate", "--sync", &self.id, "key", "--clearmodifiers", key];
         self.desktop.command("xdotool").args(keys).output().unwrap().status.success()
@@ -210,14 +210,14 @@ impl<'a> Window<'a> {
         self.desktop.xdotool(&["mousemove", "--window", &self.id, &format!("{x:.0}"), &format!("{y:.0}")]);
     }
 
-    /// Processor time used so far, in clock ticks.
+    /// Returns the processor time used since the start, in clock ticks.
     fn ticks(&self) -> u64 {
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).unwrap();
         let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
         fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
     }
 
-    /// Closes the window as its manager does; returns the program's exit code and what it said.
+    /// Closes the window as a window manager does; returns the program's exit code and its output.
     fn close(self) -> (Option<i32>, String) {
         self.close_by(&["alt+F4"])
     }
@@ -226,7 +226,7 @@ impl<'a> Window<'a> {
     fn close_by(mut self, keys: &[&str]) -> (Option<i32>, String) {
         let mut asked: Option<Instant> = None;
         let status = wait_for("the program to end", || {
-            // A key can get lost while windows change hands: asked again, as a person would.
+            // A key can be lost while another window gets the focus, so that it is pressed again.
             if asked.is_none_or(|at| at.elapsed() > AGAIN) {
                 keys.iter().for_each(|key| _ = self.key(key));
                 asked = Some(Instant::now());
@@ -236,12 +236,12 @@ impl<'a> Window<'a> {
         (status.code(), self.said())
     }
 
-    /// Closes the window of a program that has nothing to complain about.
+    /// Closes the window, and checks that the program ends without an error.
     fn close_well(self) {
         Self::check_end(&self.close());
     }
 
-    /// Closes the window of a program that has nothing to complain about, and discards the edits.
+    /// Closes the window, discards the edits, and checks that the program ends without an error.
     fn discard_well(self) {
         Self::check_end(&self.close_by(&["alt+F4", "d"]));
     }
@@ -270,7 +270,7 @@ fn wait_for<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// The article's scene at rest, laid out as in the window but without one.
+/// Returns the article's scene at rest, with the layout of the window but without a display.
 fn laid_out() -> Harness<'static, Lab> {
     let scene = scene("article");
     let simulation = Simulation::new(&scene).unwrap();
@@ -286,12 +286,12 @@ fn laid_out() -> Harness<'static, Lab> {
     harness
 }
 
-/// Where the panel has its force slider.
+/// Returns the rectangle of the panel's force slider.
 fn force_slider() -> egui::Rect {
     laid_out().get_by_role_and_label(Role::Slider, "Force").rect()
 }
 
-/// A whole PNG file in the order of X images, BGRx.
+/// Reads a PNG file in the order of X images, BGRx; returns `None` if the file is incomplete.
 fn read_bgrx(path: &std::path::Path) -> Option<Vec<u8>> {
     let mut reader = png::Decoder::new(BufReader::new(File::open(path).ok()?)).read_info().ok()?;
     let mut rgba = vec![0; reader.output_buffer_size()?];
@@ -299,7 +299,7 @@ fn read_bgrx(path: &std::path::Path) -> Option<Vec<u8>> {
     Some(rgba.chunks(4).flat_map(|p| [p[2], p[1], p[0], 0]).collect())
 }
 
-/// How many pixels differ; the fourth byte of an X image is no colour.
+/// Returns the number of pixels that differ; the fourth byte of an X image is no colour.
 fn changed(a: &[u8], b: &[u8]) -> usize {
     a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).take(3).any(|(a, b)| a.abs_diff(*b) > 24)).count()
 }
@@ -311,18 +311,18 @@ fn a_slider_is_dragged_the_picture_changes_and_close_exits_0() {
     let slider = force_slider();
     let at = |place: f32| (slider.left() + place * slider.width(), slider.center().y);
     let before = window.settle();
-    // The handle of 30 000 N; dragged towards less, the beam springs back.
+    // The slider's handle at 30 000 N; the beam springs back when it is dragged to a smaller force.
     window.point(at(0.67).0, at(0.67).1);
     desktop.xdotool(&["mousedown", "1"]);
     for place in [0.6, 0.5, 0.4, 0.3] {
         window.point(at(place).0, at(place).1);
     }
-    // The drag is seen before the button is let go.
+    // The picture changes before the button is released.
     wait_for("the beam to spring back", || (changed(&before, &window.image()) > 20_000).then_some(()));
     desktop.xdotool(&["mouseup", "1"]);
     window.point(900.0, 700.0);
     let after = window.settle();
-    // Of 1 024 000 pixels, the beam and its ghost cover tens of thousands.
+    // The beam and its ghost cover tens of thousands of 1 024 000 pixels.
     let moved = changed(&before, &after);
     assert!(moved > 20_000, "only {moved} pixels changed");
     window.discard_well();
@@ -338,7 +338,7 @@ fn the_window_survives_what_windows_go_through() {
     desktop.xdotool(&["windowmap", &window.id]);
     wait_for("the window to come back", || window.geometry().1.then_some(()));
     window.wait_for_picture("the same picture after restoring", &before);
-    // No side is smaller than what can be used.
+    // No side can be smaller than the smallest usable size.
     for (asked, size) in [
         ([1, 1], [480, 360]),
         ([500, 37], [500, 360]),
@@ -361,7 +361,7 @@ fn the_window_survives_what_windows_go_through() {
     window.close_well();
 }
 
-/// At rest nothing is redrawn: some two seconds within the next thirty use no processor time.
+/// At rest nothing is redrawn: at least one of 15 intervals of two seconds uses almost no processor time.
 #[test]
 fn an_idle_window_uses_no_processor() {
     let Some(desktop) = Desktop::start() else { return };
@@ -373,20 +373,20 @@ fn an_idle_window_uses_no_processor() {
         std::thread::sleep(Duration::from_secs(2));
         window.ticks() - before
     });
-    // Of 200 ticks; a loop that polls or redraws uses most of them, or all it can get.
+    // An interval has 200 ticks; a loop that polls or redraws uses most of them.
     assert!(least.take_while(|&used| used > 4).count() < 15, "no two seconds in thirty were idle");
     assert_eq!(window.close().0, Some(0));
 }
 
-/// A motion ends at rest, where nothing is drawn any more; pulled with the pointer the body follows, let go it comes to
-/// rest again, and a reset shows the same motion to the same end.
+/// A motion ends at rest, where nothing is redrawn. The body follows the pointer, comes to rest again after release,
+/// and a reset shows the same motion with the same end.
 #[test]
 fn a_body_in_motion_is_pulled_let_go_and_reset() {
     let Some(desktop) = Desktop::start() else { return };
-    // Damped so much that it rests after some seconds.
+    // The damping is strong enough that the body rests after some seconds.
     let window = Window::open(&desktop, &["run", "jelly", "--set", "dynamics.damping.mass=15"]);
     let before = window.settle();
-    // The middle of the view, where the body is.
+    // The body is in the middle of the view.
     let (x, y) = (498.0, 330.0);
     window.point(x, y);
     desktop.xdotool(&["mousedown", "1"]);
@@ -400,7 +400,7 @@ fn a_body_in_motion_is_pulled_let_go_and_reset() {
     window.point(1200.0, 735.0);
     window.settle();
     window.key("r");
-    // The colours' range grows with the pictures that were seen of the motion: it is not quite the same each time.
+    // The range of colours grows with the displayed frames of the motion, so that the pictures differ slightly.
     wait_for("the same end of the same motion", || {
         let image = window.image();
         (image.len() == before.len() && changed(&image, &before) < 100_000).then_some(())
@@ -408,7 +408,7 @@ fn a_body_in_motion_is_pulled_let_go_and_reset() {
     window.close_well();
 }
 
-/// S writes the picture that the window shows.
+/// The key S saves the picture that the window shows.
 #[test]
 fn s_saves_a_screenshot() {
     let Some(desktop) = Desktop::start() else { return };
@@ -431,8 +431,8 @@ fn s_saves_a_screenshot() {
     assert_eq!(window.close().0, Some(0));
 }
 
-/// A file that is dropped on the window is opened, and a click changes the language of all that is there: the picture is that
-/// of `shot`, and the language stays for the next time.
+/// A file dropped on the window is opened, and a click changes the language of the whole window. The picture is that of
+/// `shot`, and the language is kept for the next start.
 #[test]
 fn a_dropped_file_is_opened_and_shown_in_chinese() {
     let Some(desktop) = Desktop::start() else { return };
@@ -449,7 +449,7 @@ fn a_dropped_file_is_opened_and_shown_in_chinese() {
     let settings = desktop.config.path().join("warpbeam").join("settings.toml");
     desktop.xdotool(&["click", "1"]);
     wait_for("another language", || (changed(&english, &window.image()) > 5_000).then_some(()));
-    // Where there is nothing that a pointer lights up.
+    // A position without a control that the pointer would highlight.
     window.point(420.0, 735.0);
     let chinese = window.settle();
     let picture = folder.path().join("chinese.png");
@@ -463,8 +463,8 @@ fn a_dropped_file_is_opened_and_shown_in_chinese() {
     assert!(kept.contains("language = \"zh\""), "{kept}");
 }
 
-/// The tip of the arrow is dragged: the force goes where the pointer went, Ctrl+S saves it, `solve` converges to what is
-/// shown, and Ctrl+Z brings back what was before.
+/// When the tip of the arrow is dragged, the force follows the pointer. Ctrl+S saves it, `solve` converges to the
+/// displayed result, and Ctrl+Z restores the previous force.
 #[test]
 fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     let Some(desktop) = Desktop::start() else { return };
@@ -473,13 +473,13 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     std::fs::write(&path, scene("article").to_toml().unwrap()).unwrap();
     let window = Window::open(&desktop, &["run", path.to_str().unwrap()]);
     let harness = laid_out();
-    // Where there is nothing that a pointer lights up.
+    // A position without a control that the pointer would highlight.
     let (tip, corner) = (harness.state().arrow_tips()[0].1, (420.0, 735.0));
     window.point(corner.0, corner.1);
     let before = window.settle();
     window.point(tip.x, tip.y);
     desktop.xdotool(&["mousedown", "1"]);
-    // To the left and up: less force, and another direction.
+    // To the left and up: a smaller force in another direction.
     let way = egui::vec2(-60.0, -45.0);
     for part in [0.25, 0.5, 0.75, 1.0] {
         window.point(tip.x + part * way.x, tip.y + part * way.y);
@@ -507,7 +507,7 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     assert!(fx < 0.0 && fy < 0.0 && fx.hypot(fy) < 30_000.0, "{fx} {fy}");
     let json = solve_json(&[path.to_str().unwrap()]);
     assert_eq!(json["status"], "converged", "{json}");
-    // What is saved is what is shown; only times and counts of iterations differ.
+    // The saved scene gives the displayed picture; only times and numbers of iterations differ.
     let picture = folder.path().join("saved.png");
     let shot = warpbeam(&["shot", path.to_str().unwrap(), "-o", picture.to_str().unwrap(), "--size", "1280x800"]);
     assert_eq!(shot.status.code(), Some(0));
@@ -517,8 +517,8 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     window.discard_well();
 }
 
-/// Edits survive a program that is killed: the next window offers them, and Restore brings them back. An answered offer is
-/// not made again.
+/// Edits survive when the program is killed: the next window offers them, and Restore brings them back. An answered
+/// offer is not repeated.
 #[test]
 fn edits_survive_a_killed_window() {
     let Some(desktop) = Desktop::start() else { return };
@@ -554,7 +554,7 @@ fn edits_survive_a_killed_window() {
     assert!(!copies.join("1.toml").exists());
 }
 
-/// The pictures of a GIF file, and how long it lasts, s; `None` while it is not whole.
+/// Returns the number of pictures of a GIF file and its duration, s; `None` while the file is incomplete.
 fn movie(path: &std::path::Path) -> Option<(usize, f64)> {
     let bytes = std::fs::read(path).ok().filter(|bytes| bytes.last() == Some(&0x3b))?;
     let mut decoder = gif::Decoder::new(bytes.as_slice()).ok()?;
@@ -566,7 +566,7 @@ fn movie(path: &std::path::Path) -> Option<(usize, f64)> {
     Some((pictures, hundredths / 100.0))
 }
 
-/// V records the window until it is pressed again, or the window is closed.
+/// The key V records the window until it is pressed again or the window is closed.
 #[test]
 fn v_records_the_window_with_its_hands() {
     let Some(desktop) = Desktop::start() else { return };

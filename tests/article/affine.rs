@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix4, SMatrix, Vector2, Vector3};
 use thiserror::Error;
 use warpbeam::article::affine::{Affine2, AffineError, DEGENERATE};
 
-/// Why no affine map of a tetrahedron can be found.
+/// Reason why no affine map of a tetrahedron exists.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum Affine3Error {
     /// The four rest corners lie in a plane.
@@ -15,7 +15,7 @@ pub enum Affine3Error {
     NotFinite,
 }
 
-/// The matrix P of eq. (15): unknowns a₁₁ a₁₂ a₁₃ a₂₁ a₂₂ a₂₃, right-hand side x′₁ x′₂ x′₃ y′₁ y′₂ y′₃.
+/// Returns the matrix P of eq. (15): unknowns a₁₁ a₁₂ a₁₃ a₂₁ a₂₂ a₂₃, right-hand side x′₁ x′₂ x′₃ y′₁ y′₂ y′₃.
 ///
 /// [`Affine2::from_triangle`] solves the same system without forming it.
 #[must_use]
@@ -35,11 +35,11 @@ pub enum Diagonal {
     TwoFour,
 }
 
-/// The two affine maps of a quadrilateral, one a triangle (eqs. 21–22). They depend on the diagonal unless the
-/// deformation is affine.
+/// Returns the two affine maps of a quadrilateral, one for each triangle (eqs. 21–22). They depend on the diagonal
+/// unless the deformation is affine.
 ///
 /// # Errors
-/// As [`Affine2::from_triangle`], for either triangle.
+/// The errors of [`Affine2::from_triangle`], for either triangle.
 pub fn quadrilateral_maps(
     rest: [Vector2<f64>; 4],
     deformed: [Vector2<f64>; 4],
@@ -53,7 +53,7 @@ pub fn quadrilateral_maps(
     Ok([map(triangles[0])?, map(triangles[1])?])
 }
 
-/// x ↦ M x + d in space (eq. 23).
+/// Affine map x ↦ M x + d in space (eq. 23).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine3 {
     /// M.
@@ -63,8 +63,8 @@ pub struct Affine3 {
 }
 
 impl Affine3 {
-    /// The map that takes the corners `rest` of a tetrahedron to `deformed`: the solution of eq. (24), by one 3×3
-    /// inverse of the edge vectors instead of a 12×12 solve.
+    /// Returns the map that takes the corners `rest` of a tetrahedron to `deformed`. It solves eq. (24) with one
+    /// 3×3 inverse of the edge vectors instead of a 12×12 solve.
     ///
     /// # Errors
     /// [`Affine3Error::CoplanarCorners`] for a rest tetrahedron without volume, [`Affine3Error::NotFinite`].
@@ -84,7 +84,7 @@ impl Affine3 {
         Ok(Self { linear, translation: deformed[0] - linear * rest[0] })
     }
 
-    /// The homogeneous matrix of eq. (23).
+    /// Returns the homogeneous matrix of eq. (23).
     #[must_use]
     pub fn homogeneous(&self) -> Matrix4<f64> {
         let mut m = self.linear.to_homogeneous();

@@ -1,34 +1,34 @@
-//! The polar decomposition in space by iteration, and in the plane and in space read off the SVD
-//! (article eqs. 25–36 and its worked example).
+//! The polar decomposition in space by iteration, and in the plane and in space from the SVD (article
+//! eqs. 25–36 and its worked example).
 
 use nalgebra::allocator::Allocator;
 use nalgebra::{Const, DefaultAllocator, DimMin, DimSub, Matrix3, SMatrix, ToTypenum};
 use thiserror::Error;
 
-/// Why a matrix has no polar decomposition to return.
+/// Reason why a matrix has no polar decomposition.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum PolarError {
     /// An entry is NaN or infinite.
     #[error("the matrix is not finite: expected finite entries")]
     NotFinite,
-    /// The iteration met a matrix it cannot invert.
+    /// An iterate is singular and cannot be inverted.
     #[error("the matrix is singular: the iteration needs its inverse")]
     Singular,
-    /// The iteration did not become orthogonal.
+    /// The iterates did not become orthogonal within the allowed number of iterations.
     #[error("no orthogonal factor within {0} iterations: the matrix is close to singular")]
     NotConverged(usize),
 }
 
-/// F = Q S = V Q with Q orthogonal and S, V symmetric.
+/// Polar decomposition F = Q S = V Q with Q orthogonal and S, V symmetric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polar<const N: usize> {
-    /// Q. It is a reflection where det F < 0, unless the proper rotation was asked for.
+    /// Q. It is a reflection where det F < 0, unless the proper rotation was requested.
     pub orthogonal: SMatrix<f64, N, N>,
     /// The right factor S = QᵀF, positive definite unless det F < 0 and Q is proper. The article's U.
     pub right: SMatrix<f64, N, N>,
-    /// The left factor V = F Qᵀ. Erratum: the article's eq. (36) prints FᵀR beside numbers that are F Rᵀ.
+    /// The left factor V = F Qᵀ. Erratum: the article's eq. (36) prints FᵀR next to numbers that are F Rᵀ.
     pub left: SMatrix<f64, N, N>,
-    /// Iterations taken; 0 where none were needed.
+    /// Number of iterations; 0 if the input was already orthogonal or the decomposition is direct.
     pub iterations: usize,
 }
 
@@ -48,26 +48,28 @@ impl<const N: usize> Polar<N> {
 /// the next iterate is exact to rounding: tighter only costs iterations. The article's example needs seven.
 pub const ORTHOGONALITY: f64 = 1e-9;
 
-/// Enough for condition numbers up to 1/ε: each iteration halves the largest singular value's distance at first.
+/// Largest number of iterations, enough for condition numbers up to 1/ε: at first, each iteration halves the distance
+/// of the largest singular value.
 const MAX_ITERATIONS: usize = 128;
 
-/// F, or F over its largest entry where products of entries would leave the range of f64: Q does not depend on the size.
+/// Returns F, or F over its largest entry if products of entries would leave the range of f64. Q
+/// does not depend on the scale.
 fn of_ordinary_size<const N: usize>(f: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     let largest = f.amax();
     if largest == 0.0 || (1e-60..1e60).contains(&largest) { *f } else { f / largest }
 }
 
-/// The departure from orthogonality ‖½(RᵀR − I)‖, article eq. (35).
+/// Returns the departure from orthogonality ‖½(RᵀR − I)‖, article eq. (35).
 #[must_use]
 pub fn orthogonality_error(r: &Matrix3<f64>) -> f64 {
     ((r.transpose() * r - Matrix3::identity()) * 0.5).norm()
 }
 
-/// The 3×3 polar decomposition by R ← ½(R + R⁻ᵀ), article eqs. (33)–(36).
+/// Computes the 3×3 polar decomposition by R ← ½(R + R⁻ᵀ), article eqs. (33)–(36).
 ///
-/// Where det F < 0 the iteration ends on a *reflection*, as the article's own example does (det = −110.96, its printed
-/// R has det −1). A corotational code needs [`proper_rotation3`]. Erratum: the A⁻ᵀ printed with that example is A⁻¹,
-/// untransposed.
+/// Where det F < 0 the iteration ends on a *reflection*, as the article's own example does (det = −110.96, its
+/// printed R has det −1). A corotational code needs [`proper_rotation3`]. Erratum: the A⁻ᵀ printed with that
+/// example is A⁻¹, untransposed.
 ///
 /// # Errors
 /// [`PolarError::Singular`] where the inverse does not exist, [`PolarError::NotConverged`], [`PolarError::NotFinite`].
@@ -79,7 +81,7 @@ pub fn polar3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
     if largest == 0.0 {
         return Err(PolarError::Singular);
     }
-    // Ordinary matrices are iterated as they are, so that the counts are the article's.
+    // Matrices of ordinary size are not scaled, so that the numbers of iterations are the article's.
     let mut r = of_ordinary_size(f);
     for iteration in 0..MAX_ITERATIONS {
         if orthogonality_error(&r) < ORTHOGONALITY {
@@ -94,11 +96,11 @@ pub fn polar3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
     Err(PolarError::NotConverged(MAX_ITERATIONS))
 }
 
-/// The proper rotation nearest to F: [`polar3`] where det F > 0, else its reflection with the direction of the least
-/// stretch turned round, so that det = +1.
+/// Computes the proper rotation nearest to F: [`polar3`] where det F > 0, else its reflection with the direction of the
+/// least stretch reversed, so that det = +1.
 ///
 /// # Errors
-/// As [`polar3`].
+/// The errors of [`polar3`].
 pub fn proper_rotation3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
     let polar = polar3(f)?;
     if polar.orthogonal.determinant() > 0.0 {
@@ -112,20 +114,20 @@ pub fn proper_rotation3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
     Ok(Polar::new(f, polar.orthogonal * flip, polar.iterations))
 }
 
-/// The polar decomposition read off the SVD F = U Σ Vᵀ (article eqs. 25, 31, 32): Q = U Vᵀ, left factor U Σ Uᵀ, right
-/// factor V Σ Vᵀ. It exists for singular F too, where it is not unique.
+/// Computes the polar decomposition from the SVD F = U Σ Vᵀ (article eqs. 25, 31, 32): Q = U Vᵀ, left factor U Σ Uᵀ,
+/// right factor V Σ Vᵀ. It exists for singular F too, where it is not unique.
 ///
 /// Erratum: the article's eq. (31) writes U V⁻¹ for U Vᵀ, the same thing for an orthogonal V.
 ///
 /// # Errors
-/// [`PolarError::NotFinite`]; [`PolarError::NotConverged`] where the SVD gives up.
+/// [`PolarError::NotFinite`]; [`PolarError::NotConverged`] where the SVD does not converge.
 pub fn polar_from_svd<const N: usize>(f: &SMatrix<f64, N, N>) -> Result<Polar<N>, PolarError>
 where
     Const<N>: ToTypenum + DimMin<Const<N>, Output = Const<N>> + DimSub<Const<1>>,
     DefaultAllocator: Allocator<<Const<N> as DimSub<Const<1>>>::Output>,
 {
     const MAX_SWEEPS: usize = 1000;
-    // nalgebra's SVD does not return for NaN.
+    // nalgebra's SVD does not return if an entry is NaN.
     if !f.iter().all(|v| v.is_finite()) {
         return Err(PolarError::NotFinite);
     }

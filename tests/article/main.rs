@@ -1,4 +1,5 @@
-//! The article's formulas written out: affine maps, the SVD and its reading, the 3×3 iteration, its examples and errata.
+//! Tests of the article's formulas: affine maps, the SVD and its interpretation, the
+//! 3×3 iteration, its examples and errata.
 
 mod affine;
 mod decomposition;
@@ -27,7 +28,7 @@ fn corners<const N: usize>(points: [[f64; 2]; N]) -> [Vector2<f64>; N] {
 
 const TRIANGLE: [[f64; 2]; 3] = [[0.3, -0.2], [2.1, 0.4], [0.9, 1.7]];
 
-/// The article's system (13) and the direct map agree: P a = y.
+/// Checks that the article's system (13) and the direct map agree: P a = y.
 fn assert_solves_the_system(rest: [Vector2<f64>; 3], deformed: [Vector2<f64>; 3], map: &Affine2) {
     let m = map.homogeneous();
     let a = SVector::<f64, 6>::from_row_slice(&[m[(0, 0)], m[(0, 1)], m[(0, 2)], m[(1, 0)], m[(1, 1)], m[(1, 2)]]);
@@ -87,7 +88,7 @@ fn a_quadrilateral_has_two_maps_that_depend_on_the_diagonal() {
     let deformed = corners([[0.0, 0.0], [2.0, 0.3], [2.5, 1.6], [-0.2, 1.0]]);
     let one_three = quadrilateral_maps(rest, deformed, Diagonal::OneThree).unwrap();
     let two_four = quadrilateral_maps(rest, deformed, Diagonal::TwoFour).unwrap();
-    // Each map takes its corners where they go.
+    // Each map takes its corners to their deformed positions.
     for (map, corners) in
         [(one_three[0], [0, 1, 2]), (one_three[1], [0, 2, 3]), (two_four[0], [0, 1, 3]), (two_four[1], [1, 2, 3])]
     {
@@ -95,14 +96,14 @@ fn a_quadrilateral_has_two_maps_that_depend_on_the_diagonal() {
             assert!((map.apply(rest[i]) - deformed[i]).norm() < 1e-13);
         }
     }
-    // All four differ: there is no one map of the quadrilateral, and the diagonal matters.
+    // All four maps differ: the quadrilateral has no single map, and the diagonal matters.
     let maps = [one_three[0], one_three[1], two_four[0], two_four[1]];
     for (i, a) in maps.iter().enumerate() {
         for b in &maps[..i] {
             assert!((a.linear - b.linear).norm() > 0.1);
         }
     }
-    // Unless the deformation is affine.
+    // The maps agree if the deformation is affine.
     let affine = rest.map(|p| Vector2::new(1.0 + 2.0 * p.x - p.y, 0.5 * p.x + 3.0 * p.y));
     let a = quadrilateral_maps(rest, affine, Diagonal::OneThree).unwrap();
     let b = quadrilateral_maps(rest, affine, Diagonal::TwoFour).unwrap();
@@ -119,7 +120,7 @@ fn a_tetrahedron_has_one_map() {
     let map = Affine3::from_tetrahedron(rest, rest.map(|p| m * p + d)).unwrap();
     assert!((map.linear - m).norm() < 1e-12 && (map.translation - d).norm() < 1e-12);
     assert!((map.homogeneous().fixed_view::<3, 3>(0, 0) - m).norm() < 1e-12);
-    // Eq. (24), all twelve rows of it, by a general solve.
+    // A general solver gives the same for all twelve rows of eq. (24).
     let p = SMatrix::<f64, 12, 12>::from_fn(|row, column| {
         let corner = rest[row % 4];
         if row / 4 == column / 4 { [corner.x, corner.y, corner.z, 1.0][column % 4] } else { 0.0 }
@@ -135,7 +136,7 @@ fn a_tetrahedron_has_one_map() {
     assert_eq!(Affine3::from_tetrahedron(flat, rest), Err(Affine3Error::CoplanarCorners));
 }
 
-/// Eq. (26): a shear is a rotation, a stretch and a rotation; the printed singular values and factors.
+/// Eq. (26): a shear is a rotation, a stretch and a rotation, with the printed singular values and factors.
 #[test]
 fn article_eq_26_svd_of_a_shear() {
     let shear = Matrix2::new(1.0, 1.0, 0.0, 1.0);
@@ -147,7 +148,7 @@ fn article_eq_26_svd_of_a_shear() {
     assert!((p.right - v_t.transpose() * sigma * v_t).norm() < 1e-3, "{}", p.right);
     assert!((p.left - u * sigma * u.transpose()).norm() < 1e-3, "{}", p.left);
     assert!((p.orthogonal - u * v_t).norm() < 1e-3);
-    // Left and right factors share one rotation, that of the closed form.
+    // Left and right factors share one rotation, which is that of the closed form.
     assert!((p.orthogonal - polar(&shear).unwrap().matrix()).norm() < 1e-14);
     assert!((p.orthogonal * p.right - shear).norm() < 1e-14 && (p.left * p.orthogonal - shear).norm() < 1e-14);
 }
@@ -179,7 +180,7 @@ fn article_example_of_the_3x3_iteration() {
     let r = Matrix3::new(0.998, 0.058, -0.021, 0.039, -0.332, 0.942, -0.047, 0.941, 0.334);
     let u = Matrix3::new(8.497, 0.341, 2.702, 0.341, 5.184, 3.872, 2.702, 3.872, 6.124);
     let v = Matrix3::new(8.398, 2.779, 1.056, 2.779, 3.790, 3.225, 1.056, 3.225, 7.618);
-    // Printed to three decimals, from a matrix printed to three decimals.
+    // The article prints three decimals, computed from a matrix printed to three decimals.
     for (ours, printed) in [(p.orthogonal, r), (p.right, u), (p.left, v)] {
         assert!((ours - printed).amax() < 1.6e-3, "{ours} {printed}");
     }
@@ -187,7 +188,7 @@ fn article_example_of_the_3x3_iteration() {
     assert!((p.left * p.orthogonal - article_matrix()).norm() < 1e-8);
 }
 
-/// Erratum: the V printed beside eq. (36) is F Rᵀ; FᵀR, as the equation says, is U transposed.
+/// Erratum: the V printed next to eq. (36) is F Rᵀ; FᵀR, as in the equation, is U transposed.
 #[test]
 fn erratum_eq_36_v_is_f_r_transposed() {
     let f = article_matrix();
@@ -197,8 +198,8 @@ fn erratum_eq_36_v_is_f_r_transposed() {
     assert!((as_printed - p.right).norm() < 1e-8);
 }
 
-/// Erratum: what the example prints as A⁻ᵀ is A⁻¹. A and A⁻ᵀ have the same orthogonal factor; the printed matrix has its
-/// transpose.
+/// Erratum: the matrix printed as A⁻ᵀ in the example is A⁻¹. A and A⁻ᵀ have the same orthogonal factor; the printed
+/// matrix has its transpose.
 #[test]
 fn erratum_the_printed_inverse_is_not_transposed() {
     let printed = Matrix3::new(0.157, -0.126, 0.025, 0.105, -0.402, 0.279, -0.139, 0.464, -0.133);
@@ -207,7 +208,7 @@ fn erratum_the_printed_inverse_is_not_transposed() {
     assert!((of_printed - of_a).amax() > 0.02, "{of_printed} {of_a}");
 }
 
-/// Erratum: the example's R is a reflection; the proper rotation is another one.
+/// Erratum: the example's R is a reflection; the proper rotation is a different matrix.
 #[test]
 fn erratum_the_example_is_a_reflection() {
     let f = article_matrix();
@@ -220,7 +221,7 @@ fn erratum_the_example_is_a_reflection() {
     assert!((proper.orthogonal * proper.right - f).norm() < 1e-8);
 }
 
-/// Erratum: eq. (31) writes U V⁻¹ for U Vᵀ: the same, as what the SVD is read for is orthogonal.
+/// Erratum: eq. (31) writes U V⁻¹ for U Vᵀ; both are the same, because the factors of the SVD are orthogonal.
 #[test]
 fn erratum_eq_31_inverse_and_transpose_agree() {
     let q = polar_from_svd(&article_matrix()).unwrap().orthogonal;
@@ -250,7 +251,7 @@ fn numbers_out_of_range_are_refused() {
         let matrix = Matrix3::repeat(bad);
         assert!(polar3(&matrix).is_err() && proper_rotation3(&matrix).is_err());
         match polar_from_svd(&matrix) {
-            // Every size has a decomposition.
+            // Matrices of every magnitude have a decomposition.
             Ok(polar) => assert!(bad.is_finite() && orthogonality_error(&polar.orthogonal) < 1e-9, "{bad}: {polar:?}"),
             Err(error) => assert_eq!((error, bad.is_finite()), (PolarError::NotFinite, false), "{bad}"),
         }

@@ -1,4 +1,4 @@
-//! A program that files are dropped from: the source of X's drag and drop protocol (XDND 5).
+//! Drops a file on a window, as the source of X's drag and drop protocol (XDND 5).
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -19,7 +19,7 @@ x11rb::atom_manager! {
     }
 }
 
-/// Drops a file on a window of a display, and waits until its program has taken it.
+/// Drops a file on a window of a display, and waits until the window's program has taken it.
 pub fn drop_file(display: &str, window: u32, file: &Path, patience: Duration) {
     const VERSION: u32 = 5;
     let (connection, screen) = x11rb::connect(Some(display)).unwrap();

@@ -1,4 +1,4 @@
-//! The controls of the window, found by their names.
+//! Finds and operates the window's controls by their labels.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use warpbeam::app::Lab;
 
-/// What is behind a fold of the panel.
+/// Folds of the panel, with the labels of their controls.
 const FOLDS: [(&str, &[&str]); 6] = [
     ("Gravity, moment: ", &["Gravity", "Moment"]),
     ("Loads and supports: ", &["Add", "Force on", "Held at", "Moment on"]),
@@ -16,7 +16,8 @@ const FOLDS: [(&str, &[&str]); 6] = [
     ("Details: ", &["stable"]),
 ];
 
-/// Opens the fold that something is behind, if it is shut, and shuts the others: all of them are longer than the window.
+/// Opens the fold that contains the control of this label and closes the others, because all of them together are
+/// taller than the window.
 pub fn unfold(harness: &mut Harness<'_, Lab>, label: &str) {
     if !FOLDS.iter().any(|(_, labels)| labels.contains(&label)) {
         return;
@@ -31,11 +32,11 @@ pub fn unfold(harness: &mut Harness<'_, Lab>, label: &str) {
     }
 }
 
-/// Picks an entry of a picker; edits that another scene would lose are discarded.
+/// Selects an entry of a combo box. If the program asks, unsaved edits are discarded.
 pub fn pick(harness: &mut Harness<'_, Lab>, picker: &str, entry: &str) {
     harness.get_by_role_and_label(Role::ComboBox, picker).click();
     harness.run();
-    // The list may be longer than what is seen of it.
+    // The list may be longer than its visible part.
     harness.get_by_role_and_label(Role::Button, entry).scroll_to_me();
     harness.run();
     harness.get_by_role_and_label(Role::Button, entry).click();
@@ -46,7 +47,7 @@ pub fn pick(harness: &mut Harness<'_, Lab>, picker: &str, entry: &str) {
     }
 }
 
-/// Types a number into the field of this label.
+/// Types text into the number field of this label, and presses Enter.
 pub fn type_into(harness: &mut Harness<'_, Lab>, label: &str, text: &str) {
     unfold(harness, label);
     harness.get_by_role_and_label(Role::SpinButton, label).click();

@@ -1,4 +1,4 @@
-//! What tests of several topics need.
+//! Functions shared by the tests.
 #![allow(dead_code, reason = "each test uses its part")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -19,27 +19,27 @@ use std::process::{Command, Output};
 use warpbeam::scene::{Analysis, Scene, Source, open, registry};
 use warpbeam::simulation::{Simulation, Status};
 
-/// A built-in scene.
+/// Opens a built-in scene.
 pub fn scene(id: &str) -> Scene {
     scene_with(id, &[])
 }
 
-/// A built-in scene with `--set` assignments.
+/// Opens a built-in scene with `--set` assignments.
 pub fn scene_with(id: &str, set: &[&str]) -> Scene {
     open(&Source { name: id.into(), assignments: set.iter().map(|s| (*s).to_owned()).collect() }).unwrap()
 }
 
-/// The names of all built-in scenes.
+/// Returns the names of all built-in scenes.
 pub fn scene_ids() -> Vec<&'static str> {
     registry::BUILT_IN.iter().map(|b| b.id).collect()
 }
 
-/// The names of the built-in scenes that are analysed in this way.
+/// Returns the names of the built-in scenes with this kind of analysis.
 pub fn ids_of(analysis: Analysis) -> Vec<&'static str> {
     scene_ids().into_iter().filter(|id| scene(id).analysis == analysis).collect()
 }
 
-/// A scene that must converge, solved.
+/// Solves a scene; fails unless it converges.
 pub fn solved(scene: &Scene) -> Simulation {
     let mut simulation = Simulation::new(scene).unwrap();
     let status = simulation.solve().clone();
@@ -57,7 +57,7 @@ pub fn warpbeam_in(folder: &Path, args: &[&str]) -> Output {
     program(folder, args).output().unwrap()
 }
 
-/// The program, to be run in a folder, without a display.
+/// Returns the command that runs the program in a folder, without a display.
 pub fn program(folder: &Path, args: &[&str]) -> Command {
     let mut program = Command::new(env!("CARGO_BIN_EXE_warpbeam"));
     program.args(args).current_dir(folder);
@@ -75,27 +75,27 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// `solve --json` of a scene that converges.
+/// Returns the output of `solve --json`; fails unless the solve converges.
 pub fn solve_json(args: &[&str]) -> serde_json::Value {
     let output = warpbeam(&[&["solve", "--json"], args].concat());
     assert_eq!(output.status.code(), Some(0), "{args:?}: {}", stderr(&output));
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// A row of `tests/data/cantilever.csv`, in units of the length.
+/// Row of `tests/data/cantilever.csv`. Lengths are in units of the beam's length.
 #[derive(Debug)]
 pub struct Row {
     pub gravity: bool,
     pub length_over_height: f64,
     pub alpha: f64,
-    /// Of the load, rad.
+    /// Angle of the load, rad.
     pub angle: f64,
     pub elastica: nalgebra::Vector2<f64>,
     pub reissner: nalgebra::Vector2<f64>,
     pub reissner_angle: f64,
 }
 
-/// The reference table of clamped beams.
+/// Reads the reference table of clamped beams.
 pub fn cantilever_table() -> Vec<Row> {
     let text = include_str!("../data/cantilever.csv");
     text.lines()
@@ -117,7 +117,7 @@ pub fn cantilever_table() -> Vec<Row> {
         .collect()
 }
 
-/// A cantilever of height 1 and thickness 1 under the tip load α = P L² / (E I), pulled down.
+/// Returns a cantilever of height 1 and thickness 1 under the downward tip load P, given as α = P L² / (E I).
 pub fn cantilever(length_over_height: f64, alpha: f64, set: &[&str]) -> Scene {
     let length = length_over_height;
     let force = alpha * 1e6 / 12.0 / (length * length);

@@ -1,4 +1,4 @@
-//! What tests of bodies in motion need.
+//! Functions shared by tests of dynamics.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use warpbeam::assembly::{Forces, Mass, Matrix};
@@ -8,7 +8,7 @@ use warpbeam::{IntegratorKind, Scene, Simulation, Status};
 
 use super::scene;
 
-/// A built-in scene with another integrator, step, solves a step and duration.
+/// Returns a built-in scene with another integrator, time step, number of solves per step and duration.
 pub fn with(id: &str, kind: IntegratorKind, time_step: f64, iterations: u32, duration: f64) -> Scene {
     let mut scene = scene(id);
     (scene.dynamics.integrator, scene.dynamics.time_step) = (kind, time_step);
@@ -30,7 +30,8 @@ pub fn momentum(simulation: &Simulation) -> Momentum {
     simulation.solution().motion.unwrap().momentum
 }
 
-/// A small body's first mode, 1 mm long, under linear theory's matrices at rest and the mass its integrator moves.
+/// Returns the first mode of a small body, scaled to 1 mm, from the matrices of linear theory at rest and the
+/// integrator's mass matrix.
 pub fn first_mode(simulation: &Simulation) -> Vec<Vector2<f64>> {
     let system = simulation.system();
     let (n, nodes) = (system.dofs(), system.mesh().nodes().len());

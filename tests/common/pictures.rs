@@ -1,4 +1,4 @@
-//! Pictures of labs, and how they differ.
+//! Pictures of scenes, and measures of their difference.
 #![allow(dead_code, reason = "each test uses its part")]
 
 use std::fs::File;
@@ -12,7 +12,7 @@ use warpbeam::scene::{Analysis, Source};
 
 use super::{scene, scene_with};
 
-/// How a scene is changed for its picture: a body in motion is drawn half a second after its start.
+/// Returns the `--set` assignments for a scene's picture: a body in motion is drawn half a second after its start.
 pub fn for_picture(id: &str) -> &'static [&'static str] {
     match scene(id).analysis {
         Analysis::Dynamic => &["dynamics.duration=0.5"],
@@ -20,7 +20,7 @@ pub fn for_picture(id: &str) -> &'static [&'static str] {
     }
 }
 
-/// A scene in a lab.
+/// Returns a lab with a built-in scene, changed by [`for_picture`].
 pub fn lab(id: &str) -> Lab {
     let scene = scene_with(id, for_picture(id));
     let simulation = Simulation::new(&scene).unwrap();
@@ -41,12 +41,12 @@ pub fn pixel(picture: &Picture, x: u32, y: u32) -> [u8; 3] {
     [picture.rgba[at], picture.rgba[at + 1], picture.rgba[at + 2]]
 }
 
-/// The largest difference of a colour's components.
+/// Returns the largest difference of two colours' components.
 pub fn distance(a: [u8; 3], b: [u8; 3]) -> u8 {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap()
 }
 
-/// The share of pixels that differ by more than antialiasing on another driver would make them.
+/// Returns the share of pixels that differ visibly, that is by more than the antialiasing of different drivers.
 pub fn difference(a: &Picture, b: &Picture) -> f64 {
     const VISIBLE: u8 = 24;
     assert_eq!(a.size, b.size);

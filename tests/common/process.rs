@@ -1,4 +1,4 @@
-//! Programs that are interrupted. Conditions are waited for, not durations.
+//! Starts and interrupts the program. The functions wait for conditions, not for fixed times.
 
 use std::fs::{self, File};
 use std::io::Read as _;
@@ -12,7 +12,7 @@ use nix::unistd::Pid;
 
 use super::program;
 
-/// A running program; ended with the test that started it, however that ends.
+/// A running program, killed when the value is dropped, so that it never outlives its test.
 #[derive(Debug)]
 pub struct Running(Option<Child>);
 
@@ -25,12 +25,12 @@ impl Drop for Running {
     }
 }
 
-/// Starts the program.
+/// Starts the program with its output piped.
 pub fn start(folder: &Path, args: &[&str]) -> Running {
     Running(Some(program(folder, args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()))
 }
 
-/// Waits until something is so; fails where it never will be.
+/// Waits until `condition` returns `true`. Fails after 300 s.
 pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
     const NEVER: Duration = Duration::from_secs(300);
     let began = Instant::now();
@@ -45,7 +45,7 @@ impl Running {
         self.0.as_ref().unwrap().id()
     }
 
-    /// `true` if the process handles SIGINT itself.
+    /// Returns `true` if the process handles SIGINT itself.
     pub fn listens(&self) -> bool {
         const SIGINT_BIT: u64 = 1 << 1;
         let status = fs::read_to_string(format!("/proc/{}/status", self.id())).unwrap();
@@ -53,19 +53,20 @@ impl Running {
         u64::from_str_radix(caught.trim(), 16).unwrap() & SIGINT_BIT != 0
     }
 
-    /// Presses Ctrl-C, and waits for the end.
+    /// Sends SIGINT (Ctrl-C) and waits for the program's end.
     pub fn interrupt(self) -> Output {
         self.end_by(Signal::SIGINT)
     }
 
-    /// Sends a signal, and waits for the end.
+    /// Sends a signal and waits for the program's end.
     pub fn end_by(mut self, signal: Signal) -> Output {
         kill(Pid::from_raw(self.id() as i32), signal).unwrap();
         self.0.take().unwrap().wait_with_output().unwrap()
     }
 }
 
-/// Runs the program with a terminal for standard error; returns its exit code and what it wrote there.
+/// Runs the program with standard error connected to a terminal. Returns its exit code and the
+/// text written to the terminal.
 pub fn on_a_terminal(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
     let terminal = openpty(None, None).unwrap();
     let child = program(folder, args)
@@ -76,7 +77,7 @@ pub fn on_a_terminal(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
         .spawn()
         .unwrap();
     let mut running = Running(Some(child));
-    // The end of the program is an error of the terminal's reader.
+    // Reading the terminal fails once the program has ended.
     let (mut screen, mut text) = (File::from(terminal.master), Vec::new());
     let _ = screen.read_to_end(&mut text);
     let code = running.0.take().unwrap().wait().unwrap().code();

@@ -9,7 +9,7 @@ use warpbeam::Scene;
 pub struct Random(pub u64);
 
 impl Random {
-    /// From 0 to 1.
+    /// Returns a number from 0 to 1.
     pub fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -22,7 +22,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// A whole number below `count`.
+    /// Returns a whole number below `count`.
     pub fn below(&mut self, count: usize) -> usize {
         (self.unit() * count as f64) as usize
     }
@@ -32,7 +32,7 @@ impl Random {
     }
 }
 
-/// A static rectangle of aspect 0.1 to 1000 with supports, loads and a probe of every kind, on a coarse mesh of its own.
+/// Returns a static rectangle of aspect 0.1 to 1000 with supports, loads and a probe of every kind, on a coarse mesh.
 pub fn scene(seed: u64) -> Scene {
     let mut random = Random(seed.wrapping_mul(0x5851_F42D_4C95_7F2D));
     let random = &mut random;
@@ -50,7 +50,7 @@ pub fn scene(seed: u64) -> Scene {
     );
     let [start, end] = if lies { ["left", "right"] } else { ["bottom", "top"] };
     let side = random.one_of(if lies { &["top", "bottom"] } else { &["left", "right"] });
-    // A point by its place along and across.
+    // Returns a point by its position along and across the rectangle.
     let at = |along: f64, across: f64| match lies {
         true => [along * length, across * height],
         false => [(across + 0.5) * length, (along - 0.5) * height],
@@ -71,7 +71,7 @@ pub fn scene(seed: u64) -> Scene {
         }
         // A roller at the other end.
         4 => clamp(start) + &format!("[[support]]\nedge = \"{end}\"\nfix = [\"{across_axis}\"]\n"),
-        // The other end is moved, or turned.
+        // The other end is displaced or rotated.
         _ => {
             let moved = vector(0.0, random.between(-0.02, 0.02) * long);
             let turn = if random.unit() < 0.3 { random.between(-0.2, 0.2) } else { 0.0 };
@@ -83,7 +83,7 @@ pub fn scene(seed: u64) -> Scene {
     let unit = if slender { 1e6 * short.powi(3) / 12.0 / long.powi(2) } else { 1e5 * short };
     for _ in 0..=random.below(2) {
         let size = unit * 10f64.powf(random.between(-2.0, 0.5));
-        // Across, or leaning by up to a right angle towards tension.
+        // Across the rectangle, or inclined by up to a right angle towards tension.
         let angle = random.between(0.0, std::f64::consts::FRAC_PI_2);
         let sign = random.one_of(&[-1.0, 1.0]);
         let force = vector(size * angle.cos() * if is_cantilever { 1.0 } else { 0.1 }, sign * size * angle.sin());

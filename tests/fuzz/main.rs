@@ -1,5 +1,5 @@
-//! Fuzz targets: the scene parser, the Gmsh reader, and the solver on small scenes. No panic, no hang, nothing that is
-//! not finite, memory bounded. `cargo test` runs a bounded number of random inputs; README says how coverage guides them.
+//! Fuzz tests of the scene parser, the Gmsh reader, and the solver on small scenes: no panic, no hang, finite results
+//! and bounded memory. `cargo test` runs a bounded number of random inputs; the README describes coverage-guided runs.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -14,7 +14,7 @@ use warpbeam::simulation::{Field, Simulation, Status};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// What any input here may take, all tests of this file at once.
+/// Largest memory that all tests of this file together may use, MB.
 const MOST_MEMORY_MB: f32 = 256.0;
 
 fn memory_is_bounded() {
@@ -22,7 +22,7 @@ fn memory_is_bounded() {
     assert!(peak < MOST_MEMORY_MB, "{peak} MB");
 }
 
-/// Choices taken from the bytes of an input, and from a sequence that they start when they have run out.
+/// Choices taken from the bytes of an input, then from a random sequence seeded with them.
 struct Choices<'a> {
     bytes: &'a [u8],
     state: u64,
@@ -55,7 +55,7 @@ impl<'a> Choices<'a> {
         all[self.below(all.len())]
     }
 
-    /// Numbers over many decades, and the awkward ones.
+    /// Returns numbers over many decades, and special values.
     fn number(&mut self) -> String {
         match self.byte() {
             0..=159 => format!("{:e}", 10f64.powf(f64::from(self.byte()) / 32.0 - 3.0)),
@@ -66,7 +66,7 @@ impl<'a> Choices<'a> {
         }
     }
 
-    /// A scene file with every word and number chosen; some are refused, and must be refused politely.
+    /// Returns a scene file with random words and numbers. Some are invalid and must give an error, not a panic.
     fn scene(&mut self) -> String {
         let edges = ["left", "right", "bottom", "top"];
         let mut text = format!(
@@ -124,7 +124,7 @@ impl<'a> Choices<'a> {
         text
     }
 
-    /// A text with pieces replaced, removed, doubled or put in.
+    /// Returns the text with some pieces replaced, removed, doubled or inserted.
     fn damage(&mut self, text: &str) -> String {
         let mut letters: Vec<char> = text.chars().collect();
         for _ in 0..=self.below(3) {
@@ -144,7 +144,7 @@ impl<'a> Choices<'a> {
     }
 }
 
-/// Solves the scene of a text; says whether it could be set up, and converged after some steps.
+/// Solves the scene of a text. Returns whether it could be set up, and whether it converged.
 fn solve(text: &str) -> [bool; 2] {
     let Ok(scene) = Scene::from_toml(text) else { return [false; 2] };
     let Ok(mut simulation) = Simulation::new(&scene) else { return [false; 2] };
@@ -198,7 +198,7 @@ fn the_scene_parser_reads_or_refuses_any_text() {
     });
 }
 
-/// Any text is a number in any unit, or is refused; a scene reads the same number.
+/// Any text is read as a number in any unit, or is refused; a scene reads the same number.
 #[test]
 fn units_are_read_or_refused() {
     let words = [
@@ -231,7 +231,7 @@ fn units_are_read_or_refused() {
     assert!(accepted.into_inner() > 200);
 }
 
-/// A square of two triangles, its left side named.
+/// A square of two triangles whose left side has a name.
 const SQUARE: &str = include_str!("../data/square.msh");
 
 #[test]
@@ -252,7 +252,7 @@ fn the_gmsh_reader_reads_or_refuses_any_file() {
     });
 }
 
-/// What is too large is refused before room is made for it.
+/// Scenes and meshes that are too large are refused before memory is allocated for them.
 #[test]
 fn the_enormous_is_refused_before_it_is_allocated() {
     let built_in = registry::find("article").unwrap().toml;

@@ -1,4 +1,4 @@
-//! What every element must do.
+//! Tests that every element must pass.
 
 use std::f64::consts::PI;
 
@@ -51,7 +51,7 @@ pub fn trials() -> Vec<Trial> {
     suite("element", ELEMENTS.iter().map(|e| (e.id.to_owned(), e.kind)), TESTS)
 }
 
-/// Points inside a cell.
+/// Returns points inside a cell.
 fn samples(entry: &ElementType) -> Vec<[f64; 2]> {
     (entry.cell.lattice)(5).points.into_iter().map(|[x, y]| [0.9 * x + 0.03, 0.9 * y + 0.02]).collect()
 }
@@ -108,7 +108,7 @@ fn sides_run_around(kind: ElementKind) {
     assert_eq!(entry.sides.len(), corners);
     for (i, side) in entry.sides.iter().enumerate() {
         assert_eq!((side[0], side[side.len() - 1]), (i, (i + 1) % corners));
-        // Nodes in equal distances.
+        // Nodes are equally spaced.
         let place = |n: usize| Vector2::from(entry.nodes[n]);
         for (j, &n) in side.iter().enumerate() {
             let t = j as f64 / (side.len() - 1) as f64;
@@ -118,7 +118,7 @@ fn sides_run_around(kind: ElementKind) {
     }
 }
 
-/// ∫ g over the cell, by its lattice of small triangles and the rule of degree 2 in each.
+/// Integrates g over the cell, by its lattice of small triangles and the rule of degree 2 in each.
 fn integrate(entry: &ElementType, pieces: u32, g: impl Fn([f64; 2]) -> f64) -> f64 {
     let lattice = (entry.cell.lattice)(pieces);
     let mut sum = 0.0;
@@ -140,7 +140,8 @@ fn rules_integrate_what_they_must(kind: ElementKind) {
         assert!(rule.iter().all(|p| p.weight > 0.0 && (entry.cell.depth)(p.at) > 0.0));
         assert!((apply(rule, &|_| 1.0) - entry.cell.area).abs() < 1e-14);
     }
-    // Products of local gradients, and of shape functions. The fine rule itself errs by h³.
+    // Integrands are products of local gradients, and of shape functions. The fine rule
+    // itself has an error of order h³.
     for a in 0..entry.nodes.len() {
         for b in 0..=a {
             let stiffness = |at| {
@@ -190,7 +191,8 @@ fn children_and_lattice_cover_the_cell(kind: ElementKind) {
     }
 }
 
-/// A square [0, 2] × [−1, 1] of irregular elements with straight edges and, where they can be, curved inner sides.
+/// Returns a mesh of the square [0, 2] × [−1, 1] with irregular elements and, where the element
+/// allows it, curved inner sides.
 fn irregular_mesh(kind: ElementKind) -> Mesh {
     let square = Scene::beam(2.0, 2.0).with_cells(4, 3).with_element(kind);
     let mesh = Mesh::beam(square.beam.as_ref().unwrap()).unwrap();
@@ -201,7 +203,7 @@ fn irregular_mesh(kind: ElementKind) -> Mesh {
     mesh.moved(warp).unwrap()
 }
 
-/// Held like a bar: the left edge along x, one corner of it along y.
+/// Supports the body like a bar: the left edge along x, one corner of it along y.
 fn irregular_scene(plane: Plane) -> Scene {
     let material = Material { thickness: 0.5, plane, ..Material::new(100.0, 0.3) };
     Scene::named("Irregular").with_material(material).support("left", &[Axis::X]).support([0.0, -1.0], &[Axis::Y])
@@ -215,13 +217,13 @@ fn nodes(problem: &Problem) -> &[Vector2<f64>] {
     problem.system().mesh().nodes()
 }
 
-/// The state of a simulation of `problem` whose node at X is at `place(X)`, held or not.
+/// Returns the state in which the node at X is at `place(X)`, whether it is supported or not.
 fn state(problem: &Problem, place: impl Fn(Vector2<f64>) -> Vector2<f64>) -> State {
     let u: Vec<_> = nodes(problem).iter().map(|&x| place(x) - x).collect();
     common_state(problem, &u)
 }
 
-/// A state with this displacement, its rotations and turns.
+/// Returns the state with this displacement and the rotations that belong to it.
 fn common_state(problem: &Problem, u: &[Vector2<f64>]) -> State {
     problem.system().state_of(u).unwrap()
 }
@@ -232,7 +234,7 @@ fn forces(problem: &Problem, state: &State) -> Forces {
     forces
 }
 
-/// The dense matrix of a tangent over the free unknowns, the loads' part included where it is exact.
+/// Returns the dense matrix of a tangent over the free unknowns. An exact tangent includes the stiffness of the loads.
 fn dense(problem: &Problem, state: &State, tangent: Tangent, load_factor: f64) -> DMatrix<f64> {
     let system = problem.system();
     let mut matrix = Matrix::new(system.pattern());
@@ -291,7 +293,7 @@ fn refinement_keeps_the_body(kind: ElementKind) {
     }
 }
 
-/// A point of an element is found again at the place that the shape functions put it.
+/// A point of an element is located again from the position that the shape functions give it.
 fn material_points_are_found_in_curved_elements(kind: ElementKind) {
     let bend = |x: Vector2<f64>| Rotation::from_angle(0.6 * x.x).apply(Vector2::new(0.0, x.y - 3.0));
     let mesh = irregular_mesh(kind).moved(bend).unwrap();
@@ -311,12 +313,12 @@ fn material_points_are_found_in_curved_elements(kind: ElementKind) {
     let outside = MaterialPoint { element: mesh.element_count(), at: [0.1, 0.1] };
     assert_eq!(mesh.weights(outside), None);
     assert_eq!(mesh.locate(Vector2::new(50.0, 0.0)), None);
-    // A node on a side belongs to some element, whatever rounding says.
+    // A node on a side is located in some element, whatever the rounding.
     assert!(mesh.nodes().iter().all(|&x| mesh.locate(x).is_some()));
 }
 
-/// A linear displacement field has a constant strain, and no inner node feels a force: in linear theory as it is, in the
-/// warped one with a turn by 70° on top.
+/// A linear displacement field has a constant strain, and the force on every inner node is zero: in linear theory, and
+/// in the warped formulation with an added rotation by 70°.
 fn patch_test(kind: ElementKind) {
     let turn = Rotation::from_angle(70f64.to_radians());
     let (gradient, stretch) = (Matrix2::new(0.02, -0.01, 0.03, -0.015), Matrix2::new(1.02, 0.01, 0.01, 0.97));
@@ -336,7 +338,7 @@ fn patch_test(kind: ElementKind) {
     }
 }
 
-/// The patch test as a user would run it: p/E along, −ν p/E across, with every method.
+/// Patch test through the public interface: displacements p/E along and −ν p/E across, with every method.
 fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
     for method in METHODS {
         let mut scene = irregular_scene(Plane::Stress).force("right", [3.0, 0.0]).with_method(method.kind);
@@ -344,7 +346,7 @@ fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
         let mut simulation = Simulation::with_mesh(&scene, irregular_mesh(kind)).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged, "{}", method.id);
         let strain = 3.0 / (100.0 * 0.5 * 2.0);
-        // `auto` takes linear theory here, others iterate to the tolerance.
+        // `auto` uses linear theory here; the others iterate to the tolerance.
         for (x, u) in simulation.system().mesh().nodes().iter().zip(simulation.displacement()) {
             let expected = Vector2::new(strain * x.x, -0.3 * strain * (x.y + 1.0));
             assert!((u - expected).norm() < 1e-12, "{}: {u} {expected}", method.id);
@@ -352,8 +354,8 @@ fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
     }
 }
 
-/// The fields of a body that is stretched uniformly and turned, in closed form: the strain is S − I, and the von Mises
-/// stress of the Biot stress that of its deviator in space, with what plane strain adds across the plane.
+/// Fields of a uniformly stretched and rotated body match their closed forms: the strain is S − I, and the von Mises
+/// stress follows from the Biot stress's deviator in space, including the stress across the plane in plane strain.
 fn fields_of_a_uniform_stretch(kind: ElementKind) {
     let degrees = -70.0f64;
     let turn = Rotation::from_angle(degrees.to_radians());
@@ -395,8 +397,8 @@ fn fields_of_a_uniform_stretch(kind: ElementKind) {
     }
 }
 
-/// The energy of the strains that are shown is the elastic energy: ∫ ψ over the quadrature points, what an element's own
-/// modes add to the strain included.
+/// The energy of the strains at the quadrature points is the elastic energy. These strains include the
+/// part of an element's own modes.
 fn the_strains_at_points_hold_the_energy(kind: ElementKind) {
     for plane in [Plane::Stress, Plane::Strain] {
         let problem = problem(&irregular_scene(plane), kind);
@@ -416,7 +418,7 @@ fn the_strains_at_points_hold_the_energy(kind: ElementKind) {
     }
 }
 
-/// Areas over those at rest, and elements that are turned inside out, by the Jacobians of the shape functions.
+/// Area ratios and inverted elements agree with the Jacobians of the shape functions.
 fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Stress), kind);
     let (entry, mesh) = (kind.entry(), problem.system().mesh());
@@ -424,7 +426,7 @@ fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
         |x| x,
         bent,
         |x| Vector2::new(x.x * x.x * 0.4, x.y + 0.3 * x.x),
-        // A fold: part of the body is turned inside out.
+        // A fold: part of the body is inverted.
         |x| Vector2::new((2.0 * x.x).sin(), x.y + 0.2 * x.x * x.y),
     ];
     let mut inversions = Vec::new();
@@ -447,8 +449,8 @@ fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
     assert!(inversions[..2] == [0, 0] && inversions[3] > 1 && inversions[3] < mesh.element_count(), "{inversions:?}");
 }
 
-/// Of a body that turns by more than two radians from end to end, every quadrature point is seen with a rotation that is
-/// about its own.
+/// In a body whose ends are rotated against each other by more than two radians, the rotation at every quadrature point
+/// is close to the local one.
 fn points_are_seen_with_the_rotation_around_them(kind: ElementKind) {
     let scene = Scene::beam(16.0, 1.0).with_cells(16, 1).with_element(kind).clamp("left");
     let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
@@ -477,18 +479,18 @@ fn rigid_motions_give_no_force_and_no_energy(kind: ElementKind) {
     for degrees in [0.0f64, 1e-6, 10.0, 90.0, 179.0, -135.0] {
         let turn = Rotation::from_angle(degrees.to_radians());
         let state = state(&problem, |x| turn.apply(x) + Vector2::new(3.0, -20.0));
-        // Forces of a strain of 1 are about 100 N; coordinates of 20 leave roundings of 20 ε.
+        // A strain of 1 gives forces of about 100 N; coordinates of 20 give rounding errors of 20 ε.
         assert!(forces(&problem, &state).internal().iter().all(|f| f.norm() < 1e-11), "{degrees}°");
         assert!(problem.elastic_energy(&state) < 1e-25, "{degrees}°");
     }
 }
 
-/// A bent, stretched and turned state.
+/// Maps a point to a bent, stretched and rotated body.
 fn bent(x: Vector2<f64>) -> Vector2<f64> {
     Rotation::from_angle(0.8 + 0.3 * x.x).apply(x) * (1.0 + 0.1 * x.y - 0.2 * x.x)
 }
 
-/// f_int is the gradient of the energy, with R following x.
+/// f_int is the gradient of the energy, where R follows x.
 fn the_force_is_the_gradient_of_the_energy(kind: ElementKind) {
     const STEP: f64 = 1e-5;
     let problem = problem(&irregular_scene(Plane::Strain), kind);
@@ -539,14 +541,15 @@ fn the_tangent_is_the_derivative_of_the_force(kind: ElementKind) {
     let exact = dense(&problem, &start, Tangent::EXACT, FACTOR);
     let error = (&numeric - &exact).norm() / exact.norm();
     assert!(error < 1e-8, "{error:e}");
-    // G is what A lacks, and its positive part alone leaves a positive definite matrix.
+    // A + G is exact, and A with only the positive part of G is positive definite.
     let parts = dense(&problem, &start, Tangent::WARPED, 0.0) + dense(&problem, &start, Tangent::GEOMETRIC, 0.0);
     assert!((parts - dense(&problem, &start, Tangent::EXACT, 0.0)).norm() < 1e-12 * exact.norm());
     let definite = dense(&problem, &start, Tangent::DEFINITE, 0.0);
     assert!(definite.symmetric_eigenvalues().min() > 0.0);
 }
 
-/// A + max(G, 0) lowers no eigenvalue: it is A + G and something positive, in compression, tension and bending.
+/// A + max(G, 0) lowers no eigenvalue: it exceeds A + G by a positive semidefinite matrix, in
+/// compression, tension and bending.
 fn its_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Stress), kind);
     for (along, across) in [(0.9, 0.9), (1.1, 1.05), (0.8, 1.2)] {
@@ -555,14 +558,14 @@ fn its_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
             [Tangent::EXACT, Tangent::DEFINITE, Tangent::GEOMETRIC].map(|t| dense(&problem, &start, t, 0.0));
         let added = (&definite - &exact).symmetric_eigenvalues();
         assert!(added.min() > -1e-12 * exact.norm() && added.max() > 1e-3 * geometric.norm(), "{added}");
-        // What is added is no more than G takes away somewhere.
+        // The added part is at most the norm of G times the number of elements.
         assert!(added.max() <= geometric.norm() * problem.system().mesh().element_count() as f64);
         assert!(definite.symmetric_eigenvalues().min() > 0.0);
     }
 }
 
-/// The force between two states, however far apart: its work from one to the other is the difference of their energies,
-/// and it moves and turns no body.
+/// The work of the force between two states, however far apart, is the difference of their energies. The force has no
+/// resultant and no moment.
 fn between_two_states_it_works_by_the_energys_difference(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Strain), kind);
     let (system, moduli) = (problem.system(), problem.material().membrane());
@@ -592,8 +595,8 @@ fn between_two_states_it_works_by_the_energys_difference(kind: ElementKind) {
     }
 }
 
-/// Viscous forces: at rest the viscosity is the stiffness of its moduli; anywhere its force is linear in the velocity
-/// with the matrix that is given, positive semidefinite, and a rigid motion feels none.
+/// At rest, the viscous matrix is the stiffness of its moduli. In any state the viscous force is linear in the velocity
+/// with the given matrix, which is positive semidefinite, and zero for a rigid motion.
 fn damping_is_the_stiffness_at_rest_and_blind_to_turning(kind: ElementKind) {
     use warpbeam::element::StrainRate;
     let problem = problem(&irregular_scene(Plane::Strain), kind);
@@ -613,7 +616,7 @@ fn damping_is_the_stiffness_at_rest_and_blind_to_turning(kind: ElementKind) {
     let viscous = force(&rest, StrainRate::Velocity(&small));
     let size = viscous.iter().map(|f| f.norm()).fold(0.0, f64::max);
     assert!(elastic.internal().iter().zip(&viscous).all(|(a, b)| (a - b).norm() < 1e-12 * size));
-    // In a bent state, with free unknowns only.
+    // The same in a bent state, with free unknowns only.
     let start = state(&problem, bent);
     let u = start.displacement();
     let n = system.dofs();
@@ -636,7 +639,7 @@ fn damping_is_the_stiffness_at_rest_and_blind_to_turning(kind: ElementKind) {
         (restrict(&problem, &force(u, StrainRate::Velocity(&moving))) - &by_matrix).norm() < 1e-12 * by_matrix.norm()
     );
     assert!(dense.clone().symmetric_eigenvalues().min() > -1e-12 * dense.norm());
-    // A rigid motion from one state to another, and the work of damping between any two.
+    // Force of a rigid motion from one state to another, and work of damping between any two states.
     let turn = Rotation::from_angle(2.5);
     let turned: Vec<_> =
         nodes(&problem).iter().zip(u).map(|(x, u)| turn.apply(x + u) + Vector2::new(1.0, 2.0) - x).collect();
@@ -645,7 +648,7 @@ fn damping_is_the_stiffness_at_rest_and_blind_to_turning(kind: ElementKind) {
         force(&middle, StrainRate::Difference(&[(1.0, b), (-1.0, a)]))
     };
     assert!(between(u, &turned).iter().all(|f| f.norm() < 1e-11));
-    // Green's strain is quadratic in x: its difference is its rate half way, whatever the time between.
+    // Green's strain is quadratic in x: its difference is its rate at the midpoint, for any time between.
     let halves: Vec<_> = rest.iter().zip(u).map(|(a, b)| (a + b) * 0.5).collect();
     let quick: Vec<_> = u.iter().map(|u| u * 4.0).collect();
     let by_rate = force(&halves, StrainRate::Velocity(&quick));
@@ -667,8 +670,8 @@ fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
         let state = start.with_displacement(u).unwrap();
         forces(&problem, &state).internal().to_vec()
     };
-    // Moving free nodes by d changes the force by A d, exactly: it is linear in x for fixed R. Both states are away from
-    // the one that R belongs to, where R may add a force of its own.
+    // A displacement of free nodes by d changes the force by exactly A d, because the force is linear in x for fixed R.
+    // Neither state is the one that R belongs to, where R may add a force of its own.
     let d = DVector::from_fn(a.nrows(), |i, _| ((i * 7 % 11) as f64 - 5.0) * 0.01);
     let moved = |times: f64| {
         let mut moved = start.displacement().to_vec();
@@ -677,18 +680,19 @@ fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
     };
     let change: Vec<_> = moved(2.0).iter().zip(&moved(1.0)).map(|(a, b)| a - b).collect();
     assert!((restrict(&problem, &change) - &a * d).norm() < 1e-10);
-    // All nodes at the origin: what is left of f_int is −R K X, which is exact in a rigidly turned body.
+    // With all nodes at the origin, f_int is −R K X, which is exact in a rigidly rotated body.
     let turn = Rotation::from_angle(1.1);
     let turned = state(&problem, |x| turn.apply(x));
     let collapsed = turned.with_displacement(nodes(&problem).iter().map(|x| -x).collect()).unwrap();
     let offset = forces(&problem, &collapsed);
     let magnitude = offset.internal().iter().map(|f| f.norm()).fold(0.0, f64::max);
     assert!(magnitude > 1.0);
-    // A x − R K X vanishes there.
+    // A x − R K X vanishes in a rigidly rotated body.
     assert!(forces(&problem, &turned).internal().iter().all(|f| f.norm() < 1e-12 * magnitude));
 }
 
-/// Betti's theorem: the work of one load along the displacement of another is that of the other along its own.
+/// Betti's theorem: the work of one load along the displacement of another equals the work of the other
+/// along its own displacement.
 fn works_are_reciprocal(kind: ElementKind) {
     let tip = |force: [f64; 2], at: [f64; 2]| {
         let scene = irregular_scene(Plane::Strain).force(at, force).with_method(warpbeam::MethodKind::Linear);
@@ -710,7 +714,7 @@ fn works_are_reciprocal(kind: ElementKind) {
     }
 }
 
-/// A moment turns nothing but the body: no net force, and its size about any point.
+/// A moment has no net force and the same size about any point.
 fn a_moment_is_a_couple(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Stress).moment("right", 3.0), kind);
     let state = state(&problem, |x| Rotation::from_angle(2.0 + 0.1 * x.y).apply(x));
@@ -722,16 +726,16 @@ fn a_moment_is_a_couple(kind: ElementKind) {
     assert!(net.norm() < 1e-12 && (moment - 3.0).abs() < 1e-12, "{net} {moment}");
 }
 
-/// The exact displacement gradient of a smooth field that vanishes on the left edge,
-/// u = (sin 1.3x · cos 0.7y, sin x · sin(1.1y + 0.4)).
+/// Returns the exact displacement gradient of a smooth field that vanishes on the left edge, u = (sin 1.3x · cos 0.7y,
+/// sin x · sin(1.1y + 0.4)).
 fn smooth_gradient(x: Vector2<f64>) -> Matrix2<f64> {
     let (a, b) = (1.3 * x.x, 0.7 * x.y);
     let (c, d) = (x.x, 1.1 * x.y + 0.4);
     Matrix2::new(1.3 * a.cos() * b.cos(), -0.7 * a.sin() * b.sin(), c.cos() * d.sin(), 1.1 * c.sin() * d.cos())
 }
 
-/// A manufactured solution of linear theory: under the loads that go with a smooth field, the finite element solution
-/// approaches it in the energy norm with hᵖ, p the degree of the shape functions.
+/// Manufactured solution of linear theory: under the loads of a smooth field, the error of the finite element solution
+/// in the energy norm is of order hᵖ, where p is the degree of the shape functions.
 fn the_energy_norm_converges_at_its_rate(kind: ElementKind) {
     let degree = (kind.entry().sides[0].len() - 1) as f64;
     let errors = [4, 8, 16].map(|n| energy_norm_error(kind, n));
@@ -740,7 +744,7 @@ fn the_energy_norm_converges_at_its_rate(kind: ElementKind) {
     assert!((rate - degree).abs() < 0.1, "{errors:?} {rate}");
 }
 
-/// ‖ε − ε_h‖ over ‖ε‖ in the energy norm, on n × n cells; modes inside of elements, which belong to no ∇N, included.
+/// Returns ‖ε − ε_h‖ over ‖ε‖ in the energy norm on n × n cells, including incompatible modes, which belong to no ∇N.
 fn energy_norm_error(kind: ElementKind, n: u32) -> f64 {
     let material = Material { thickness: 0.5, plane: Plane::Strain, ..Material::new(100.0, 0.3) };
     let scene = Scene::beam(1.0, 1.0).with_cells(n, n).with_element(kind).with_material(material).clamp("left");
@@ -748,7 +752,7 @@ fn energy_norm_error(kind: ElementKind, n: u32) -> f64 {
     let entry = kind.entry();
     let moduli = material.membrane();
     let sym = |h: Matrix2<f64>| (h + h.transpose()) * 0.5;
-    // Places and weights of a rule that is fine enough to be exact beside the error.
+    // Points and weights of a rule whose error is negligible compared with the measured one.
     let lattice = (entry.cell.lattice)(4);
     let rule: Vec<([f64; 2], f64)> = lattice
         .triangles
@@ -802,7 +806,7 @@ fn energy_norm_error(kind: ElementKind, n: u32) -> f64 {
     (error / energy).sqrt()
 }
 
-/// A field's values with the rest positions of their quadrature points.
+/// Returns a field's values with the rest positions of their quadrature points.
 fn field_at_points(simulation: &Simulation, field: Field) -> Vec<(Vector2<f64>, f64)> {
     let mesh = simulation.system().mesh();
     let entry = mesh.element().entry();
@@ -816,7 +820,7 @@ fn field_at_points(simulation: &Simulation, field: Field) -> Vec<(Vector2<f64>, 
     places.zip(values.into_iter().map(Option::unwrap)).collect()
 }
 
-/// A beam L/H = 20 in plane stress, ν = 0, under an end moment.
+/// Returns a beam of L/H = 20 in plane stress, ν = 0, under an end moment.
 fn moment_beam(kind: ElementKind, moment: f64) -> Scene {
     let cells = if kind.entry().sides[0].len() == 2 { [640, 32] } else { [80, 4] };
     Scene::beam(20.0, 1.0)
@@ -828,9 +832,9 @@ fn moment_beam(kind: ElementKind, moment: f64) -> Scene {
         .probe("tip", "right")
 }
 
-/// Pure bending: σ_xx = −M y / I, whose magnitude is the von Mises stress; and its mean over the upper half is M h / 4 I.
+/// Pure bending: σ_xx = −M y / I, whose magnitude is the von Mises stress; its mean over the upper half is M h / 4 I.
 fn stress_is_that_of_the_bent_beam(kind: ElementKind) {
-    // Small enough for the beam to stay straight: M L / E I = 0.02.
+    // The moment is small enough for the beam to stay nearly straight: M L / E I = 0.02.
     let moment = 0.02 * 1e6 / 12.0 / 20.0;
     let mut simulation = Simulation::new(&moment_beam(kind, moment)).unwrap();
     assert_eq!(*simulation.solve(), Status::Converged);
@@ -842,7 +846,7 @@ fn stress_is_that_of_the_bent_beam(kind: ElementKind) {
             assert!((von_mises - expected).abs() < 0.03 * largest, "at {x}: {von_mises} {expected}");
         }
     }
-    // With its sign, tension below where the moment lifts the end, and no stress across.
+    // The signed stress: tension below where the moment lifts the end, and no stress across.
     let (system, lame) = (simulation.system(), simulation.problem().material().lame());
     let places: Vec<_> = field_at_points(&simulation, Field::VonMises).into_iter().map(|(x, _)| x).collect();
     let state = simulation.state();
@@ -853,7 +857,7 @@ fn stress_is_that_of_the_bent_beam(kind: ElementKind) {
             assert!((stress - expected).amax() < 0.03 * largest, "at {x}: {stress}");
         }
     });
-    // The same from the strain energy, ½ σ²/E.
+    // The strain energy density agrees: ½ σ²/E.
     for (x, energy) in field_at_points(&simulation, Field::EnergyDensity) {
         if (x.x - 10.0).abs() < 8.0 {
             let expected = (moment * x.y * 12.0).powi(2) / 2e6;
@@ -867,7 +871,7 @@ fn stress_is_that_of_the_bent_beam(kind: ElementKind) {
     }
 }
 
-/// The whole scene turned by 37°: the same stresses, and rotations 37° more than before seen from outside are the same.
+/// A scene rotated by 37° has the same stresses and the same rotations relative to the body.
 fn stress_turns_with_the_body(kind: ElementKind) {
     let turn = Rotation::from_angle(37.0 / 180.0 * PI);
     let scene = moment_beam(kind, 500.0).with_cells(20, 1).force("right", [30.0, -20.0]);

@@ -1,4 +1,4 @@
-//! What every integrator must do.
+//! Tests that every integrator must pass.
 
 use std::f64::consts::TAU;
 
@@ -27,27 +27,28 @@ pub fn trials() -> Vec<Trial> {
     suite("integrator", INTEGRATORS.iter().map(|i| (i.id.to_owned(), *i)), TESTS)
 }
 
-/// A step that all take: the explicit one far below its critical step.
+/// Returns a step that suits the integrator; for explicit ones, a step far below the critical one.
 fn step(entry: Entry, implicit: f64) -> f64 {
     if entry.is_explicit() { 2e-4 } else { implicit }
 }
 
-/// Three steps, each half of the one before: differences of their results fall by 2 to the order.
+/// For three steps, each half of the one before, the differences of the results fall by 2 to the integrator's order.
 fn its_error_goes_with_the_power_of_the_step_it_says(entry: Entry) {
-    // The explicit one is stable at steps this much smaller only.
+    // The explicit integrator is stable only at steps this much smaller.
     let (coarse, steps): (f64, u32) = if entry.is_explicit() { (1.0 / 7680.0, 3840) } else { (1.0 / 480.0, 240) };
     let tip = |halvings: u32| {
         let mut scene = beam(8, 10.0).moving(entry.kind, coarse * 0.5_f64.powi(halvings as i32));
         scene.dynamics.iterations = 0;
         scene.solver.tolerance = 1e-12;
         let mut simulation = Simulation::new(&scene).unwrap();
-        // So small that nothing but the first mode moves: along the beam others do, by the square of the amplitude.
+        // The amplitude is so small that only the first mode moves: modes along the beam grow with
+        // the square of the amplitude.
         let mode: Vec<_> = first_mode(&simulation).into_iter().map(|u| u * 1e-6).collect();
         simulation.start_from(&mode).unwrap();
         for _ in 0..steps << halvings {
             simulation.step();
         }
-        // Where in its swing the tip is: displacement, and velocity over the frequency.
+        // Position of the tip in its swing: displacement, and velocity over the angular frequency.
         Vector2::new(simulation.probe("tip").unwrap().y, simulation.probe_velocity("tip").unwrap().y / 3.2)
     };
     let [a, b, c] = [0, 1, 2].map(tip);
@@ -56,14 +57,14 @@ fn its_error_goes_with_the_power_of_the_step_it_says(entry: Entry) {
     assert!(expected.contains(&order), "{order}: {a} {b} {c}");
 }
 
-/// A free body falls as Galilei says: the second-order integrators exactly, Euler's off by g h t/2.
+/// A free body falls as Galileo's law says: second-order integrators are exact, Euler's is off by g h t/2.
 fn a_free_body_falls(entry: Entry) {
     let h = step(entry, 0.01);
     let mut scene = with("spin", entry.kind, h, 1, 1.0).gravity([0.0, -9.81]);
     (scene.start.spin, scene.start.velocity) = (0.0, [0.5, 3.0]);
     let simulation = run(&scene);
     let late = if entry.order == 1 { 0.5 * 9.81 * h } else { 0.0 };
-    // Lumped masses vibrate a little under nodal weights that are not lumped.
+    // The explicit integrator's lumped masses differ from the consistent nodal weights, which excites small vibrations.
     let close = if entry.is_explicit() { 1e-4 } else { 1e-9 };
     let expected = Vector2::new(0.5, 3.0 - 0.5 * 9.81 - late);
     let fallen = simulation.probe("end").unwrap();
@@ -72,17 +73,17 @@ fn a_free_body_falls(entry: Entry) {
     assert!((v - Vector2::new(0.5, 3.0 - 9.81)).norm() < 100.0 * close, "{v}");
 }
 
-/// A pulse on a free body leaves its impulse behind, F · duration/2.
+/// A pulse changes the momentum of a free body by its impulse, F · duration/2.
 fn a_pulse_leaves_its_impulse(entry: Entry) {
     let mut scene = with("spin", entry.kind, step(entry, 2e-3), 1, 0.3).force([0.5, 0.0], [0.0, 40.0]).pulse(0.05, 0.2);
     scene.start.spin = 0.0;
     let linear = momentum(&run(&scene)).linear;
-    // Sums over a period of sin² are exact but for where the pulse begins and ends within a step.
+    // Sums over a period of sin² are exact unless the pulse begins or ends within a step.
     assert!((linear - Vector2::new(0.0, 4.0)).norm() < 0.01, "{linear}");
 }
 
-/// Every entry of the ledger, at once: weight, pulses of a force and a moment, damping, a hand that pulls and lets go,
-/// an edit.
+/// The ledger balances with all entries at once: weight, pulses of a force and a moment, damping, a mouse spring that
+/// pulls and is released, and an edit.
 fn the_ledger_closes(entry: Entry) {
     let h = step(entry, 1.0 / 120.0);
     let mut scene = with("swing", entry.kind, h, 1, 1.0)
@@ -124,7 +125,7 @@ fn the_ledger_closes(entry: Entry) {
     }
 }
 
-/// Rayleigh's damping: a small first mode keeps exp(−(a + b ω²) t) of its energy in t, whole periods later.
+/// Rayleigh damping: after whole periods, a small first mode keeps exp(−(a + b ω²) t) of its energy.
 fn damping_takes_what_rayleigh_says(entry: Entry) {
     let rate: f64 = if entry.is_explicit() { 7680.0 } else { 960.0 };
     let kept = |mass: f64, stiffness: f64| {
@@ -143,7 +144,7 @@ fn damping_takes_what_rayleigh_says(entry: Entry) {
         let expected = (-(mass + stiffness * omega * omega) * steps / rate).exp();
         simulation.motion().unwrap().ledger().total() / before / expected
     };
-    // Beside what the integrator itself takes.
+    // The integrator's own dissipation is divided out.
     let undamped = kept(0.0, 0.0);
     for damping in [(0.1, 0.0), (0.0, if entry.is_explicit() { 1e-3 } else { 0.01 })] {
         let off = kept(damping.0, damping.1) / undamped;
@@ -151,7 +152,7 @@ fn damping_takes_what_rayleigh_says(entry: Entry) {
     }
 }
 
-/// Under small loads linear theory moves as the corotated body does.
+/// Under small loads, linear theory gives the same motion as the corotational formulation.
 fn linear_theory_is_the_limit_of_small_loads(entry: Entry) {
     let mut scene = with("swing", entry.kind, step(entry, 1.0 / 60.0), 1, 1.0);
     scene.scale_loads(1e-6);
@@ -160,8 +161,8 @@ fn linear_theory_is_the_limit_of_small_loads(entry: Entry) {
     assert!((corotated - linear).norm() < 1e-4 * linear.norm(), "{corotated} {linear}");
 }
 
-/// The same scene gives bitwise the same motion, with or without a ledger; a snapshot goes on as the original does; and a
-/// reset begins anew.
+/// The same scene gives bitwise the same motion, with or without a ledger. A snapshot continues as the original does,
+/// and a reset starts again from the beginning.
 fn motion_is_reproduced_to_the_last_bit(entry: Entry) {
     let scene = if entry.is_explicit() {
         with("swing", entry.kind, 2e-4, 1, 0.1)

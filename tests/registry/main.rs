@@ -1,5 +1,5 @@
-//! Suites that every entry of a registry passes under its own name: `cargo test --test registry -- t6` runs those of
-//! one element, `-- newton` those of one method.
+//! Tests that run for every entry of a registry under the entry's name: `cargo test --test registry -- t6` runs those
+//! of one element, `-- newton` those of one method.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 #[path = "../common/mod.rs"]
@@ -28,10 +28,10 @@ fn main() -> ExitCode {
     libtest_mimic::run(&args, suites.into_iter().flatten().collect()).exit_code()
 }
 
-/// A test that an entry of a registry must pass.
+/// Name and function of a test that every entry of a registry must pass.
 type Test<T> = (&'static str, fn(T));
 
-/// Every test for every entry: `suite::entry::test`.
+/// Returns every test for every entry, named `suite::entry::test`.
 fn suite<T: Copy + Send + 'static>(
     name: &str,
     entries: impl IntoIterator<Item = (String, T)>,

@@ -1,4 +1,4 @@
-//! What every method must do.
+//! Tests that every method must pass.
 
 use libtest_mimic::Trial;
 use nalgebra::Vector2;
@@ -50,7 +50,7 @@ fn ended(scene: &Scene) -> Simulation {
     simulation
 }
 
-/// δ = P L / (E A), on every mesh.
+/// The extension is δ = P L / (E A) on every mesh.
 fn an_axial_bar_stretches_by_pl_over_ea(method: MethodKind) {
     for cells in ["[1,1]", "[16,2]", "[7,3]"] {
         let scene = with_method(scene_with("stretch", &[&format!("beam.cells={cells}")]), method);
@@ -70,7 +70,7 @@ fn without_load_nothing_moves(method: MethodKind) {
     assert!(simulation.displacement().iter().all(|u| *u == Vector2::zeros()));
 }
 
-/// Extreme numbers of every kind: no panic, nothing that is not finite, a status in words.
+/// With extreme values of every kind there is no panic, all results are finite, and the status has a message.
 fn extremes_stay_finite(method: MethodKind) {
     let sets: &[&[&str]] = &[
         &["load.0.force=[0,-1e15]"],
@@ -108,7 +108,7 @@ fn extremes_stay_finite(method: MethodKind) {
             let mut values = Vec::new();
             for field in Field::ALL {
                 simulation.field(field, &mut values);
-                // What is turned inside out, or thinned to nothing by its strain, has no Cauchy stress.
+                // An element that is inverted, or compressed to nothing by its strain, has no Cauchy stress.
                 let is_whole = s.deformation.inverted_elements == 0 && s.deformation.max_strain < 1.0;
                 let all = field != Field::VonMises || is_whole;
                 assert!(!all || values.iter().all(Option::is_some), "{id} {set:?} {field:?}");
@@ -118,14 +118,14 @@ fn extremes_stay_finite(method: MethodKind) {
     }
 }
 
-/// The largest distance between two displacements, over the largest of the second.
+/// Returns the largest distance between two displacements, relative to the largest displacement of the second.
 fn difference(a: &Simulation, b: &Simulation) -> f64 {
     let size = b.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
     let pairs = a.displacement().iter().zip(b.displacement());
     pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / size
 }
 
-/// Whatever is edited under a solved body, the end is that of a fresh start.
+/// After any edit of a solved body, the result is that of a solve from rest.
 fn an_edit_ends_where_a_start_at_rest_does(method: MethodKind) {
     let start = with_method(scene_with("cantilever", &["solver.tolerance=1e-10"]), method);
     let edits: &[&[&str]] = &[
@@ -150,13 +150,13 @@ fn an_edit_ends_where_a_start_at_rest_does(method: MethodKind) {
         let fresh = ended(&scene);
         assert_eq!((edited.solve(), fresh.status()), (&Status::Converged, &Status::Converged), "{edit:?}");
         assert_eq!(edited.system().dofs(), fresh.system().dofs());
-        // `auto` ends within its asked error.
+        // `auto` stops within the requested error.
         let close = if method == MethodKind::Auto { 1e-2 } else { 1e-6 };
         assert!(difference(&edited, &fresh) < close, "{edit:?}: {:e}", difference(&edited, &fresh));
     }
 }
 
-/// After a load beyond all measure, any edit that can be solved is.
+/// After a hopelessly large load, any edit that can be solved is solved.
 fn a_hopeless_load_leaves_no_trace(method: MethodKind) {
     for id in ["article", "cantilever"] {
         for force in [1e12, -1e12, 1e15] {
@@ -190,7 +190,7 @@ fn a_restored_state_goes_on_as_the_saved_one(method: MethodKind) {
     assert_ne!(*simulation.state(), saved);
     simulation.set_force(0, [0.0, -1000.0]).unwrap();
     simulation.restore(&saved).unwrap();
-    // Linear theory solves anew; what the others restore is converged.
+    // Linear theory solves again; for the other methods the restored state is already converged.
     if method != MethodKind::Linear && method != MethodKind::Auto {
         assert_eq!((simulation.status(), simulation.iterations()), (&Status::Converged, 0));
         assert_eq!(*simulation.state(), saved);

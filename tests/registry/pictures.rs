@@ -1,6 +1,6 @@
-//! The picture of every built-in scene: against a golden one, and against what the solver says.
+//! Compares the picture of every built-in scene with a golden picture and with the solver's results.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test registry -- picture` draws the golden pictures anew; look at them before committing.
+//! `UPDATE_GOLDEN=1 cargo test --test registry -- picture` redraws the golden pictures; look at them before committing.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,8 @@ pub fn trials() -> Vec<Trial> {
     suite("picture", registry::BUILT_IN.iter().map(|b| (b.id.to_owned(), b.id)), TESTS)
 }
 
-/// `warpbeam shot`, without the panel (whose times differ from run to run).
+/// Compares the output of `warpbeam shot` with the golden picture, without the panel (whose
+/// times differ from run to run).
 fn it_is_the_golden_one(id: &'static str, theme: &str) {
     const TOLERANCE: f64 = 2e-3;
     let folder = tempfile::tempdir().unwrap();
@@ -44,13 +45,13 @@ fn it_is_the_golden_one(id: &'static str, theme: &str) {
     assert!(difference < TOLERANCE, "{:.2} % of the pixels differ", 100.0 * difference);
 }
 
-/// Where a point of the plane is in the picture, pixels.
+/// Returns the position of a point of the plane in the picture, pixels.
 fn project(camera: &Camera, rect: egui::Rect, p: Vector2<f64>) -> [f64; 2] {
     let [x, y] = camera.to_view(p);
     [f64::from(rect.center().x) + x, f64::from(rect.center().y) + y]
 }
 
-/// The body's pixels end where the solver's nodes end, and every triangle has the colour of its value.
+/// The drawn body ends where the solver's nodes end, and every triangle has the colour of its value.
 fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
     let gpu = Gpu::headless().unwrap();
     let mut lab = lab(id);
@@ -69,7 +70,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
         .zip(lab.simulation().displacement())
         .map(|(x, u)| x + u)
         .collect();
-    // Straight triangles are drawn as they are, one for one.
+    // Triangles with straight sides are drawn one for one.
     if lab.scene().element() == warpbeam::scene::ElementKind::T3 {
         for (drawn, solved) in frame.triangles.iter().zip(lab.simulation().system().mesh().elements()) {
             let drawn = drawn.map(|p| frame.positions[p as usize]);
@@ -78,7 +79,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
         }
     }
 
-    // Colours, at the middle of triangles that are large enough to have one without an edge in it.
+    // Colours are compared at the middle of triangles that are large enough to have a pixel there without an edge.
     let mut seen = 0;
     for (triangle, values) in frame.triangles.iter().zip(frame.values) {
         let [a, b, c] = triangle.map(|p| project(&camera, rect, frame.positions[p as usize]));
@@ -87,7 +88,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
             continue;
         }
         let [x, y] = [0, 1].map(|i| ((a[i] + b[i] + c[i]) / 3.0) as u32);
-        // Between corners the value is linear; the pixel's middle is not quite the triangle's.
+        // The value is linear between corners; the pixel's centre is not exactly the triangle's.
         let positions = values.map(|value| colormap::position(value.unwrap(), frame.range));
         let expected = frame.map.color(positions.iter().sum::<f64>() / 3.0);
         let steep = positions.iter().fold(0.0f64, |m, v| m.max((v - positions[0]).abs()));
@@ -101,15 +102,16 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
         0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs() >= 60.0
     });
     let large = large.count();
-    // The load's arrow and the supports may cover a few.
+    // The load's arrow and the supports may cover a few triangles.
     assert!(seen as f64 >= 0.9 * large as f64, "{id}: {seen} of {large} triangles have their colour");
 
-    // The tip: just inside the body is body, just outside is background. The outline between them is 1.2 wide.
+    // At the tip, a pixel just inside the body is body and one just outside is background. The outline between them is
+    // 1.2 wide.
     let probe = lab.simulation().solution().probes[0].clone();
     let tip = project(&camera, rect, probe.x);
     let mesh = lab.simulation().system().mesh();
     let centre = positions.iter().sum::<Vector2<f64>>() / positions.len() as f64;
-    // The roll-up's tip lies on its clamp; the others' tips are where nothing else is.
+    // The roll-up's tip lies on its clamp; no other object is drawn at the other scenes' tips.
     let Some(Place::Edge(edge)) = Some(&lab.scene().probes[0].place).filter(|_| id != "roll-up") else { return };
     let edge = mesh.edges().get(edge).unwrap();
     for segment in edge.iter().step_by(edge.len().div_ceil(4)) {
@@ -121,7 +123,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
             let [x, y] = project(&camera, rect, middle + outward * (pixels / camera.scale));
             pixel(&picture, x as u32, y as u32)
         };
-        // The arrow starts at the middle of a loaded edge and may run either way.
+        // The arrow starts at the middle of a loaded edge and may have either direction.
         let [x, y] = project(&camera, rect, middle);
         if (x - tip[0]).hypot(y - tip[1]) < 8.0 {
             continue;

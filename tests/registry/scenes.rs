@@ -1,4 +1,4 @@
-//! What every built-in scene must do.
+//! Tests that every built-in scene must pass.
 
 use std::collections::BTreeSet;
 
@@ -43,7 +43,7 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Every integrator that is not explicit takes a dynamic scene to its end, and the books are right.
+/// Every integrator that is not explicit runs a dynamic scene to its end, and its energy ledger balances.
 fn it_runs_to_its_end(id: &'static str) {
     for integrator in INTEGRATORS.iter().filter(|i| !i.is_explicit()) {
         let mut scene = scene(id);
@@ -54,13 +54,14 @@ fn it_runs_to_its_end(id: &'static str) {
         assert_eq!(solution.deformation.inverted_elements, 0, "{}", integrator.id);
         let ledger = solution.motion.unwrap().ledger;
         assert!(ledger.imbalance().abs() < 1e-11 * ledger.throughput, "{}: {ledger:?}", integrator.id);
-        // By differences the rounding of the time step in the work of pulses and damping counts as the integrator's.
+        // For finite differences, the rounding of the time step in the work of pulses and damping
+        // counts as the integrator's.
         let allowed = if integrator.kind == IntegratorKind::EnergyMomentum { 1e-6 } else { 1e-3 };
         assert!(ledger.drift() < allowed, "{} gains energy: {ledger:?}", integrator.id);
     }
 }
 
-/// A few steps of every integrator, the explicit one within its critical step, on every element.
+/// Runs a few steps of every integrator on every element, explicit integrators within their critical step.
 fn every_integrator_and_element_moves_it(id: &'static str) {
     let elements = scene(id).elements();
     for (integrator, element) in INTEGRATORS.iter().flat_map(|i| elements.clone().map(move |e| (i, e.entry()))) {
@@ -81,7 +82,7 @@ fn every_integrator_and_element_moves_it(id: &'static str) {
     }
 }
 
-/// A file that is not in the registry would be in no list.
+/// A file that is not in the registry would not appear in any list of scenes.
 fn every_file_is_built_in() {
     let files = std::fs::read_dir("assets/scenes").unwrap().map(|file| file.unwrap().path());
     let names: BTreeSet<String> = files.map(|file| file.file_stem().unwrap().to_str().unwrap().to_owned()).collect();
@@ -103,11 +104,11 @@ fn with_method(mut scene: Scene, method: MethodKind) -> Scene {
     scene
 }
 
-/// Equilibrium of reactions and loads with every method that converges, as forces and as moments about the origin.
+/// Reactions and loads are in equilibrium for every method that converges, as forces and as moments about the origin.
 fn reactions_balance_the_loads(id: &'static str) {
     for method in METHODS {
         let mut simulation = Simulation::new(&with_method(scene(id), method.kind)).unwrap();
-        // Some scenes are there to show what the warped iteration cannot do.
+        // Some scenes demonstrate where the warped iteration does not converge.
         if *simulation.solve() != Status::Converged {
             assert_eq!(method.kind, MethodKind::Warped, "{:?}", simulation.status());
             assert!(!["article", "cantilever", "gravity", "bridge", "stretch", "shear"].contains(&id));
@@ -120,13 +121,13 @@ fn reactions_balance_the_loads(id: &'static str) {
         // A moment loads the body too, though its forces cancel.
         let scale = loads.dead_force().iter().map(|f| f.norm()).sum::<f64>()
             + loads.moments().map(|(_, moment)| moment.abs()).sum::<f64>()
-            // Supports that move load it too.
+            // Moving supports load the body too.
             + solution.supports.iter().map(|s| s.force.norm()).sum::<f64>();
-        // `auto` ends within its asked error, the others at a residual.
+        // `auto` stops within the requested error, the others at a residual.
         let close = if method.kind == MethodKind::Auto { 1e-2 } else { 1e-6 };
         assert!((reaction.force + total).norm() < close * scale, "{}: {:?}", method.id, reaction.force);
         if simulation.is_linear() {
-            // Linear theory balances moments about the rest positions; the reaction is about the current ones.
+            // Linear theory balances moments about the rest positions; the reported reaction is about the current ones.
             continue;
         }
         let arms = system.mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
@@ -137,8 +138,8 @@ fn reactions_balance_the_loads(id: &'static str) {
     }
 }
 
-/// Clapeyron's theorem: loads at full size and moved supports do twice the work that is stored. That of supports is integrated
-/// along the path, which is half of theirs at full size.
+/// Clapeyron's theorem: loads at full size and moved supports do twice the work that is stored. The work of supports is
+/// integrated along the path and is therefore half of the work at full size.
 fn linear_theory_obeys_clapeyron(id: &'static str) {
     let mut simulation = Simulation::new(&with_method(scene(id), MethodKind::Linear)).unwrap();
     assert_eq!(*simulation.solve(), Status::Converged);
@@ -159,7 +160,7 @@ fn every_element_converges(id: &'static str) {
     }
 }
 
-/// A warped result is an exact equilibrium: Newton, from rest, finds the same.
+/// A converged warped result is an exact equilibrium: Newton's method finds the same from rest.
 fn warped_ends_where_newton_does(id: &'static str) {
     let mut scene = scene(id);
     (scene.solver.tolerance, scene.solver.max_iterations) = (1e-10, 500);
@@ -175,7 +176,7 @@ fn warped_ends_where_newton_does(id: &'static str) {
             assert!((a - b).norm() < 1e-7 * size.max(1.0), "{a} {b}");
         }
     } else if id != "stretch" {
-        // The bar's rotations are never excited: it converges whatever ρ.
+        // The bar's rotations are never excited: it converges for every ρ.
         assert!(matches!(status, Status::Diverged(Reason::Stalled(_))), "ρ = {rho}: {status:?}");
     }
 }
