@@ -234,7 +234,7 @@ fn set_up(scene: &Scene, model: Model, is_displayed: bool) -> Result<(Bodies, Op
         Model::New => {
             let (bodies, _) = Simulation::new(scene).map(made).map_err(rejected)?;
             let geometry = is_displayed.then(|| {
-                // Smooth fields need the recovery matrix; computing it here avoids a delay between two frames.
+                // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
                 let _ = bodies.simulation.system().recovery();
                 DisplayGeometry::new(bodies.simulation.system().mesh())
             });
