@@ -1,4 +1,4 @@
-//! Status bar along the bottom: the three main numbers, a plot of the residual, and the button of the drawer.
+//! Status bar along the bottom: the main numbers of the result, a plot of the residual, and the button of the drawer.
 
 use crate::app::diagnosis::{DRIFT_TIP, Errors, error_color, rho, rho_number, truth_words};
 use crate::app::widgets::text::{UNKNOWN, semibold};
