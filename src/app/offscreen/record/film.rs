@@ -1,4 +1,4 @@
-//! Pictures one after the other, as files.
+//! Files of frames: animated GIF or PNG, or a folder of images.
 
 use std::borrow::Cow;
 use std::fs::{File, OpenOptions};
@@ -9,18 +9,18 @@ use super::RecordError;
 use super::colors::Palette;
 use crate::picture::Picture;
 
-/// How a recording is kept.
+/// Format of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovieFormat {
-    /// An animated GIF: everywhere, 256 colours.
+    /// Animated GIF: supported everywhere, 256 colours.
     Gif,
-    /// An animated PNG: all colours.
+    /// Animated PNG: all colours.
     Apng,
-    /// A folder of numbered PNG files.
+    /// Folder of numbered PNG files.
     Folder,
 }
 
-/// How long a picture is shown: a fraction of a second.
+/// Duration of a frame, as a fraction of a second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Delay {
     numerator: u16,
@@ -32,7 +32,7 @@ impl Delay {
         f64::from(self.numerator) / f64::from(self.denominator)
     }
 
-    /// The delay with some seconds more.
+    /// Returns the duration extended by a number of seconds.
     fn longer(self, seconds: f64) -> Self {
         let more = (seconds * f64::from(self.denominator)).round() as u16;
         Self { numerator: self.numerator.saturating_add(more), ..self }
@@ -40,10 +40,10 @@ impl Delay {
 }
 
 impl MovieFormat {
-    /// The format a name asks for.
+    /// Returns the format for a path.
     ///
     /// # Errors
-    /// [`RecordError::UnknownFormat`], and [`RecordError::NoFolder`] where the file's folder is not there.
+    /// [`RecordError::UnknownFormat`], and [`RecordError::NoFolder`] if the file's folder does not exist.
     pub fn of(path: &Path) -> Result<Self, RecordError> {
         let unknown = || RecordError::UnknownFormat(path.to_owned());
         if path.is_dir() {
@@ -67,9 +67,9 @@ impl MovieFormat {
         }
     }
 
-    /// The time of a picture at this rate, or the nearest that the format has.
+    /// Returns the duration of a frame at this rate, or the nearest one that the format supports.
     pub(super) fn delay(self, rate: u16) -> Delay {
-        /// Viewers take a GIF's delays below this for a mistake.
+        /// Viewers replace shorter delays of a GIF, in 1/100 s, by a longer default.
         const SHORTEST: u16 = 2;
         match self {
             Self::Gif => {
@@ -80,7 +80,7 @@ impl MovieFormat {
     }
 }
 
-/// A recording on its way into its file or folder.
+/// Recording that is being written to its file or folder.
 pub(super) struct Film {
     path: PathBuf,
     delay: Delay,
@@ -97,24 +97,24 @@ enum Reel {
 struct Gif {
     encoder: gif::Encoder<BufWriter<File>>,
     palette: Palette,
-    /// `true` where a picture whose colours the palette lacks gets a new one.
+    /// `true` if a frame whose colours are missing in the palette gets a new palette.
     adapts: bool,
-    /// `true` once the palette is not the one at the beginning of the file.
+    /// `true` if the current palette is not the one at the beginning of the file.
     is_local: bool,
     before: Vec<u8>,
     now: Vec<u8>,
 }
 
-/// Removes the numbered pictures of an earlier recording from a folder.
+/// Removes the numbered images of an earlier recording from a folder.
 ///
 /// # Errors
-/// [`RecordError::HasPictures`] where there are some and `overwrite` is `false`.
+/// [`RecordError::HasPictures`] if there are some and `overwrite` is `false`.
 pub(super) fn clear(folder: &Path, overwrite: bool) -> Result<(), RecordError> {
     let is_picture = |path: &PathBuf| {
         let number = path.file_name().and_then(|name| name.to_str()?.strip_prefix("frame-")?.strip_suffix(".png"));
         number.is_some_and(|number| number.len() >= 4 && number.bytes().all(|b| b.is_ascii_digit()))
     };
-    // A folder that is not there has none.
+    // A folder that does not exist has no images.
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     let pictures: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_picture).collect();
     if !pictures.is_empty() && !overwrite {
@@ -127,7 +127,7 @@ pub(super) fn clear(folder: &Path, overwrite: bool) -> Result<(), RecordError> {
 }
 
 impl Film {
-    /// Begins a recording of so many pictures, which look like `samples`.
+    /// Starts a recording of a number of frames with colours like those of `samples`.
     pub(super) fn create(
         path: &Path,
         format: MovieFormat,
@@ -141,7 +141,7 @@ impl Film {
         let reel = match format {
             MovieFormat::Gif => {
                 let palette = Palette::of(samples);
-                // A side of a picture is no more than 8192 pixels.
+                // A side of a frame has at most 8192 pixels.
                 let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
                 let mut encoder = gif::Encoder::new(file()?, width, height, palette.bytes()).map_err(|e| failed(&e))?;
                 encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e))?;
@@ -171,21 +171,21 @@ impl Film {
         Ok(Self { path: path.to_owned(), delay, pictures: 0, reel })
     }
 
-    /// Lets a GIF take new palettes where pictures differ from the samples.
+    /// Lets a GIF use new palettes for frames that differ from the samples.
     pub(super) fn adapt(&mut self) {
         if let Reel::Gif(gif) = &mut self.reel {
             gif.adapts = true;
         }
     }
 
-    /// Writes what is in memory; returns the length of the file.
+    /// Writes buffered data to the file; returns the length of the file.
     pub(super) fn flush(&mut self) -> Result<u64, RecordError> {
         let Reel::Gif(gif) = &mut self.reel else { return Ok(0) };
         let file = gif.encoder.get_mut();
         file.flush().and_then(|()| file.stream_position()).map_err(|e| failed(&self.path, &e))
     }
 
-    /// Adds a picture, to be shown for so many seconds longer than others.
+    /// Adds a frame whose duration is `hold` s longer than that of others.
     pub(super) fn add(&mut self, picture: &Picture, hold: f64) -> Result<(), RecordError> {
         let Self { path, delay, pictures, reel } = self;
         let failed = |reason: &dyn std::fmt::Display| failed(path, reason);
@@ -210,7 +210,7 @@ impl Film {
         Ok(())
     }
 
-    /// Ends the file: it is valid whether all announced pictures were added or not.
+    /// Completes the file, which is valid even if fewer frames than announced were added.
     pub(super) fn finish(self) -> Result<(), RecordError> {
         let Self { path, pictures, reel, .. } = self;
         let failed = |reason: &dyn std::fmt::Display| failed(&path, reason);
@@ -223,7 +223,7 @@ impl Film {
                 writer.finish().map_err(|e| failed(&e))
             }
             Reel::Apng { writer, .. } => {
-                // Ends the file, but with the number of pictures that were to come.
+                // Dropping the writer completes the file, but with the announced number of frames.
                 drop(writer);
                 correct_frames(&path, u32::try_from(pictures).unwrap_or(u32::MAX)).map_err(|e| failed(&e))
             }
@@ -237,9 +237,9 @@ fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RecordError {
 }
 
 impl Gif {
-    /// Adds what has changed: the smallest rectangle that holds it.
+    /// Adds the changed part of a frame: the smallest rectangle that contains it.
     fn add(&mut self, picture: &Picture, shown: Delay) -> Result<(), gif::EncodingError> {
-        /// Share of pixels without a near colour beyond which there is a new palette.
+        /// Fraction of pixels without a similar palette colour above which there is a new palette.
         const MOST_POOR: f64 = 1e-3;
         let Self { encoder, palette, adapts, is_local, before, now } = self;
         let poor = palette.indices(picture, now);
@@ -253,7 +253,7 @@ impl Gif {
         let rect = changed(before, now, width);
         let rows = now.chunks(width.max(1)).skip(rect.top).take(rect.height);
         let pixels: Vec<u8> = rows.flat_map(|row| row.iter().skip(rect.left).take(rect.width)).copied().collect();
-        // Sides of pictures are far below.
+        // Cannot fail: frames are much smaller.
         let small = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
         encoder.write_frame(&gif::Frame {
             delay: shown.numerator,
@@ -278,7 +278,8 @@ struct Rect {
     height: usize,
 }
 
-/// Where two pictures of this width differ; all of it where there was none before, and a pixel where they do not.
+/// Returns the rectangle in which two frames of this width differ: the whole frame if there was none before, and one
+/// pixel if they are equal.
 fn changed(before: &[u8], now: &[u8], width: usize) -> Rect {
     let width = width.max(1);
     if before.len() != now.len() {
@@ -298,13 +299,13 @@ fn changed(before: &[u8], now: &[u8], width: usize) -> Rect {
     Rect { left, top, width: right - left + 1, height: bottom - top + 1 }
 }
 
-/// Writes the number of pictures into an animated PNG that announced more.
+/// Writes the number of frames into an animated PNG that announced more.
 fn correct_frames(path: &Path, frames: u32) -> std::io::Result<()> {
     const SIGNATURE: u64 = 8;
     let mut file = OpenOptions::new().read(true).write(true).open(path)?;
     let mut at = SIGNATURE;
     loop {
-        // A chunk: length, name, data, checksum of name and data.
+        // A chunk consists of length, name, data, and the checksum of name and data.
         file.seek(SeekFrom::Start(at))?;
         let mut head = [0; 8];
         file.read_exact(&mut head)?;
@@ -322,7 +323,7 @@ fn correct_frames(path: &Path, frames: u32) -> std::io::Result<()> {
     }
 }
 
-/// The checksum of PNG chunks (ISO 3309).
+/// Returns the checksum of a PNG chunk (ISO 3309).
 fn crc32(bytes: &[u8]) -> u32 {
     const POLYNOMIAL: u32 = 0xedb8_8320;
     !bytes.iter().fold(!0, |crc, &byte| {
@@ -336,7 +337,7 @@ mod tests {
 
     #[test]
     fn the_checksum_is_the_one_of_png() {
-        // The chunk that ends every file.
+        // The chunk that ends every PNG file.
         assert_eq!(crc32(b"IEND"), 0xae42_6082);
     }
 
