@@ -1,4 +1,4 @@
-//! What panel, keys and drawers ask of the lab, and how the body is looked at.
+//! Actions that panel, keys and drawers request from the lab.
 
 use crate::app::view_options::{CurvePlot, Toggle};
 use std::path::PathBuf;
@@ -7,10 +7,10 @@ use crate::scene::{IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::figure::Figure;
 
-/// Most iterations that a displayed frame may be asked for.
+/// Largest number of iterations per displayed frame.
 pub(crate) const MOST_ITERATIONS: u32 = 100;
 
-/// What a click, a drag or a key asks for.
+/// Request from a click, a drag or a key.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
     /// Open a built-in scene.
@@ -21,53 +21,53 @@ pub(crate) enum Action {
     Drop(PathBuf),
     /// Open the scene's file again.
     Reload,
-    /// Save the scene to its file, or ask for one.
+    /// Save the scene to its file; if it has none, show the file dialog.
     Save,
-    /// Ask for a file and save the scene to it.
+    /// Show the file dialog and save the scene to the chosen file.
     SaveAs,
-    /// Take the last edit back.
+    /// Undo the last edit.
     Undo,
-    /// Do the edit that was taken back last again.
+    /// Redo the edit that was undone last.
     Redo,
-    /// Close what is open over the body.
+    /// Close the topmost part that lies over the body.
     Escape,
-    /// Change the scene; a refusal is shown next to the field of this label.
+    /// Change the scene; an error is shown next to the field with this label.
     Edit(&'static str, Box<Scene>),
-    /// Iterate, or stop.
+    /// Start or stop iterating.
     ToggleRun,
     /// One iteration.
     Step,
-    /// Show the moment of a motion next to a time, s, and pause there.
+    /// Show the recorded state of a motion that is closest to this time, s, and pause there.
     Scrub(f64),
-    /// Show the moment before, and pause there.
+    /// Show the previous recorded state, and pause there.
     Back,
-    /// Show the moment after, or take a step from the last one.
+    /// Show the next recorded state; after the last one, make a time step.
     Forward,
-    /// Back to rest, or to where the motion starts.
+    /// Return to rest, or to the start of the motion.
     Reset,
-    /// A reset goes to where the body is now; or to the start again.
+    /// Make the current state the start that a reset returns to; if one is set, remove it.
     Mark,
-    /// Simulated seconds a second.
+    /// Set the playback speed, simulated seconds per second.
     Speed(f64),
-    /// Show the same motion under another integrator, or no longer.
+    /// Show the same motion with another integrator; if it is shown, hide it.
     Compare(IntegratorKind),
-    /// So many iterations a displayed frame.
+    /// Set the number of iterations per displayed frame.
     Iterations(u32),
-    /// Show the whole body.
+    /// Fit the camera to the whole body.
     Fit,
-    /// Show or hide something.
+    /// Show or hide a part of the display.
     Toggle(Toggle),
     /// Colour the body with a field.
     Color(Field),
-    /// Light or dark.
+    /// Switch between light and dark theme.
     ToggleTheme,
-    /// The other language.
+    /// Switch to the other language.
     ToggleLanguage,
-    /// Show these quantities of the load curve.
+    /// Plot these quantities in the load curve.
     Plot(CurvePlot),
     /// Save a figure to a file.
     Export(Box<Figure>, FigureFile),
-    /// Save a picture.
+    /// Save an image of the window.
     Screenshot,
     /// Record the window from now on, or end the recording.
     Record,
@@ -77,17 +77,17 @@ pub(crate) enum Action {
     Copy,
     /// Copy the scene as a Rust program.
     CopyRust,
-    /// Start the study, or call it off.
+    /// Start (`true`) or cancel (`false`) the speed–accuracy study.
     Measure(bool),
-    /// Show the card of this number, from 0, and set its scene up.
+    /// Show the card with this number, from 0, and load its scene.
     Card(usize),
-    /// Use a setting as it was measured: its scene, and its iterations a displayed frame.
+    /// Use a measured setting: its scene, and its number of iterations per displayed frame.
     Apply(Box<Scene>, u32),
-    /// Stop what is meshed and solved beside the window, and go back to how it was before.
+    /// Cancel the background solve of a large model, and keep the previous model.
     Cancel,
 }
 
-/// Kind of a file that a figure is saved to.
+/// File format of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FigureFile {
     Csv,

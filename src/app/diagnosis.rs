@@ -1,4 +1,4 @@
-//! What the lab makes of a result: its error and where that comes from, its status in words, and what would mend it.
+//! Diagnosis of a result: its error and the source of the error, its status in words, and edits that would improve it.
 
 use crate::app::language::{count, fill, percent, sentence, tr, translated};
 use crate::app::readout::Readout;
@@ -9,11 +9,11 @@ use crate::simulation::{Simulation, Status, probe_results};
 use crate::study::Reference;
 use crate::words::{self, engineering, number, two_digits};
 
-/// Definition of the drift that the window shows.
+/// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy that the integrator has added, or with a minus lost, over the energy that was put in: by the \
                                     start, loads and hands";
 
-/// Where most of an error comes from.
+/// Main source of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ErrorSource {
     Mesh,
@@ -31,7 +31,7 @@ impl ErrorSource {
     }
 }
 
-/// The errors at the first probe, percent of the true displacement, where they are known.
+/// Errors at the first probe, percent of the reference displacement; `None` if not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Errors {
     pub own: Option<f64>,
@@ -39,8 +39,8 @@ pub(crate) struct Errors {
     pub source: Option<ErrorSource>,
 }
 
-/// Compares the state, and linear theory's, with the truth; nothing while something moves: a picture of one instant has no
-/// error of another.
+/// Compares the state, and the state of linear theory, with the reference solution. Returns no errors while the body
+/// moves or is grabbed: the reference solution holds for equilibrium only.
 pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     let simulation = input.simulation;
     let at_rest = simulation.is_at_rest() && simulation.hand().is_none();
@@ -65,7 +65,7 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     Errors { own: own.map(|(error, _)| error), linear, source }
 }
 
-/// The colour of an error, percent.
+/// Returns the colour of an error, percent.
 pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color32 {
     match error {
         Some(error) if error > 5.0 => palette.error,
@@ -75,7 +75,8 @@ pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color3
     }
 }
 
-/// Whether the picture is of another load than the one that is set: an edit while paused.
+/// Returns `true` if the state that is drawn belongs to another load than the one that is set: the scene was edited
+/// while paused.
 pub(crate) fn is_stale(input: &Readout<'_>) -> bool {
     let simulation = input.simulation;
     !input.running
@@ -85,13 +86,14 @@ pub(crate) fn is_stale(input: &Readout<'_>) -> bool {
         && simulation.displacement().iter().any(|u| u.norm() > 0.0)
 }
 
-/// The status as a sentence, and whether it is a bad one. The last equilibrium is drawn where it `shows_converged`.
+/// Returns the status as a sentence, and `true` if it reports a failure. `shows_converged` is `true` if the last
+/// equilibrium is drawn.
 pub(crate) fn status_words(simulation: &Simulation, running: bool, shows_converged: bool) -> (String, bool) {
     let moves = simulation.motion().is_some();
     let said = |reason: &dyn std::fmt::Display| translated(&reason.to_string());
     match simulation.status() {
         Status::Running | Status::Finished if !running => (tr("Paused").to_owned(), false),
-        // The duration is for runs without a window: here a motion goes on.
+        // The duration applies to runs without a window; in the window a motion continues.
         Status::Running | Status::Finished if moves && simulation.is_at_rest() => (tr("At rest").to_owned(), false),
         Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
         Status::Running | Status::Finished => (tr("Iterating").to_owned(), false),
@@ -113,7 +115,7 @@ pub(crate) fn status_words(simulation: &Simulation, running: bool, shows_converg
     }
 }
 
-/// The status in a line: `Converged · stable · 21 iterations`; and whether it is a bad one.
+/// Returns the status in one line, such as `Converged · stable · 21 iterations`, and `true` if it needs attention.
 pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     let simulation = input.simulation;
     let (mut words, bad) = status_words(simulation, input.running, input.shows_converged);
@@ -145,18 +147,19 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     (words, inside_out || stability(simulation) == Some(false))
 }
 
-/// Whether a converged equilibrium is stable, where that is certified.
+/// Returns `true` if a converged equilibrium is stable; `None` if it has no certificate.
 pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
     let certificate = simulation.certificate()?;
     certificate.stable.filter(|_| *simulation.status() == Status::Converged)
 }
 
-/// ρ of the warped iteration: at the equilibrium where that is known, else where the body is.
+/// Returns the spectral radius ρ of the warped iteration: at the equilibrium if that is known, else at the current
+/// state.
 pub(crate) fn rho(input: &Readout<'_>) -> Option<f64> {
     input.equilibrium_rho.or_else(|| input.simulation.certificate()?.fixed_point_rho)
 }
 
-/// Why the status is what it is, sentence by sentence.
+/// Explains the status, one sentence per entry.
 pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
@@ -219,21 +222,21 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     lines
 }
 
-/// Something that would make a result better, in words, and the scene that has it.
+/// Edit that would improve a result, with its description and the edited scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Remedy {
-    /// What is wrong.
+    /// Description of the problem.
     pub words: String,
-    /// What the button says.
+    /// Label of the button.
     pub offer: String,
-    /// What it edits: the label of a control.
+    /// Label of the control that it edits.
     pub edits: &'static str,
     pub scene: Box<Scene>,
 }
 
-/// What would help most, if something is wrong that an edit can mend.
+/// Returns the most effective remedy; `None` if nothing is wrong or no edit helps.
 pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
-    /// Errors above this, percent, ask for a remedy.
+    /// Errors above this value, percent, need a remedy.
     const LARGE: f64 = 5.0;
     let (simulation, scene) = (input.simulation, input.scene);
     if simulation.motion().is_some() || !simulation.is_at_rest() {
@@ -261,7 +264,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         let mut scene = Box::new(scene.clone());
         scene.set_element(better);
         let words = fill!("%{error} off: three-node triangles lock in bending.", error = off);
-        // What bends turns further, and the article's iteration may not follow it there.
+        // A body that bends more rotates more, and the warped iteration may then diverge.
         let offer = if scene.solver.method == MethodKind::Warped {
             scene.solver.method = MethodKind::Newton;
             fill!("Try %{element} with newton", element = better.id())
@@ -278,12 +281,12 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     fits.then_some(Remedy { words, offer: tr("Halve its cells").to_owned(), edits: "Cells along", scene })
 }
 
-/// ρ as it is shown: two digits, three above one tenth.
+/// Formats ρ with two significant digits.
 pub(crate) fn rho_number(rho: f64) -> String {
     engineering(two_digits(rho), "")
 }
 
-/// Returns the name of the reference solution, or a text that says that it is not known yet.
+/// Returns the name of the reference solution, or a text for the case that it is not known yet.
 pub(crate) fn truth_words(truth: Option<&Reference>) -> String {
     truth.map_or_else(|| tr("the reference, once that is known").to_owned(), |truth| translated(&truth.to_string()))
 }

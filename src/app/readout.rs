@@ -8,43 +8,44 @@ use crate::simulation::Simulation;
 use crate::study::{PathSummary, Reference};
 use crate::timings::Timings;
 
-/// What toolbar, panel and headlines show.
+/// State of the model and of its results that the toolbar, the panel and the status bar show.
 #[derive(Clone, Copy)]
 pub(crate) struct Readout<'a> {
     pub scene: &'a Scene,
-    /// The scene as it was opened or saved last.
+    /// Scene as last opened or saved.
     pub original: &'a Scene,
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
-    /// The same scene under linear theory.
+    /// The same scene solved with linear theory.
     pub linear: Option<&'a Simulation>,
     pub running: bool,
-    /// Whether what is shown has come to its end.
+    /// `true` if the calculation or the motion that is shown has ended.
     pub ended: bool,
     pub playback: &'a Playback,
-    /// The lowest natural frequency of a body in motion, Hz, once it is known.
+    /// Lowest natural frequency of a body in motion, Hz; `None` until it has been computed.
     pub frequency: Option<f64>,
-    /// Iterations a displayed frame.
+    /// Iterations per displayed frame.
     pub iterations: u32,
-    /// Time of the last iterations made for one displayed frame.
+    /// Time of the iterations made for the last displayed frame.
     pub timings: &'a Timings,
-    /// The residual after every iteration since the last change.
+    /// Residual after every iteration since the last change.
     pub residuals: &'a [f64],
     pub can_undo: bool,
     pub can_redo: bool,
-    /// What errors are measured against, once it is known.
+    /// Reference solution that errors are measured against; `None` until it has been computed.
     pub reference: Option<&'a Reference>,
-    /// Where the body jumps on its way from rest, once it is known.
+    /// Jumps on the load path that starts at rest; `None` until the path has been computed.
     pub jump: Option<&'a PathSummary>,
-    /// ρ of the warped iteration at the equilibrium, where it has been looked for, whatever the body's state.
+    /// Spectral radius ρ of the warped iteration at the equilibrium; `None` if it has not been computed. It does not
+    /// depend on the current state of the body.
     pub equilibrium_rho: Option<f64>,
-    /// Fraction of the reference solution's search that is done, while it is being computed.
+    /// Fraction of the reference solution's computation that is done; `None` if none is in progress.
     pub reference_progress: Option<f64>,
-    /// `true` where the last equilibrium is drawn instead of a state that diverges.
+    /// `true` if the last equilibrium is drawn in place of a state that diverges.
     pub shows_converged: bool,
-    /// How far the result is to be trusted.
+    /// Measures of the reliability of the result.
     pub quality: &'a Quality,
     pub adapter: &'a str,
-    /// What the window speaks.
+    /// Language of the user interface.
     pub language: Language,
 }

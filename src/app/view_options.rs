@@ -1,11 +1,11 @@
-//! How the body is looked at: mode, drawer, plots, and everything that can be shown or hidden.
+//! Display options: mode, drawer, plots, and everything that can be shown or hidden.
 
 use serde::{Deserialize, Serialize};
 
 use crate::scene::{Analysis, Scene};
 use crate::simulation::Field;
 
-/// What the window is used for at present.
+/// Mode of the user interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Mode {
     /// The body, its load and its numbers.
@@ -13,9 +13,9 @@ pub(crate) enum Mode {
     Explore,
     /// The article on a row of cards.
     Learn,
-    /// Two to four settings beside each other under one load.
+    /// Two to four settings side by side under one load.
     Compare,
-    /// Error against time, and the settings within limits.
+    /// Error against time, and the settings within given limits.
     Budget,
 }
 
@@ -26,7 +26,7 @@ pub(crate) struct ModeEntry {
     pub about: &'static str,
 }
 
-/// Every mode, in the order of the toolbar.
+/// All modes, in the order of the toolbar.
 pub(crate) const MODES: &[ModeEntry] = &[
     ModeEntry { mode: Mode::Explore, name: "Explore", about: "The body, its load, and how far from the truth it is" },
     ModeEntry {
@@ -46,35 +46,35 @@ pub(crate) const MODES: &[ModeEntry] = &[
     },
 ];
 
-/// What is plotted.
+/// Plot of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum MotionPlot {
     /// Energy by kind.
     #[default]
     Energy,
-    /// Displacement of the first probe.
+    /// Displacement of the first probe against time.
     Tip,
-    /// Its velocity against its displacement.
+    /// Velocity of the first probe against its displacement.
     Phase,
-    /// The amplitudes of the frequencies in it.
+    /// Amplitude spectrum of the displacement of the first probe.
     Spectrum,
 }
 
 /// Quantities that a load curve shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CurvePlot {
-    /// The reaction of a support that moves, over its way.
+    /// Reaction of a moving support against its prescribed displacement.
     Reaction,
-    /// The components of the displacement against each other.
+    /// Components of the displacement against each other.
     Path,
-    /// The horizontal component over the load.
+    /// Horizontal component of the displacement against the load.
     X,
-    /// The vertical component over the load.
+    /// Vertical component of the displacement against the load.
     Y,
 }
 
 impl CurvePlot {
-    /// The component along an axis: 0 is x.
+    /// Returns the plot of the component along `axis`: 0 is x, 1 is y.
     pub(crate) fn component(axis: usize) -> Self {
         if axis == 0 { Self::X } else { Self::Y }
     }
@@ -89,7 +89,7 @@ impl CurvePlot {
     }
 }
 
-/// What can be shown or hidden.
+/// Part of the display that can be shown or hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Toggle {
     Wireframe,
@@ -99,14 +99,14 @@ pub(crate) enum Toggle {
     Trail,
     Panel,
     Help,
-    /// Why the status is what it is.
+    /// Explanation of the status.
     Why,
-    /// A mode, or back to exploring.
+    /// A mode; toggling the current mode returns to [`Mode::Explore`].
     Mode(Mode),
     Drawer(Drawer),
 }
 
-/// What is shown under the body.
+/// Plot area under the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Drawer {
@@ -117,7 +117,7 @@ pub(crate) enum Drawer {
 }
 
 impl Drawer {
-    /// That of a scene.
+    /// Returns the drawer that suits the analysis of `scene`.
     pub(crate) fn of(scene: &Scene) -> Self {
         match scene.analysis {
             Analysis::Static => Self::Curve,
@@ -125,7 +125,7 @@ impl Drawer {
         }
     }
 
-    /// Its name and what is in it.
+    /// Returns the drawer's name and a description of its content.
     pub(crate) fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Curve => ("Load curve", "Load against deflection (L)"),
@@ -134,13 +134,13 @@ impl Drawer {
     }
 }
 
-/// How to look at the body.
+/// Display options of the body, the plots and the bars.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ViewOptions {
     pub field: Field,
-    /// Fixed ends of the colour map, or `None` for those of the current values.
+    /// Fixed limits of the colour map; `None` means the limits of the current values.
     pub fixed_range: Option<[f64; 2]>,
-    /// Values as the elements have them, not recovered at the nodes.
+    /// `true` if the values of the elements are drawn instead of values recovered at the nodes.
     pub raw: bool,
     pub wireframe: bool,
     pub rest_outline: bool,
@@ -150,20 +150,20 @@ pub(crate) struct ViewOptions {
     pub mode: Mode,
     pub drawer: Option<Drawer>,
     pub motion_plot: MotionPlot,
-    /// Quantities of the load curve; `None` for those that show most.
+    /// Quantities of the load curve; `None` means those that show most.
     pub curve_plot: Option<CurvePlot>,
-    /// Whether bars and panel are there at all: a picture may do without.
+    /// `true` if bars and panel are drawn; images may omit them.
     pub bars: bool,
-    /// Whether the panel is there where it has its own place.
+    /// `true` if the panel is open in a window that is wide enough for it.
     pub panel: bool,
-    /// Whether it lies over the body where it has none.
+    /// `true` if the panel is open over the body in a narrow window.
     pub sheet: bool,
-    /// Whether the window is so narrow that it has none.
+    /// `true` if the window is too narrow for a panel next to the body.
     pub narrow: bool,
-    /// Whether the status is explained.
+    /// `true` if the explanation of the status is shown.
     pub why: bool,
     pub help: bool,
-    /// An edge that is shown: the pointer is on its name.
+    /// Name of the highlighted edge: the one whose name is under the pointer.
     pub edge: Option<String>,
 }
 
@@ -194,12 +194,12 @@ impl Default for ViewOptions {
 }
 
 impl ViewOptions {
-    /// Whether the field is drawn from what has been recovered at the nodes.
+    /// Returns `true` if the field is drawn from values recovered at the nodes.
     pub(crate) fn is_smooth(&self) -> bool {
         !self.raw && !self.field.is_of_elements()
     }
 
-    /// Shows what was hidden and hides what was shown; a drawer opens in the place of another.
+    /// Shows what is hidden and hides what is shown; opening a drawer closes the other one.
     pub(crate) fn toggle(&mut self, what: Toggle) {
         match what {
             Toggle::Wireframe => self.wireframe ^= true,
@@ -215,7 +215,7 @@ impl ViewOptions {
                 self.mode = if self.mode == mode { Mode::Explore } else { mode };
                 self.why = false;
             }
-            // Plots are for exploring: asked for in another mode they are shown there.
+            // Plots are shown in Explore only: opening one from another mode switches to it.
             Toggle::Drawer(drawer) => {
                 let open = self.plots() == Some(drawer);
                 (self.mode, self.drawer) = (Mode::Explore, (!open).then_some(drawer));
@@ -223,17 +223,17 @@ impl ViewOptions {
         }
     }
 
-    /// The plots that are seen.
+    /// Returns the drawer that is visible.
     pub(crate) fn plots(&self) -> Option<Drawer> {
         self.drawer.filter(|_| self.mode == Mode::Explore)
     }
 
-    /// Whether the panel is seen.
+    /// Returns `true` if the panel is visible.
     pub(crate) fn shows_panel(&self) -> bool {
         if self.narrow { self.sheet } else { self.panel }
     }
 
-    /// Colours with another field; a fixed range was for the one before.
+    /// Colours the body with `field`; a fixed colour range is dropped if the field changes.
     pub(crate) fn color_with(&mut self, field: Field) {
         if self.field != field {
             self.field = field;

@@ -1,4 +1,4 @@
-//! The body's pass: coloured triangles and the wireframe, multisampled, straight into the frame.
+//! Render pass of the bodies: coloured triangles and the wireframe, multisampled, drawn directly into the frame.
 
 use bytemuck::{Pod, Zeroable};
 use nalgebra::Vector2;
@@ -6,63 +6,63 @@ use nalgebra::Vector2;
 use super::colormap::{self, ColorMap};
 use super::{Camera, Gpu};
 
-/// What is drawn of a body.
+/// Input for drawing a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// Another number wherever positions, triangles, values or lines are others: what has been uploaded is drawn again where
-    /// it is the same.
+    /// Revision number of positions, triangles, values and lines; equal values reuse the GPU upload.
     pub stamp: u64,
     /// Node positions, m.
     pub positions: &'a [Vector2<f64>],
-    /// Corners of the triangles.
+    /// Triangles, as indices of nodes.
     pub triangles: &'a [[u32; 3]],
-    /// A value at every corner of every triangle, if it has one; between them it is linear.
+    /// Values at the corners of every triangle, interpolated linearly; `None` if there is no value.
     pub values: &'a [[Option<f64>; 3]],
-    /// The colour of triangles without, gamma space.
+    /// Colour of triangles without values, gamma space.
     pub absent_color: [u8; 3],
-    /// The values at the two ends of the colour map.
+    /// Values at both ends of the colour map.
     pub range: [f64; 2],
     /// The colour map.
     pub map: ColorMap,
-    /// Lines between nodes, over the triangles; empty for none.
+    /// Lines over the triangles, as indices of nodes; empty for none.
     pub lines: &'a [[u32; 2]],
-    /// A triangle beside each line: lines that its height leaves too close to the next ones fade.
+    /// Triangle adjacent to each line. The line fades if the triangle's height on the screen is small, because the
+    /// lines are then too close together.
     pub beside: &'a [u32],
-    /// Triangles across an element.
+    /// Number of triangles across an element.
     pub pieces: u32,
-    /// Their colour, gamma space, straight alpha.
+    /// Colour of the lines, gamma space, straight (not premultiplied) alpha.
     pub line_color: [u8; 4],
-    /// What is behind the body, gamma space.
+    /// Background colour of the view, gamma space.
     pub background: [u8; 3],
-    /// What is beside the view, gamma space.
+    /// Colour of the target outside the views, gamma space.
     pub surround: [u8; 3],
 }
 
-/// A rectangle of a target, pixels.
+/// Rectangle of a target, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Viewport {
-    /// Left and top.
+    /// Left and top edge.
     pub corner: [u32; 2],
     /// Width and height.
     pub size: [u32; 2],
 }
 
 impl Viewport {
-    /// The part of it that is in a target of this size.
+    /// Returns the part of the rectangle that is inside a target of this size.
     fn within(self, target: [u32; 2]) -> Self {
         let corner = [0, 1].map(|axis| self.corner[axis].min(target[axis]));
         Self { corner, size: [0, 1].map(|axis| self.size[axis].min(target[axis] - corner[axis])) }
     }
 }
 
-/// A body in a part of a target.
+/// Body in a rectangle of a target.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// Where it is drawn; all of it is filled.
+    /// Rectangle in which the body is drawn; all of it is filled.
     pub viewport: Viewport,
-    /// What is drawn.
+    /// Body and colours.
     pub frame: Frame<'a>,
-    /// How it is seen.
+    /// Camera.
     pub camera: Camera,
 }
 
@@ -71,29 +71,29 @@ pub struct View<'a> {
 struct Vertex {
     position: [f32; 2],
     color: [u8; 4],
-    /// Where its value lies in the colour map, 0 to 1; negative where its colour is its own.
+    /// Position of the value in the colour map, 0 to 1; negative if `color` is used instead.
     value: f32,
 }
 
-/// What decides the vertices of a view.
+/// Inputs that the vertices of a view were computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Uploaded {
     stamp: u64,
     camera: Camera,
     pixels_per_point: f64,
-    /// Pixels.
+    /// Size of the view, pixels.
     size: [u32; 2],
     range: [f64; 2],
     lines: usize,
     colors: [[u8; 3]; 2],
     line_color: [u8; 4],
-    /// Where its triangles begin, its lines, and the next view.
+    /// Indices of the first vertex of its triangles, of its lines, and of the next view.
     parts: [u32; 3],
 }
 
-/// The value of a vertex that has a colour of its own.
+/// Value of a vertex whose own colour is used.
 const COLORED: f32 = -1.0;
-/// Colours that the shader has of the colour map.
+/// Number of samples of the colour map in the shader.
 const MAP_COLORS: usize = 64;
 
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -103,7 +103,7 @@ struct CameraUniform {
     padding: [f32; 2],
 }
 
-/// What a camera is to the shader.
+/// Uniform buffer of a camera, and its bind group.
 #[derive(Debug)]
 struct CameraController {
     uniform: wgpu::Buffer,
@@ -130,7 +130,7 @@ impl CameraController {
     }
 }
 
-/// Draws bodies into targets of one format.
+/// Renderer of bodies for targets of one format.
 #[derive(Debug)]
 pub struct BodyRenderer {
     backgrounds: wgpu::RenderPipeline,
@@ -138,23 +138,23 @@ pub struct BodyRenderer {
     lines: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     map: wgpu::Buffer,
-    /// What is in there.
+    /// Colour map in the buffer `map`.
     uploaded_map: Option<ColorMap>,
-    /// One a view: made when they are needed first.
+    /// Camera uniforms, one per view; created on first use.
     eyes: Vec<CameraController>,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
-    /// What is in the vertex buffer.
+    /// Inputs of the vertices in the vertex buffer.
     uploaded: Vec<Uploaded>,
     format: wgpu::TextureFormat,
-    /// Where pixels have several samples; resolved into the target.
+    /// Multisampled texture, which is resolved into the target; `None` without multisampling.
     multisampled: Option<wgpu::TextureView>,
-    /// Of the target, pixels.
+    /// Size of the target, pixels.
     size: [u32; 2],
 }
 
 impl BodyRenderer {
-    /// Pipelines for targets of this format.
+    /// Creates the pipelines for targets of this format.
     #[must_use]
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let device = &gpu.device;
@@ -215,7 +215,8 @@ impl BodyRenderer {
             })
         };
         Self {
-            // A processor that draws takes each for its own: what is opaque is not blended, and a flat colour is not looked up.
+            // Separate pipelines speed up software rendering: opaque triangles are not blended, and flat colours need
+            // no lookup.
             backgrounds: pipeline(wgpu::PrimitiveTopology::TriangleList, "flat_fragment", None),
             triangles: pipeline(wgpu::PrimitiveTopology::TriangleList, "mapped_fragment", None),
             lines: pipeline(wgpu::PrimitiveTopology::LineList, "flat_fragment", Some(wgpu::BlendState::ALPHA_BLENDING)),
@@ -247,8 +248,8 @@ impl BodyRenderer {
         })
     }
 
-    /// Draws the views, which do not overlap and have the same colour map, with this many pixels a point, into a target of this size (pixels), all of
-    /// which it fills.
+    /// Draws views, which must not overlap and must have the same colour map, into a target of this size, pixels, and
+    /// fills all of the target. `pixels_per_point` converts the cameras' points to pixels.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -266,7 +267,7 @@ impl BodyRenderer {
         let views: Vec<View<'_>> = views.filter(|view| !view.viewport.size.contains(&0)).collect();
         self.upload(gpu, &views, pixels_per_point);
 
-        // All views have the same colours.
+        // All views have the same colour map.
         if let Some(map) = views.first().map(|view| view.frame.map).filter(|map| self.uploaded_map != Some(*map)) {
             let color = |i: usize| map.color(i as f64 / (MAP_COLORS - 1) as f64).map(|c| f32::from(c) / 255.0);
             let colors: [[f32; 4]; MAP_COLORS] = std::array::from_fn(|i| {
@@ -309,7 +310,7 @@ impl BodyRenderer {
         }
     }
 
-    /// Uploads the vertices of all views, unless those are there, and what each looks at.
+    /// Uploads the vertices of all views, unless they are already uploaded, and the camera uniforms.
     fn upload(&mut self, gpu: &Gpu, views: &[View<'_>], pixels_per_point: f64) {
         let wanted = |view: &View<'_>, parts| Uploaded {
             stamp: view.frame.stamp,
@@ -349,10 +350,10 @@ impl BodyRenderer {
         gpu.queue.write_buffer(&self.vertices, 0, bytes);
     }
 
-    /// Adds vertices of triangles, the background's before the body's, then of lines; returns where the body's begin,
-    /// where the lines begin, and the end. `view` is what is seen, m.
+    /// Adds the vertices of the background, of the body's triangles, and of the lines. Returns the indices of the first
+    /// triangle vertex and of the first line vertex, and the end. `view` is the visible size, m.
     fn add_vertices(&mut self, frame: &Frame<'_>, camera: &Camera, view: [f64; 2]) -> [u32; 3] {
-        // Relative to the camera before it becomes f32: zoomed in far from the origin, digits matter.
+        // Subtracted before the conversion to `f32`, to keep the precision at high magnification far from the origin.
         let position = |node: u32| {
             let d = frame.positions.get(node as usize).copied().unwrap_or_default() - camera.center;
             [d.x as f32, d.y as f32]
@@ -364,7 +365,7 @@ impl BodyRenderer {
         let triangles = self.scratch.len() as u32;
         let [r, g, b] = frame.absent_color;
         for (triangle, values) in frame.triangles.iter().zip(frame.values) {
-            // A triangle without a value at one of its corners has none.
+            // A triangle with a missing value at a corner is drawn without values.
             let known = values.iter().all(Option::is_some);
             self.scratch.extend(triangle.iter().zip(values).map(|(&node, value)| {
                 let at = value.filter(|_| known).map(|value| colormap::position(value, frame.range) as f32);
@@ -389,12 +390,12 @@ impl BodyRenderer {
     }
 }
 
-/// How much is seen of lines that are so far apart, points: denser ones would hide the body's colours.
+/// Returns the opacity of lines at this distance, points: denser lines would hide the colours of the body.
 fn line_strength(spacing: f64) -> f64 {
-    /// From here on they are drawn in full, and below the second not at all.
+    /// Distances, points, from which on lines are opaque, and up to which they are invisible.
     const CLEAR: f64 = 6.0;
     const GONE: f64 = 2.0;
-    // Not a number where a triangle has no extent: nothing to see.
+    // The spacing of a degenerate triangle is NaN, for which the comparison is `false`.
     if spacing > GONE { ((spacing - GONE) / (CLEAR - GONE)).min(1.0) } else { 0.0 }
 }
 
@@ -414,7 +415,7 @@ mod tests {
         read_texture(gpu, &texture).unwrap()
     }
 
-    /// What has been uploaded is drawn again only where nothing that is seen has changed.
+    /// An upload is reused only if nothing visible has changed.
     #[test]
     fn a_used_renderer_draws_what_a_new_one_does() {
         let gpu = Gpu::headless().unwrap();

@@ -1,19 +1,19 @@
-//! Metres to points of a view, and back.
+//! Camera: conversion between metres of the plane and points of a view.
 
 use std::ops::RangeInclusive;
 
 use nalgebra::Vector2;
 
-/// Looks at a point of the plane with a magnification.
+/// Camera with a centre and a magnification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The point in the middle of the view, m.
+    /// Point of the plane in the middle of the view, m.
     pub center: Vector2<f64>,
-    /// Points of the view a metre.
+    /// Magnification, points of the view per metre.
     pub scale: f64,
 }
 
-/// What is kept free around a fitted box, points.
+/// Space kept free around a fitted box, points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Margins {
     /// Left and right.
@@ -25,14 +25,14 @@ pub struct Margins {
 }
 
 impl Camera {
-    /// Scales beyond these leave nothing to see.
+    /// Range of useful magnifications, points per metre.
     const SCALES: RangeInclusive<f64> = 1e-9..=1e12;
 
-    /// The camera that shows the box from `low` to `high` in a view of this size (points), inside the margins. A view
-    /// smaller than its margins gets smaller margins.
+    /// Returns the camera that fits the box from `low` to `high`, m, into a view of size `view`, points, inside the
+    /// margins. In a small view the margins shrink.
     #[must_use]
     pub fn fit(low: Vector2<f64>, high: Vector2<f64>, view: [f64; 2], margins: Margins) -> Self {
-        /// The fraction of a small view that margins may take.
+        /// Largest fraction of a view that margins may take.
         const LARGEST: f64 = 0.7;
         let extent = (high - low).map(|v| v.max(1e-12));
         let shrink = |total: f64, view: f64| (LARGEST * view / total.max(1e-9)).min(1.0);
@@ -47,28 +47,28 @@ impl Camera {
         Self { center: (low + high) * 0.5 - lift, scale }
     }
 
-    /// Where a point of the plane is, in points right and down of the view's middle.
+    /// Returns the view position of a point of the plane, in points to the right of and below the middle of the view.
     #[must_use]
     pub fn to_view(&self, p: Vector2<f64>) -> [f64; 2] {
         let d = (p - self.center) * self.scale;
         [d.x, -d.y]
     }
 
-    /// The point of the plane at these points right and down of the view's middle.
+    /// Returns the point of the plane at a view position, in points to the right of and below the middle of the view.
     #[must_use]
     pub fn to_world(&self, at: [f64; 2]) -> Vector2<f64> {
         self.center + Vector2::new(at[0], -at[1]) / self.scale
     }
 
-    /// Moves what is seen by these points right and down.
+    /// Moves the visible part of the plane by this many points to the right and down.
     pub fn pan(&mut self, by: [f64; 2]) {
         self.center -= Vector2::new(by[0], -by[1]) / self.scale;
     }
 
-    /// Magnifies by `factor`, within these scales; what is at `at` stays there.
+    /// Magnifies by `factor`, within the range `scales`; the point of the plane at `at` stays in place.
     pub fn zoom(&mut self, factor: f64, at: [f64; 2], scales: RangeInclusive<f64>) {
         let fixed = self.to_world(at);
-        // A scale outside already is not made worse.
+        // A magnification outside the range may stay, but moves no further outside.
         let (low, high) = (scales.start().min(self.scale), scales.end().max(self.scale));
         let scale = (self.scale * factor).max(low).min(high);
         self.center = fixed + (self.center - fixed) * (self.scale / scale);

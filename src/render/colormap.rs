@@ -1,29 +1,30 @@
-//! Values to colours. Every colour of a map stands out from its ground by WCAG's 3:1 (`app/palette.rs` computes it), so a
-//! map is the part of a scale that does: the higher a value, the farther from the ground.
+//! Colour maps. Every colour of a map has a contrast of at least 3:1 with its background (WCAG; tested in
+//! `app/widgets/palette.rs`), so a map is the part of a published scale that satisfies this: the higher the value, the
+//! higher the contrast.
 
 use std::sync::LazyLock;
 
-/// A map of [0, 1] to colours.
+/// Colour map of [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorMap {
-    /// From blue to pale yellow (Brewer 2003, `YlGnBu`, without its ends), for values from nothing to much on a dark
-    /// ground.
+    /// From blue to pale yellow (Brewer 2003, `YlGnBu`, without its ends), for non-negative values on a dark
+    /// background.
     #[default]
     SequentialOnDark,
-    /// From teal to navy, the other part of the same scale, on a light ground.
+    /// From teal to navy, the other part of the same scale, on a light background.
     SequentialOnLight,
-    /// From blue over pale to red (`RdBu`), for values with a sign on a dark ground.
+    /// From blue through pale to red (`RdBu`), for signed values on a dark background.
     DivergingOnDark,
-    /// From blue over dark grey to red, on a light ground.
+    /// From blue through dark grey to red, on a light background.
     DivergingOnLight,
 }
 
 impl ColorMap {
-    /// Every map.
+    /// All colour maps.
     pub const ALL: [Self; 4] =
         [Self::SequentialOnDark, Self::SequentialOnLight, Self::DivergingOnDark, Self::DivergingOnLight];
 
-    /// The colour of `t` in [0, 1]; outside, the colour of the nearer end.
+    /// Returns the colour of `t` in [0, 1]; values outside get the colour of the nearer end.
     #[must_use]
     pub fn color(self, t: f64) -> [u8; 3] {
         let t = if t.is_nan() { 0.5 } else { t.clamp(0.0, 1.0) };
@@ -31,7 +32,7 @@ impl ColorMap {
         table[(t * (TABLE - 1) as f64).round() as usize]
     }
 
-    /// What the table is made of.
+    /// Computes a colour for the table.
     fn evaluate(self, t: f64) -> [u8; 3] {
         let part = |scale: colorous::Gradient, from: f64, to: f64| {
             let c = scale.eval_continuous(from + (to - from) * t);
@@ -51,18 +52,18 @@ impl ColorMap {
     }
 }
 
-/// Colours of a map.
+/// Number of colours of a table.
 const TABLE: usize = 256;
 
-/// The colours of every map, evaluated once: a fine mesh asks for 200 000 of them a frame.
+/// Tables of all maps, computed once: a fine mesh looks up 200 000 colours per frame.
 static TABLES: LazyLock<[[[u8; 3]; TABLE]; 4]> =
     LazyLock::new(|| ColorMap::ALL.map(|map| std::array::from_fn(|i| map.evaluate(i as f64 / (TABLE - 1) as f64))));
 
-/// Where `value` lies in `range`, in [0, 1]; the middle where the range is empty.
+/// Returns the position of `value` in `range`, in [0, 1]; 0.5 if the range is empty.
 #[must_use]
 pub fn position(value: f64, range: [f64; 2]) -> f64 {
     let [low, high] = range;
-    // Halved, so that the difference of two large numbers stays finite.
+    // Halved so that the difference of two large numbers does not overflow.
     let (span, above) = (0.5 * high - 0.5 * low, 0.5 * value - 0.5 * low);
     if span > 0.0 { (above / span).clamp(0.0, 1.0) } else { 0.5 }
 }

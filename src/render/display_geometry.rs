@@ -1,4 +1,4 @@
-//! A mesh as points, triangles and lines to draw, whatever its elements: curved sides become polylines.
+//! Display geometry of a mesh: points, triangles and lines for all element types; curved sides become polylines.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -7,27 +7,29 @@ use nalgebra::Vector2;
 use crate::element::ElementType;
 use crate::mesh::{Mesh, Segment};
 
-/// What is drawn of a mesh. Points are weighted sums of nodes.
+/// Display geometry of a mesh. Points are weighted sums of nodes.
 #[derive(Debug, Default)]
 pub(crate) struct DisplayGeometry {
-    /// Nodes of an element, and for each point those of its element with their weights.
+    /// Number of nodes per element; `nodes` and `weights` have this many entries per point: the nodes of its element,
+    /// and their weights.
     stride: usize,
     nodes: Vec<u32>,
     weights: Vec<f64>,
-    /// Triangles between points.
+    /// Triangles, as indices of points.
     pub triangles: Vec<[u32; 3]>,
-    /// The first quadrature point of each triangle's element, and the weights of that and the next ones in its value.
+    /// Index of the first quadrature point of each triangle's element, and the weights of the element's quadrature
+    /// points in the triangle's value.
     value_of: Vec<u32>,
     value_weights: Vec<f64>,
-    /// Element sides.
+    /// Segments of the element sides, as indices of points.
     pub lines: Vec<[u32; 2]>,
-    /// A triangle beside each of these.
+    /// Triangle adjacent to each segment.
     pub beside: Vec<u32>,
-    /// Pieces of an element's side.
+    /// Number of segments per element side.
     pub pieces: u32,
-    /// The lines around the body, each closed, counter-clockwise.
+    /// Closed lines around the body, counter-clockwise, as indices of points.
     pub outline: Vec<Vec<u32>>,
-    /// The sides of triangles that make them up.
+    /// Element sides on the boundary of the mesh.
     pub boundary: Vec<Segment>,
 }
 
@@ -39,7 +41,7 @@ impl DisplayGeometry {
         let pattern = CellPattern::new(entry);
         let boundary: HashSet<_> = drawing.boundary.iter().map(Segment::key).collect();
         let mut drawn = HashSet::new();
-        // Every boundary side's end corner and points, by its first corner.
+        // Boundary sides by their first corner: each with its end corner and its points.
         let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();
         for (number, nodes) in (0..).zip(mesh.elements()) {
             let first_triangle = drawing.triangles.len() as u32;
@@ -72,7 +74,7 @@ impl DisplayGeometry {
         drawing
     }
 
-    /// Adds an element; returns the number of its first point.
+    /// Adds an element; returns the index of its first point.
     fn add(&mut self, pattern: &CellPattern, number: u32, nodes: &[u32]) -> u32 {
         let first = (self.nodes.len() / self.stride) as u32;
         for weights in &pattern.points {
@@ -87,20 +89,20 @@ impl DisplayGeometry {
         first
     }
 
-    /// Where point `p` is, for nodes that are where `place` says.
+    /// Returns the position of point `p`; `place` returns the positions of nodes.
     pub(crate) fn point(&self, p: u32, place: &dyn Fn(u32) -> Vector2<f64>) -> Vector2<f64> {
         let own = p as usize * self.stride..(p as usize + 1) * self.stride;
         self.nodes[own.clone()].iter().zip(&self.weights[own]).map(|(&n, &w)| place(n) * w).sum()
     }
 
-    /// Where all points are.
+    /// Computes the positions of all points.
     pub(crate) fn points(&self, place: &dyn Fn(u32) -> Vector2<f64>, positions: &mut Vec<Vector2<f64>>) {
         positions.clear();
         positions.extend((0..(self.nodes.len() / self.stride.max(1)) as u32).map(|p| self.point(p, place)));
     }
 
-    /// The values at the corners of every triangle, from those of the nodes by the shape functions; absent where one of
-    /// these is. Nodes whose values differ by a period have the same.
+    /// Computes the values at the corners of every triangle from nodal values with the shape functions; `None` if a
+    /// nodal value is missing. With a `period`, values that differ by a multiple of it are equivalent.
     pub(crate) fn nodal_values(
         &self,
         at_nodes: &[Option<f64>],
@@ -125,8 +127,8 @@ impl DisplayGeometry {
         values.extend(self.triangles.iter().map(|corners| corners.map(at)));
     }
 
-    /// The value of every triangle, the same at its corners, from those of the quadrature points; absent where one of
-    /// these is.
+    /// Computes the value of every triangle, equal at its corners, from values at quadrature points; `None` if one is
+    /// missing.
     pub(crate) fn values(&self, at_points: &[Option<f64>], values: &mut Vec<[Option<f64>; 3]>) {
         values.clear();
         let stride = self.value_weights.len() / self.value_of.len().max(1);
@@ -137,15 +139,15 @@ impl DisplayGeometry {
     }
 }
 
-/// How every element of a kind is drawn.
+/// Subdivision of an element type for display.
 struct CellPattern {
-    /// Shape functions at its points.
+    /// Values of the shape functions at its points.
     points: Vec<Vec<f64>>,
-    /// Triangles between points, with the weights of the quadrature points' values in the middle of each.
+    /// Triangles, as indices of points, with the weights of the quadrature points' values at the centre of each.
     triangles: Vec<([u32; 3], Vec<f64>)>,
     /// Points along each side.
     sides: Vec<Vec<u32>>,
-    /// The triangle at every piece of each side.
+    /// Triangle adjacent to every segment of each side.
     beside: Vec<Vec<u32>>,
 }
 
@@ -200,7 +202,7 @@ mod tests {
             let touches =
                 |(line, &t): (&[u32; 2], &u32)| line.iter().all(|p| drawing.triangles[t as usize].contains(p));
             assert!(drawing.lines.iter().zip(&drawing.beside).all(touches), "{element:?}: a triangle elsewhere");
-            // A field that is linear within elements is drawn as it is: its mean over the body is that of its points.
+            // For a field that is linear within elements, the mean over the drawn triangles is exact.
             let entry = element.entry();
             let field = |nodes: &[u32], at: [f64; 2]| -> f64 {
                 let places = nodes.iter().map(|&n| mesh.nodes()[n as usize]);
@@ -217,7 +219,7 @@ mod tests {
             assert!(values.as_flattened().iter().flatten().all(|v| (v - 5.0).abs() < 1e-12), "{element:?}");
             drawing.values(&vec![None; count], &mut values);
             assert!(values.as_flattened().iter().all(Option::is_none), "{element:?}");
-            // One that is given at the nodes is drawn through them, and an angle takes the short way around.
+            // Nodal values are interpolated exactly, and an angle takes the shorter way around.
             let at_nodes: Vec<Option<f64>> = mesh.nodes().iter().map(|x| Some(x.x + 2.0 * x.y)).collect();
             drawing.nodal_values(&at_nodes, None, &mut values);
             for (corners, values) in drawing.triangles.iter().zip(&values) {

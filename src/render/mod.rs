@@ -1,7 +1,7 @@
-//! Drawing with wgpu: the body's multisampled pass, the camera, the colour map, offscreen pictures.
+//! Rendering with wgpu: multisampled pass of the bodies, camera, colour maps, offscreen images.
 //!
-//! The renderer borrows a [`Frame`] (positions, triangles, a value a triangle), never the simulation. The window and the
-//! offscreen picture go through the same calls.
+//! The renderer borrows a [`Frame`] (positions, triangles, values), never the simulation. The window and offscreen
+//! images use the same calls.
 
 use thiserror::Error;
 
@@ -17,64 +17,64 @@ pub use body::{BodyRenderer, Frame, View, Viewport};
 pub use camera::{Camera, Margins};
 pub use offscreen::read_texture;
 
-/// Why nothing was drawn.
+/// Error of the renderer.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// No adapter would do.
+    /// No adapter is usable.
     #[error(
         "no usable graphics adapter: {tried}.\nInstall a Vulkan driver: on Debian and Ubuntu `scripts/setup`, or \
          `apt-get install mesa-vulkan-drivers`, gives one in software; elsewhere the driver of your GPU"
     )]
     NoAdapter {
-        /// What was tried and what each said.
+        /// Tried backends, and the error of each.
         tried: String,
     },
-    /// The adapter gave no device.
+    /// The adapter returned no device.
     #[error("the graphics adapter {adapter} gave no device: {reason}")]
     NoDevice {
-        /// Its name.
+        /// Name of the adapter.
         adapter: String,
-        /// Its reason.
+        /// Reason of the failure.
         reason: String,
     },
-    /// A picture larger than the adapter can draw.
+    /// The image is larger than the adapter can draw.
     #[error("a picture of {size:?} pixels is larger than the {limit} this adapter draws")]
     TooLarge {
-        /// What was asked for.
+        /// Requested size, pixels.
         size: [u32; 2],
-        /// Its largest side.
+        /// Largest side that the adapter supports, pixels.
         limit: u32,
     },
-    /// The picture did not come back from the device.
+    /// The image could not be read back from the device.
     #[error("the picture did not come back from the graphics device: {0}")]
     ReadBack(String),
-    /// The picture was not written.
+    /// The image could not be written.
     #[error(transparent)]
     Picture(#[from] PictureError),
 }
 
 impl RenderError {
-    /// Whether the machine has nothing to draw with.
+    /// Returns `true` if the machine has no usable graphics adapter or device.
     #[must_use]
     pub fn is_missing_adapter(&self) -> bool {
         matches!(self, Self::NoAdapter { .. } | Self::NoDevice { .. })
     }
 }
 
-/// A graphics device.
+/// Graphics device.
 #[derive(Debug)]
 pub struct Gpu {
-    /// Its adapter.
+    /// Adapter of the device.
     pub adapter: wgpu::Adapter,
     /// The device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// Command queue of the device.
     pub queue: wgpu::Queue,
 }
 
 impl Gpu {
-    /// A device without a window.
+    /// Creates a device without a window.
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`], [`RenderError::NoDevice`].
@@ -86,11 +86,11 @@ impl Gpu {
         })
     }
 
-    /// Tries the system's own graphics interface, and OpenGL only where that gives nothing: asking OpenGL too costs
-    /// time and prints its complaints. `WGPU_BACKEND` overrides both.
+    /// Tries the system's native graphics API first, and OpenGL only if that fails, because probing OpenGL takes time
+    /// and prints warnings. `WGPU_BACKEND` overrides both.
     ///
     /// # Errors
-    /// [`RenderError::NoAdapter`] with all that was tried, or whatever else `attempt` fails with.
+    /// [`RenderError::NoAdapter`] with all backends tried, or any other error of `attempt`.
     pub fn first_of_backends<T>(
         mut attempt: impl FnMut(wgpu::Backends) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
@@ -108,7 +108,7 @@ impl Gpu {
         Err(RenderError::NoAdapter { tried: tried.join("; then ") })
     }
 
-    /// The best adapter for a surface: hardware before software.
+    /// Creates a device on the best adapter for a surface: hardware is preferred to software.
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`], [`RenderError::NoDevice`].
@@ -122,7 +122,7 @@ impl Gpu {
             .map_err(|error| RenderError::NoAdapter { tried: error.to_string() })?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("warpbeam"),
-            // Enough for a software GL; the texture size is whatever the adapter has.
+            // Limits that software OpenGL also supports, except for the texture size, which is the adapter's.
             required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
             ..Default::default()
         };
@@ -131,20 +131,20 @@ impl Gpu {
         Ok(Self { adapter, device, queue })
     }
 
-    /// Largest side of a texture, pixels.
+    /// Returns the largest side of a texture, pixels.
     #[must_use]
     pub fn max_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// Samples a pixel of the body's pass: four are what every WebGPU adapter has. A processor that draws takes one: four
-    /// take it three times as long a frame, and the body's outline is smooth without.
+    /// Returns the number of samples per pixel of the body's pass. Every WebGPU adapter supports four. Software
+    /// rendering uses one: with four a frame takes three times as long, and the body's outline is smooth without them.
     #[must_use]
     pub fn samples(&self) -> u32 {
         if self.adapter.get_info().device_type == wgpu::DeviceType::Cpu { 1 } else { 4 }
     }
 
-    /// The adapter in words; software is named as such.
+    /// Returns a description of the adapter, which marks software rendering.
     #[must_use]
     pub fn describe(&self) -> String {
         let info = self.adapter.get_info();
@@ -156,7 +156,7 @@ impl Gpu {
         }
     }
 
-    /// A texture to draw into, sampled or copied from afterwards.
+    /// Creates a texture to draw into, which is sampled or copied from afterwards.
     pub(crate) fn target(
         &self,
         label: &str,
@@ -178,5 +178,5 @@ impl Gpu {
     }
 }
 
-/// The format of every offscreen target: what egui wants of an image, and PNG of a file.
+/// Pixel format of all offscreen targets, as egui expects it for an image and PNG for a file.
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -1,9 +1,9 @@
-//! From a texture to memory.
+//! Read-back of a texture to memory.
 
 use super::{Gpu, RenderError};
 use crate::picture::Picture;
 
-/// Waits for everything submitted, and copies an RGBA texture to memory.
+/// Waits for all submitted work, and copies an RGBA texture to memory.
 ///
 /// # Errors
 /// [`RenderError::ReadBack`].
@@ -35,7 +35,7 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Picture, Rende
     let slice = buffer.slice(..);
     let (sender, receiver) = std::sync::mpsc::channel();
     slice.map_async(wgpu::MapMode::Read, move |result| {
-        // The receiver is there until the poll below returns.
+        // The receiver exists until the poll below returns.
         let _ = sender.send(result);
     });
     let failed = |reason: String| RenderError::ReadBack(reason);

@@ -1,11 +1,13 @@
-//! The library makes its sentences in English. Here they are taken apart again, for the catalogue.
+//! Translation of the library's sentences, which are in English: each is matched with a pattern, and its parts are
+//! translated.
 
 use crate::app::language::{filled, tr};
 
-/// Its sentences. A place takes what stands there, as little as can be, and that is translated in its turn; the places `n`
-/// and `key` take no space. The first one that fits is it: the special before the general.
+/// Patterns of the sentences. A placeholder matches as little text as possible, which is then translated, too; the
+/// placeholders `n` and `key` match no spaces. The first pattern that matches is used, so special ones come before
+/// general ones.
 const SENTENCES: &[&str] = &[
-    // How an iteration ended.
+    // Ends of an iteration.
     "the limit of %{count} is reached; more may do",
     "the residual has not fallen for %{n} iterations, and is more than rounding explains",
     "no digits are left: rounding may change the residual by %{floor}, so %{tolerance} cannot be asked for here",
@@ -16,7 +18,7 @@ const SENTENCES: &[&str] = &[
     "a step failed even at %{n} s: %{error}",
     "the motion exploded: the step of %{n} s, the critical one is about %{critical} s",
     "%{error}; lower the load",
-    // What errors are measured against.
+    // Reference solutions.
     "%{reference} (its own error at most %{own} %); beam theory is %{off} % off",
     "%{reference} (its own error at most %{own} %)",
     "%{reference} (its own error about %{own} %)",
@@ -34,7 +36,7 @@ const SENTENCES: &[&str] = &[
     "the warped iteration converges near here: ρ = %{n} < 1",
     "the warped iteration cannot converge here: ρ = %{n} > 1",
     "strains reach %{n} %: beyond %{most} % the linear law between stress and strain is no material's",
-    // Threads that could not be had.
+    // Threads that could not be started.
     "no thread for the solve: %{error}",
     "no thread for the study: %{error}",
     // Axes of a load path.
@@ -44,7 +46,7 @@ const SENTENCES: &[&str] = &[
     "first %{load}, the others in proportion",
     "u_x of %{probe}",
     "u_y of %{probe}",
-    // What is refused.
+    // Invalid input.
     "expected a whole number, got %{got}",
     "expected one of %{known}, got %{got}",
     "expected %{what}, got nothing",
@@ -58,7 +60,7 @@ const SENTENCES: &[&str] = &[
     "`%{text}` is %{got}; expected %{expected}",
     "the factor of %{n} unknowns does not fit in memory; expected a coarser mesh",
     "%{key}: %{message}",
-    // Settings, and what stands in the places above.
+    // Settings, and texts in the placeholders above.
     "%{mesh}, %{method}, %{count}",
     "%{element} as meshed",
     "%{n} triangles",
@@ -72,7 +74,7 @@ const SENTENCES: &[&str] = &[
     "%{quantity} (%{unit})",
 ];
 
-/// What is shown for a text of the library, of any kind.
+/// Returns the translation of any text of the library; unknown texts are returned unchanged.
 pub(crate) fn translated(english: &str) -> String {
     let known = tr(english);
     if known != english {
@@ -87,7 +89,7 @@ pub(crate) fn translated(english: &str) -> String {
     filled(sentence, &names, &values)
 }
 
-/// What stands in the places of a sentence, where a text is one such.
+/// Returns the text in each placeholder of a pattern; `None` if `text` does not match it.
 fn places<'a>(sentence: &'static str, text: &'a str) -> Option<Vec<(&'static str, &'a str)>> {
     let (before, mut pattern) = sentence.split_once("%{").unwrap_or((sentence, ""));
     let mut rest = text.strip_prefix(before)?;
@@ -128,7 +130,7 @@ mod tests {
         scene::open(&Source { name: id.into(), assignments: Vec::new() }).unwrap()
     }
 
-    /// What is said in the catalogue's own words, with nothing left in English but what was put in.
+    /// All sentences are translated, and only the inserted values stay in English.
     #[test]
     fn the_sentences_of_the_library_are_translated() {
         speak(Language::Chinese);
@@ -179,7 +181,7 @@ mod tests {
         }
         for text in texts {
             let said = translated(&text);
-            // A key of a scene stays as it is written.
+            // Keys of a scene are not translated.
             let keys = ["beam.cells", "beam.length", "mesh.file", "support.0.fix", "probe.0.name", "material", "name"];
             let own = keys.iter().fold(said.clone(), |said, key| said.replace(key, ""));
             let left = own.split(|c: char| !c.is_ascii_alphabetic()).find(|word| word.len() > 2);

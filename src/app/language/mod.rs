@@ -1,5 +1,5 @@
-//! The languages of the window. The source says everything in English; `assets/locales` has the same in the others, and
-//! what is shown is looked up there at the place where it is shown: what is kept and compared stays English.
+//! Languages of the window. The source code is in English, and `assets/locales` has the translations. Texts are
+//! translated only where they are displayed: stored and compared texts are English.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -13,10 +13,10 @@ mod library;
 
 pub(super) use library::translated;
 
-/// A language of the window.
+/// Language of the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
 pub enum Language {
-    /// That of the source.
+    /// English, the language of the source code.
     #[default]
     #[serde(rename = "en")]
     #[value(name = "en")]
@@ -28,7 +28,7 @@ pub enum Language {
 }
 
 impl Language {
-    /// What it calls itself.
+    /// Returns the language's name in that language.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -37,7 +37,7 @@ impl Language {
         }
     }
 
-    /// The one that the switch goes to.
+    /// Returns the language that the language button switches to.
     #[must_use]
     pub fn other(self) -> Self {
         match self {
@@ -46,7 +46,7 @@ impl Language {
         }
     }
 
-    /// A text in this language; where the catalogue does not have it, as it is.
+    /// Returns the translation of a text; a text without translation is returned unchanged.
     fn of(self, english: &str) -> &str {
         match self {
             Self::English => english,
@@ -55,26 +55,26 @@ impl Language {
     }
 }
 
-/// The Chinese texts by the English ones. Tests see to it that the file is well formed.
+/// Chinese texts by English texts. Tests check that the file is well formed.
 static CHINESE: LazyLock<BTreeMap<String, String>> =
     LazyLock::new(|| toml::from_str(include_str!("../../../assets/locales/zh-CN.toml")).unwrap_or_default());
 
 thread_local! {
-    /// Of the lab that this thread shows: each test has a thread of its own.
+    /// Language of the lab on this thread; tests run on threads of their own.
     static CURRENT: Cell<Language> = const { Cell::new(Language::English) };
 }
 
-/// From here on this thread's texts are in this language.
+/// Sets the language of this thread's texts.
 pub(super) fn speak(language: Language) {
     CURRENT.set(language);
 }
 
-/// What is shown for a text. One that has no translation, such as the name of a file, is shown as it is.
+/// Returns the translation of a text. A text without translation, such as the name of a file, is returned unchanged.
 pub(super) fn tr(english: &str) -> &str {
     CURRENT.get().of(english)
 }
 
-/// What is shown for a sentence with values in its places, `%{name}` each.
+/// Translates a sentence and inserts values for its placeholders `%{name}`.
 macro_rules! fill {
     ($english:literal, $($name:ident = $value:expr),+ $(,)?) => {
         $crate::app::language::filled($english, &[$(stringify!($name)),+], &[$(::std::string::ToString::to_string(&$value)),+])
@@ -82,7 +82,7 @@ macro_rules! fill {
 }
 pub(super) use fill;
 
-/// A sentence with its values; [`fill`] names them.
+/// Translates a sentence and inserts `values` for the placeholders `names`; implementation of [`fill`].
 pub(super) fn filled(english: &str, names: &[&str], values: &[String]) -> String {
     let mut parts = tr(english).split("%{");
     let mut text = parts.next().unwrap_or_default().to_owned();
@@ -95,7 +95,7 @@ pub(super) fn filled(english: &str, names: &[&str], values: &[String]) -> String
     text
 }
 
-/// A number of things: [`words::count`].
+/// Formats a number of things: translation of [`words::count`].
 pub(super) fn count(n: impl Into<u64>, what: &str) -> String {
     let n = n.into();
     match CURRENT.get() {
@@ -104,12 +104,12 @@ pub(super) fn count(n: impl Into<u64>, what: &str) -> String {
     }
 }
 
-/// An error or a share: [`words::percent`].
+/// Formats a percentage: translation of [`words::percent`].
 pub(super) fn percent(value: f64) -> String {
     tr(&words::percent(value)).to_owned()
 }
 
-/// A text of this size, points, with room between its lines: Han letters fill theirs.
+/// Increases the line spacing of a text of this size, points, in Chinese, whose characters fill the line.
 pub(super) fn spaced(text: RichText, size: f32) -> RichText {
     const LINE: f32 = 1.5;
     match CURRENT.get() {
@@ -118,13 +118,13 @@ pub(super) fn spaced(text: RichText, size: f32) -> RichText {
     }
 }
 
-/// Several things in a row.
+/// Joins parts with the language's comma.
 pub(super) fn joined<T: AsRef<str>>(parts: impl IntoIterator<Item = T>) -> String {
     let parts: Vec<T> = parts.into_iter().collect();
     parts.iter().map(AsRef::as_ref).collect::<Vec<&str>>().join(tr(", "))
 }
 
-/// With a capital and a full stop.
+/// Makes a sentence of `words`: a capital letter and a full stop.
 pub(super) fn sentence(words: &str) -> String {
     if CURRENT.get() == Language::Chinese {
         return format!("{words}。");

@@ -1,4 +1,4 @@
-//! The modes of the window. Each owns its state.
+//! Modes of the window. Each module owns the state of its mode.
 
 pub(crate) mod budget;
 pub(crate) mod compare;

@@ -1,4 +1,4 @@
-//! Pictures without a window: the painter that the window shares, screenshots, and recordings.
+//! Rendering without a window: the frame painter, which the window also uses, screenshots, and recordings.
 
 pub(crate) mod painter;
 pub(crate) mod record;

@@ -1,5 +1,5 @@
-//! The one way a frame gets onto a texture: the pass of the bodies, then egui over it. Window, shots and recordings draw
-//! through here.
+//! Painter of a frame into a texture: the render pass of the bodies, then egui over it. Window, shots and recordings
+//! all use it.
 
 use egui::{ClippedPrimitive, TexturesDelta};
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
@@ -14,12 +14,12 @@ pub(crate) struct Stage {
 
 impl Stage {
     pub(crate) fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
-        // Predictable: the same picture in the window, in a shot, and on another machine.
+        // Deterministic: the same image in the window, in a shot, and on another machine.
         let egui = egui_wgpu::Renderer::new(&gpu.device, format, RendererOptions::PREDICTABLE);
         Self { egui, body: BodyRenderer::new(gpu, format) }
     }
 
-    /// Uploads what egui changed of its textures.
+    /// Uploads the changes of egui's textures.
     pub(crate) fn set_textures(&mut self, gpu: &Gpu, delta: &mut TexturesDelta) {
         for (id, deltas) in delta.set.drain() {
             for delta in &deltas {
@@ -28,7 +28,7 @@ impl Stage {
         }
     }
 
-    /// Drops what egui no longer uses; after the frame that used it.
+    /// Frees the textures that egui no longer uses; to be called after the frame that used them.
     pub(crate) fn free_textures(&mut self, delta: &mut TexturesDelta) {
         for id in delta.free.drain() {
             self.egui.free_texture(&id);

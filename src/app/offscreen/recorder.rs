@@ -1,4 +1,4 @@
-//! A recording that is made beside the window: the scene from its start, into a GIF in the present folder.
+//! Recording of the scene from its start into a GIF in the current folder, made in the background.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::{NoName, ThemeChoice, free_name};
 use crate::scene::{Scene, Source};
 
-/// Pixels of the recording.
+/// Size of the recording, pixels.
 const SIZE: [u32; 2] = [640, 400];
 
-/// Why there is no recording.
+/// Reason for which there is no recording.
 #[derive(Debug, Error)]
 pub(crate) enum RecorderError {
     #[error(transparent)]
@@ -22,21 +22,21 @@ pub(crate) enum RecorderError {
     NoThread(#[from] std::io::Error),
 }
 
-/// Fraction that is done, and what is done now.
+/// Progress report: the fraction done, and the current phase.
 type Said = (f32, String);
 
-/// A recording in a thread of its own. Dropped, it is called off.
+/// Recording in a background thread. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct Recorder {
     task: Task<Said, String>,
     /// Fraction that is done, 0 to 1.
     fraction: f32,
-    /// Description of the present phase.
+    /// Description of the current phase.
     words: String,
 }
 
 impl Recorder {
-    /// Starts to record a scene.
+    /// Starts recording a scene.
     ///
     /// # Errors
     /// [`RecorderError`].
@@ -57,12 +57,12 @@ impl Recorder {
         fill!("%{doing}: %{percent} % (Shift+V stops it)", doing = self.words, percent = percent)
     }
 
-    /// Ends it with what it has.
+    /// Ends the recording with the frames drawn so far.
     pub(crate) fn stop(&self) {
         self.task.cancel();
     }
 
-    /// Hears how far it is; returns what there is to say once it has ended.
+    /// Polls the thread; returns the final message once it has ended.
     pub(crate) fn listen(&mut self) -> Option<String> {
         loop {
             match self.task.poll() {

@@ -1,4 +1,4 @@
-//! Pictures of a lab without a window.
+//! Images of a lab without a window.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -19,26 +19,26 @@ use crate::study::{Extent, Observer, Study};
 /// Largest side of a shot, pixels.
 pub const MAX_SHOT_SIDE: u32 = 8192;
 
-/// What a shot looks like.
+/// Options of a shot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShotOptions {
-    /// Pixels.
+    /// Size, pixels.
     pub size: [u32; 2],
-    /// Whether the panel is in it.
+    /// `true` if the panel is shown.
     pub panel: bool,
-    /// Whether the load curve is.
+    /// `true` if the load curve is shown.
     pub curve: bool,
-    /// Whether error against time is, measured now; in the place of the load curve.
+    /// `true` if the speed–accuracy study is measured and shown, in place of the load curve.
     pub study: bool,
-    /// A card of the mode Learn, from 1: with the article's beam, whatever the scene.
+    /// Number of the card of Learn that is shown, from 1. It has the article's beam, whatever the scene.
     pub learn: Option<usize>,
-    /// Whether the plot of a motion's energy is, and the integrators that are shown beside the scene's.
+    /// Integrators that are shown in addition to the scene's; `None` if the plot of a motion's energy is hidden.
     pub motion: Option<Vec<IntegratorKind>>,
-    /// The settings that are compared in panes; none for one view of the scene's own.
+    /// Settings compared in panes; empty for a single view of the scene.
     pub compare: Vec<PaneSetting>,
     /// Light or dark.
     pub theme: ThemeChoice,
-    /// Of the words.
+    /// Language of the texts.
     pub language: Language,
 }
 
@@ -58,8 +58,8 @@ impl Default for ShotOptions {
     }
 }
 
-/// Solves the scene and writes its picture; returns how the solve ended. `observe` receives the progress of a study, and cancels
-/// it: the picture then has what was measured.
+/// Solves the scene and writes its image; returns the final status. `observe` receives the progress of a study and can
+/// cancel it: the image then shows the measurements made so far.
 ///
 /// # Errors
 /// [`AppError::Render`].
@@ -102,7 +102,7 @@ pub fn shot(
     Ok(lab.simulation().status().clone())
 }
 
-/// Draws the lab as it stands into a picture of this many pixels.
+/// Draws the current state of the lab into an image of this size, pixels.
 ///
 /// # Errors
 /// [`RenderError::TooLarge`], [`RenderError::ReadBack`].
@@ -116,40 +116,40 @@ pub fn picture(
     Canvas::new(gpu, size, pixels_per_point, theme)?.draw(lab, &mut |_| {})
 }
 
-/// What the stages of a frame took.
+/// Time of each stage of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameTimes {
-    /// The lab's part: controls, plots, and the shape of the body.
+    /// Layout: controls, plots, and the body mesh.
     pub layout: Duration,
-    /// egui's shapes to triangles.
+    /// Conversion of egui's shapes to triangles.
     pub tessellate: Duration,
-    /// Uploads, and commands for the graphics device.
+    /// Uploads, and recording of commands for the graphics device.
     pub record: Duration,
-    /// What the device took after that: all of the drawing, where it is a processor.
+    /// Remaining time of the graphics device: all of the drawing for software rendering.
     pub draw: Duration,
 }
 
 impl FrameTimes {
-    /// All of the frame.
+    /// Returns the total time of the frame.
     #[must_use]
     pub fn total(&self) -> Duration {
         self.layout + self.tessellate + self.record + self.draw
     }
 }
 
-/// What pictures of one size are drawn with, one after the other.
+/// Resources for drawing images of one size one after the other.
 pub struct Canvas<'a> {
     gpu: &'a Gpu,
     ctx: egui::Context,
     stage: Stage,
     target: wgpu::Texture,
     screen: ScreenDescriptor,
-    /// egui's passes so far.
+    /// Number of egui's passes so far.
     passes: u32,
 }
 
 impl<'a> Canvas<'a> {
-    /// One of this many pixels.
+    /// Creates a canvas of this size, pixels.
     ///
     /// # Errors
     /// [`RenderError::TooLarge`].
@@ -165,7 +165,7 @@ impl<'a> Canvas<'a> {
         Ok(Self { gpu, ctx, stage, target, screen, passes: 0 })
     }
 
-    /// Draws the lab as it stands, and over it what `over` paints.
+    /// Draws the current state of the lab, and the shapes of `over` on top of it.
     ///
     /// # Errors
     /// [`RenderError::ReadBack`].
@@ -174,7 +174,8 @@ impl<'a> Canvas<'a> {
         read_texture(self.gpu, &self.target)
     }
 
-    /// Draws the lab as it stands and waits for the end of it, without looking: the price of a frame.
+    /// Draws the current state of the lab and waits for the device, without reading the image: measures the cost of a
+    /// frame.
     ///
     /// # Errors
     /// [`RenderError::ReadBack`].
@@ -186,9 +187,9 @@ impl<'a> Canvas<'a> {
         Ok(FrameTimes { draw: start.elapsed(), ..times })
     }
 
-    /// Hands a frame to the device; says what that took.
+    /// Submits a frame to the device; returns the time of each stage.
     fn submit(&mut self, lab: &mut Lab, over: &mut dyn FnMut(&egui::Context)) -> FrameTimes {
-        /// egui needs a pass to learn sizes, another to use them, and one more to come to rest.
+        /// egui needs one pass to measure sizes, another to use them, and a third to settle.
         const FIRST_PASSES: u32 = 3;
         let Self { gpu, ctx, stage, target, screen, passes } = self;
         let ScreenDescriptor { size_in_pixels: size, pixels_per_point } = *screen;

@@ -1,4 +1,4 @@
-//! Material and mesh.
+//! Panel section of the material and the mesh.
 
 use egui::Ui;
 
@@ -11,14 +11,14 @@ use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
 use crate::scene::{Analysis, Beam, Material, Plane, Scene, limits};
 use crate::words::{engineering, number, three_digits};
 
-/// A material with a name.
+/// Named material.
 struct Preset {
     name: &'static str,
-    /// Young's modulus, Pa, and what of it still goes by the name.
+    /// Young's modulus, Pa, and the `range` of moduli that are still given this name.
     young: f64,
     range: std::ops::RangeInclusive<f64>,
     poisson: f64,
-    /// kg/m³.
+    /// Density, kg/m³.
     density: f64,
 }
 
@@ -29,7 +29,7 @@ const PRESETS: [Preset; 4] = [
     Preset { name: "Steel", young: 2.1e11, range: 1.9e11..=2.2e11, poisson: 0.3, density: 7850.0 },
 ];
 
-/// Returns the rows of the material: the limit of the Poisson ratio depends on the kind of plane.
+/// Returns the rows of the material. The limit of Poisson's ratio differs between plane stress and plane strain.
 fn material_rows(plane: Plane) -> [NumberRow; 4] {
     [
         NumberRow {
@@ -83,28 +83,29 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
     ]
 }
 
-/// The material in a few words: `rubber, 1 MPa`.
+/// Returns a summary of the material, such as `rubber, 1 MPa`.
 pub(super) fn material_summary(scene: &Scene) -> String {
     let young = scene.material.young;
     let name = PRESETS.iter().find(|preset| preset.range.contains(&young)).map(|p| tr(p.name).to_lowercase());
     joined(name.into_iter().chain([engineering(young, "Pa")]))
 }
 
-/// Length and height of a beam: `3 m × 1 m`.
+/// Returns length and height of a beam, such as `3 m × 1 m`.
 pub(super) fn size_summary(beam: &Beam) -> String {
     format!("{} × {}", engineering(beam.length, "m"), engineering(beam.height, "m"))
 }
 
-/// Cells that follow the size of a beam: as many as keep the length or height of a cell.
+/// Numbers of cells that follow the size of a beam, so that the size of a cell stays about the same.
 #[derive(Debug, Default)]
 pub(super) struct CellsThatFollow {
-    /// Length or height, m, and cells, from which the others are counted.
+    /// Length or height, m, and number of cells that new numbers are computed from.
     references: [Option<(f64, u32)>; 2],
 }
 
 impl CellsThatFollow {
-    /// Number of cells of a side that is now of size `new`, m, and was of size `old` with `cells`. Every
-    /// call counts from the same reference, so that small steps add up, until somebody sets the cells.
+    /// Returns the number of cells of a side that is now `new` m long, and was `old` m long with `cells` cells. All
+    /// calls use the same reference, so that small steps do not add up rounding errors, until the number of cells is
+    /// set otherwise.
     fn count(&mut self, axis: usize, [old, new]: [f64; 2], cells: u32) -> u32 {
         let Some(reference) = self.references.get_mut(axis) else { return cells };
         let at = |(size, cells): (f64, u32), now: f64| {
@@ -116,7 +117,7 @@ impl CellsThatFollow {
     }
 }
 
-/// Length and height of the beam.
+/// Shows length and height of the beam.
 pub(super) fn size(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let (Some(beam), Some(original)) = (&input.scene.beam, &input.original.beam) else { return };
     let sides = [
@@ -156,7 +157,7 @@ pub(super) fn size(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
     ui.label(fill!("Slenderness, length over height: %{slenderness}", slenderness = slenderness));
 }
 
-/// The mesh in a few words: `5 × 1, 24 unknowns`.
+/// Returns a summary of the mesh, such as `5 × 1, 24 unknowns`.
 pub(super) fn mesh_summary(input: &Readout<'_>) -> String {
     let cells = input
         .scene

@@ -1,4 +1,4 @@
-//! Loads and supports: the edge or point of each, and buttons that add and remove them.
+//! Loads and supports in the panel: the edge or point of each, and buttons that add and remove them.
 
 use egui::{Align, Button, ComboBox, Layout, Role, Ui, WidgetInfo, vec2};
 
@@ -14,20 +14,21 @@ use crate::assembly::{Edge, System};
 use crate::scene::{Axis, Load, Place, Scene, Support};
 use crate::words::number;
 
-/// Edges that a load is looked for on, before all others.
+/// Edges that are tried first for a new load.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];
 
-/// Whether a load on this edge can move something: supports do not fix all of it.
+/// Returns `true` if a load on this edge can move the body: supports do not fix the whole edge.
 fn is_free(system: &System, edge: &Edge) -> bool {
     edge.weights().iter().any(|&(node, _)| system.pattern().fixed(node) != [true, true])
 }
 
-/// Whether the edge can carry a moment, and turn under it.
+/// Returns `true` if the edge can carry a moment and rotate under it.
 fn can_turn(system: &System, edge: &Edge) -> bool {
     edge.is_straight() && is_free(system, edge)
 }
 
-/// The edge that a new load of a scene goes on: that of its force, else the first that can carry it.
+/// Returns the edge for a new load: the edge of the scene's first force, or else the first edge that can carry the
+/// load.
 fn edge_for(scene: &Scene, system: &System, can_carry: fn(&System, &Edge) -> bool) -> Option<String> {
     let of_force = scene.loads.iter().find_map(|load| match load {
         Load::Force { place: Place::Edge(name), .. } => Some(name.as_str()),
@@ -39,17 +40,17 @@ fn edge_for(scene: &Scene, system: &System, can_carry: fn(&System, &Edge) -> boo
     found.map(str::to_owned)
 }
 
-/// The edge that a first force goes on; `None` where none can be moved.
+/// Returns the edge for the first force; `None` if every edge is fixed.
 pub(super) fn edge_for_force(scene: &Scene, system: &System) -> Option<String> {
     edge_for(scene, system, is_free)
 }
 
-/// The edge that a first moment goes on; `None` where none is straight and can turn.
+/// Returns the edge for the first moment; `None` if no edge is straight and can rotate.
 pub(super) fn edge_for_moment(scene: &Scene, system: &System) -> Option<String> {
     edge_for(scene, system, can_turn)
 }
 
-/// Points of a beam that loads and supports are often at: the name of each, and its place along and across.
+/// Common points of loads and supports on a beam: the name of each, and its coordinates along and across the beam.
 const POINTS: [(&str, [f64; 2]); 8] = [
     ("lower left corner", [0.0, -0.5]),
     ("lower right corner", [1.0, -0.5]),
@@ -61,13 +62,13 @@ const POINTS: [(&str, [f64; 2]); 8] = [
     ("middle of the right end", [1.0, 0.0]),
 ];
 
-/// Named points of the beam, if the scene has one.
+/// Returns the named points of the beam, if the scene has one.
 fn points(scene: &Scene) -> impl Iterator<Item = (&'static str, Place)> {
     let beam = scene.beam.as_ref();
     beam.into_iter().flat_map(|beam| POINTS.map(|(name, [along, across])| (name, beam.point(along, across).into())))
 }
 
-/// A place in words.
+/// Returns the description of a place.
 pub(super) fn words(scene: &Scene, place: &Place) -> String {
     match place {
         Place::Edge(name) => tr(name).to_owned(),
@@ -78,7 +79,7 @@ pub(super) fn words(scene: &Scene, place: &Place) -> String {
     }
 }
 
-/// The edge of a load; `None` for a weight, which has no place.
+/// Returns the place of a load; `None` for gravity, which has none.
 fn place_of(load: &Load) -> Option<Place> {
     match load {
         Load::Force { place, .. } => Some(place.clone()),
@@ -87,14 +88,14 @@ fn place_of(load: &Load) -> Option<Place> {
     }
 }
 
-/// Change that a row asks for.
+/// Change of a load or support by its row.
 enum Change {
     Move(Place),
     Remove,
 }
 
-/// A row with the place of a load or support; returns the change that is asked for. The edge under the pointer is shown in
-/// the view. `more` shows what else there is to set.
+/// Shows the row of a load or support with its place, and returns the user's change. The edge under the pointer is
+/// highlighted in the view. `more` shows further controls.
 fn row(
     ui: &mut Ui,
     (label, id, remove): (&'static str, usize, &str),
@@ -135,13 +136,13 @@ fn row(
     change
 }
 
-/// Numbers of loads and supports, in a few words.
+/// Returns the numbers of loads and supports.
 pub(super) fn summary(scene: &Scene) -> String {
     let loads = scene.loads.iter().filter_map(place_of).count();
     joined([count(loads as u64, "load"), count(scene.supports.len() as u64, "support")])
 }
 
-/// Shows the places of loads and supports.
+/// Shows the rows of all loads and supports.
 pub(super) fn show(
     ui: &mut Ui,
     input: &Readout<'_>,
@@ -181,7 +182,7 @@ pub(super) fn show(
         let remove = fill!("Remove support %{n}", n = i + 1);
         let change = row(ui, ("Held at", i, &remove), (scene, &support.place), places, view, |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            // From the right.
+            // The layout runs from right to left.
             for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
                 let is_fixed = fix.contains(&axis);
                 let tip = fill!("It holds the body along %{axis}: a clamp holds both ways, a roller one", axis = word);
@@ -200,7 +201,7 @@ pub(super) fn show(
         }
         let mut scene = Box::new(scene.clone());
         match (change, &mut scene.supports[i]) {
-            // Nothing is held: it is none any more.
+            // A support that fixes no direction is removed.
             _ if fix.is_empty() => _ = scene.supports.remove(i),
             (Some(Change::Remove), _) => _ = scene.supports.remove(i),
             (Some(Change::Move(to)), support) => support.place = to,
@@ -220,7 +221,8 @@ pub(super) fn show(
     show_message(ui, &state.messages, "Loads and supports");
 }
 
-/// The support with other directions held; it moves as before where it still can.
+/// Returns the support with other fixed directions; the prescribed displacements of directions that stay fixed are
+/// kept.
 fn refixed(before: &Support, fix: &[Axis]) -> Support {
     let mut support = Support::new(before.place.clone(), fix);
     for (i, axis) in [Axis::X, Axis::Y].into_iter().enumerate() {
@@ -231,7 +233,7 @@ fn refixed(before: &Support, fix: &[Axis]) -> Support {
     support
 }
 
-/// Buttons that add something: the name of each, its tooltip, and the scene with it.
+/// Button that adds a load or support: its name, its tooltip, and the function that returns the extended scene.
 type Addition = (&'static str, &'static str, fn(&Readout<'_>) -> Box<Scene>);
 const ADDITIONS: [Addition; 3] = [
     ("Force", "Another force, down, at a place without one", with_another_force),
@@ -239,7 +241,7 @@ const ADDITIONS: [Addition; 3] = [
     ("Support", "Another support, at a place without one; x and y say which way it holds", with_another_support),
 ];
 
-/// Edges that can carry a load, then points of the beam.
+/// Returns the places that can carry a load: free edges, then points of the beam.
 fn free_places(input: &Readout<'_>) -> impl Iterator<Item = Place> {
     let system = input.simulation.system();
     let usual = USUAL.into_iter().filter(|name| system.edges().iter().any(|e| e.name() == *name && is_free(system, e)));
@@ -274,7 +276,7 @@ fn with_another_support(input: &Readout<'_>) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let is_taken = |place: &Place| scene.supports.iter().any(|support| support.place == *place);
     let edges = input.simulation.system().edges().iter().map(|edge| Place::from(edge.name()));
-    // A beam that is held at one end gets a roller under the other.
+    // A beam that is held at one end gets a roller under the other end.
     if let Some(place) = points(input.scene).map(|(_, place)| place).chain(edges).find(|place| !is_taken(place)) {
         scene.supports.push(Support::new(place, &[Axis::Y]));
     }

@@ -1,4 +1,4 @@
-//! Force, gravity, moment.
+//! Panel section of force, gravity and moment.
 
 use egui::{ComboBox, Ui};
 
@@ -12,10 +12,10 @@ use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::scene::{Load, Place, Scene, limits};
 use crate::words::engineering;
 
-/// Acceleration of free fall on earth, m/s².
+/// Standard gravity of the earth, m/s².
 const EARTH: f64 = 9.81;
 
-/// Forces of a scene, with the number of each among its loads.
+/// Returns the forces of a scene, each with its index among the loads.
 fn forces(scene: &Scene) -> impl Iterator<Item = (usize, &Place, [f64; 2])> {
     scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
         Load::Force { place, force, .. } => Some((i, place, *force)),
@@ -23,7 +23,7 @@ fn forces(scene: &Scene) -> impl Iterator<Item = (usize, &Place, [f64; 2])> {
     })
 }
 
-/// The force that the sliders set: the chosen one, or the first.
+/// Returns the force that the sliders set: the chosen one, or the first.
 fn chosen_force(scene: &Scene, state: &PanelState) -> Option<(usize, [f64; 2])> {
     let mut all = forces(scene).map(|(i, _, force)| (i, force));
     let first = all.next();
@@ -44,7 +44,7 @@ fn moment_of(scene: &Scene) -> Option<f64> {
     })
 }
 
-/// What there is of gravity and moment, in words.
+/// Returns a summary of gravity and moment.
 pub(super) fn summary(scene: &Scene) -> String {
     let gravity = gravity_of(scene).map(|g| polar_form(g).0).filter(|&g| g > 0.0).map(|g| engineering(g, "m/s²"));
     let moment = moment_of(scene).filter(|&m| m != 0.0).map(|m| engineering(m, "N m"));
@@ -52,7 +52,7 @@ pub(super) fn summary(scene: &Scene) -> String {
     if both.is_empty() { tr("none").to_owned() } else { joined(both) }
 }
 
-/// Force and its direction.
+/// Shows the magnitude and the direction of the force.
 pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     choose(ui, scene, state);
@@ -90,7 +90,7 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
     }
 }
 
-/// Gravity, and the moment on the right edge, or on whichever edge has one.
+/// Shows gravity and the first moment; a new moment is put on an edge that can carry it.
 pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
@@ -142,12 +142,12 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut P
     }
 }
 
-/// A direction without the digits that going through a vector adds.
+/// Rounds a direction to remove the rounding errors of its conversion to a vector and back.
 fn shown_degrees(degrees: f64) -> f64 {
     (degrees * 1e9).round() / 1e9
 }
 
-/// The scene with the chosen force replaced, or with a first one on an edge that can carry it.
+/// Returns the scene with the chosen force replaced, or with a first force on an edge that can carry it.
 fn with_force(input: &Readout<'_>, state: &PanelState, new: [f64; 2]) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let chosen = chosen_force(&scene, state).map(|(i, _)| i);
@@ -161,7 +161,7 @@ fn with_force(input: &Readout<'_>, state: &PanelState, new: [f64; 2]) -> Box<Sce
     scene
 }
 
-/// Lets the user choose the force that the sliders set, where there are several.
+/// Lets the user choose the force that the sliders set, if the scene has several.
 fn choose(ui: &mut Ui, scene: &Scene, state: &mut PanelState) {
     let Some((present, _)) = chosen_force(scene, state).filter(|_| forces(scene).count() > 1) else { return };
     let name = |i: usize, place: &Place| {

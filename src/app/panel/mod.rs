@@ -1,5 +1,5 @@
-//! The panel: parameters in, actions out. It never touches the simulation. Four controls are open; the rest is folded
-//! behind headers that say what is in them.
+//! Panel: reads parameters and emits actions, and never accesses the simulation for writing. Four controls are always
+//! visible; the others are in sections whose headers summarize their content.
 
 use crate::app::readout::Readout;
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
@@ -28,47 +28,47 @@ mod view;
 /// Width of the panel, points.
 pub const PANEL_WIDTH: f32 = 284.0;
 
-/// What the panel remembers from frame to frame.
+/// State that the panel keeps between frames.
 #[derive(Debug, Default)]
 pub(super) struct PanelState {
     pub messages: Messages,
-    /// Directions in degrees, kept while a magnitude is zero.
+    /// Last directions, degrees, kept while a magnitude is zero.
     force_direction: Option<f64>,
     gravity_direction: Option<f64>,
-    /// Number among the scene's loads of the force that the sliders set; the first one if it is none.
+    /// Index among the scene's loads of the force that the sliders set; the first force if it is `None` or no force.
     force: Option<usize>,
     cells: body::CellsThatFollow,
 }
 
 impl PanelState {
-    /// Forgets what belonged to another scene.
+    /// Resets the state for another scene.
     pub(super) fn clear(&mut self) {
         *self = Self::default();
     }
 
-    /// Lets the sliders set this load of the scene, if it is a force.
+    /// Makes the sliders set this load of the scene, if it is a force.
     pub(super) fn choose_force(&mut self, load: usize) {
         self.force = Some(load);
     }
 
-    /// Follows the removal of a load: the sliders go on to set the same force, if it is still there.
+    /// Updates the chosen force after the removal of a load: the same force stays chosen if it still exists.
     fn forget_force(&mut self, load: usize) {
         self.force =
             self.force.filter(|force| *force != load).map(|force| if force > load { force - 1 } else { force });
     }
 
-    /// Direction of a force of zero, degrees.
+    /// Returns the direction of a force of zero, degrees.
     pub(super) fn force_direction(&self) -> f64 {
         self.force_direction.unwrap_or(DOWN)
     }
 
-    /// Keeps the direction of a force that may become zero, degrees.
+    /// Stores the direction of a force that may become zero, degrees.
     pub(super) fn keep_force_direction(&mut self, degrees: f64) {
         self.force_direction = Some(degrees);
     }
 }
 
-/// Shows the panel's contents.
+/// Shows the content of the panel.
 pub(super) fn show(
     ui: &mut Ui,
     input: &Readout<'_>,
@@ -78,7 +78,7 @@ pub(super) fn show(
     actions: &mut Vec<Action>,
 ) {
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
-    // Said anew by what the pointer is on.
+    // Set again below by the widget under the pointer.
     view.edge = None;
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
     scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
@@ -116,7 +116,7 @@ pub(super) fn show(
     });
 }
 
-/// A header that says what is folded behind it; a click shows that.
+/// Shows a section with a summary in its header; a click on the header opens or closes it.
 fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
     const HEIGHT: f32 = 28.0;
     const ICON: f32 = 18.0;
@@ -157,7 +157,7 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
     });
 }
 
-/// A row of the panel that edits a number of the scene.
+/// Row of the panel that edits a number of the scene.
 struct NumberRow {
     field: NumberField,
     get: fn(&Scene) -> f64,
@@ -182,7 +182,7 @@ fn number_rows(
     }
 }
 
-/// A picker that says of each entry what it is: name, sentence. Returns the name that was picked.
+/// Shows a picker with name and description of each entry. Returns the name of the entry that was picked.
 fn picker<'a>(
     ui: &mut Ui,
     label: &str,

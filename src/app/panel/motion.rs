@@ -1,4 +1,5 @@
-//! Time: integrator, step, solves a step, damping; speed; the other integrators beside.
+//! Panel section of a motion: integrator, time step, solves per step, damping, speed, and the other integrators for
+//! comparison.
 
 use egui::Ui;
 
@@ -12,10 +13,10 @@ use crate::dynamics::INTEGRATORS;
 use crate::scene::limits;
 use crate::words::{engineering, three_digits};
 
-/// Speeds that can be chosen, with their words.
+/// Selectable speeds with their labels.
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
 
-/// Time step, solves and damping.
+/// Rows of time step, solves per step and damping.
 const TIME: [NumberRow; 4] = [
     NumberRow {
         field: NumberField {
@@ -67,7 +68,7 @@ const TIME: [NumberRow; 4] = [
     },
 ];
 
-/// Integrator and time step in a few words.
+/// Returns a summary of integrator and time step.
 pub(super) fn summary(input: &Readout<'_>) -> String {
     let settings = &input.scene.dynamics;
     joined([tr(settings.integrator.id()), &engineering(settings.time_step, "s")])

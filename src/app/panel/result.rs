@@ -1,4 +1,4 @@
-//! What is known of the state: status, iterations, errors, certificate, times.
+//! Panel section of the result: status, iterations, errors, certificate, times.
 
 use egui::{Grid, RichText, Ui};
 
@@ -14,10 +14,10 @@ use crate::simulation::{Motion, Simulation, Status, energy};
 use crate::study::Reference;
 use crate::words::{engineering, engineering_pair, three_digits};
 
-/// Room for what a row is, points.
+/// Width of the names of the rows, points.
 const NAME_WIDTH: f32 = 84.0;
 
-/// What is behind the fold, in a few words.
+/// Returns a summary of the section's content.
 pub(super) fn summary(input: &Readout<'_>) -> String {
     let moves = input.simulation.motion().is_some();
     tr(if moves { "energy, steps, times" } else { "certificate, reactions, times" }).to_owned()
@@ -79,7 +79,7 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
     let tip =
         "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended";
     row("ρ", words, tip);
-    // Sums over all elements: not while something moves.
+    // The energy is a sum over all elements, which is too expensive for every frame of a motion.
     if simulation.is_at_rest() {
         let (problem, state) = (simulation.problem(), simulation.state());
         row("Energy", engineering(energy(problem, state, factor).elastic, "J"), "Stored in the body");
@@ -97,7 +97,7 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
     frame_row(row, input, "Time of the iterations of one displayed frame");
 }
 
-/// A row of the result: what it is, its value, and more about it.
+/// Function that shows a row of the result: name, value, and tooltip.
 type Row<'a> = dyn FnMut(&str, String, &str) + 'a;
 
 fn time(duration: std::time::Duration) -> String {
@@ -111,7 +111,7 @@ fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
     }
 }
 
-/// What the mesh does wrong, and how far the material is strained.
+/// Shows the estimated mesh error and the largest strain.
 fn quality_rows(row: &mut Row<'_>, input: &Readout<'_>) {
     let known = *input.simulation.status() == Status::Converged;
     let quality = input.quality;
@@ -136,7 +136,7 @@ fn frame_row(row: &mut Row<'_>, input: &Readout<'_>, what: &str) {
     row("Frame", joined([time(input.timings.total()), unknowns]), what);
 }
 
-/// Time, pace, steps and energy of a motion.
+/// Shows time, real-time factor, steps and energy of a motion.
 fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
     let pace = &input.playback.pace;
@@ -175,7 +175,7 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
     }
 }
 
-/// Where the time of a frame went.
+/// Shows the computing time of a frame by stage.
 fn stages(ui: &mut Ui, input: &Readout<'_>) {
     let times = input.timings;
     let secondary = Palette::new(ui.visuals()).secondary;
@@ -185,7 +185,7 @@ fn stages(ui: &mut Ui, input: &Readout<'_>) {
         ("factorize", times.factorize, "Sparse Cholesky"),
         ("solve", times.solve, "Forward and back substitution"),
     ];
-    // The columns fit beside a scroll bar, too.
+    // The columns fit next to a scroll bar, too.
     const GAP: f32 = 6.0;
     let gaps = GAP * stages.len().saturating_sub(1) as f32;
     let width = ((ui.available_width() - gaps) / stages.len() as f32).floor().max(0.0);

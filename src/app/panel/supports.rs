@@ -1,4 +1,4 @@
-//! Supports that move: where they take the body, and what they do to it.
+//! Panel section of moving supports: prescribed displacements and rotations, and reactions.
 
 use egui::{ComboBox, Id, Ui};
 
@@ -11,12 +11,13 @@ use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
 use crate::simulation::Simulation;
 use crate::words::{editable, engineering, engineering_pair};
 
-/// Number of the support that the sliders move; `None` where none of this scene has been moved.
+/// Returns the index of the support that the sliders move; `None` for a motion, or if no support of this scene has been
+/// moved.
 pub(super) fn chosen(ui: &Ui, input: &Readout<'_>) -> Option<usize> {
     if input.scene.analysis == Analysis::Dynamic {
         return None;
     }
-    // One that has been dragged back to rest is still the one.
+    // A support that has been dragged back to rest stays the chosen one.
     let id = Id::unique(("support", input.scene_name));
     let first = input.scene.supports.iter().position(Support::moves);
     let remembered = ui.data(|data| data.get_temp::<usize>(id));
@@ -27,7 +28,7 @@ pub(super) fn chosen(ui: &Ui, input: &Readout<'_>) -> Option<usize> {
     chosen
 }
 
-/// Where a support takes its place, in a few words.
+/// Returns a summary of a support's prescribed displacement and rotation.
 pub(super) fn summary(scene: &Scene, number: usize) -> String {
     scene.supports.get(number).map_or_else(String::new, |support| {
         let way = engineering_pair(support.displacement, "m");
@@ -35,7 +36,7 @@ pub(super) fn summary(scene: &Scene, number: usize) -> String {
     })
 }
 
-/// The sliders of a support: its displacement where it is fixed, and its turn where it is an edge.
+/// Shows the sliders of a support: its displacement in fixed directions, and its rotation if it is an edge.
 pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
     let Some(support) = scene.supports.get(number) else { return };
@@ -108,13 +109,13 @@ fn edited(scene: &Scene, number: usize, edit: impl FnOnce(&mut Support)) -> Box<
     scene
 }
 
-/// A round length of about this size.
+/// Returns a round number that is about as large as `length` or larger.
 fn reach(length: f64) -> f64 {
     let decade = 10f64.powf(length.max(1e-12).log10().floor());
     [1.0, 2.0, 5.0].map(|m| m * decade).into_iter().find(|r| *r >= 0.9 * length).unwrap_or(10.0 * decade)
 }
 
-/// A row for every support of a body at rest: its reaction.
+/// Shows a row with the reaction of every support of a body at rest.
 pub(super) fn reaction_rows(row: &mut dyn FnMut(&str, String, &str), simulation: &Simulation) {
     for (i, reaction) in simulation.support_reactions().into_iter().enumerate() {
         let force = engineering_pair(reaction.force.into(), "N");

@@ -1,4 +1,4 @@
-//! How the body is looked at.
+//! Panel section of the display options.
 
 use crate::app::viewport::color_range::range_of;
 use egui::{ComboBox, Ui};
@@ -43,7 +43,8 @@ pub(super) fn options(
     }
     if let Some(range) = view.fixed_range {
         let span = limits::Limit { unit: view.field.unit(), min: -1e30, max: 1e30 };
-        // What the body has now, and as much again: the scale stays where it is while an end of it is dragged.
+        // The range of the current values, extended by half its width at both ends. It does not depend on the fixed
+        // range, so the slider does not change while it is dragged.
         let [low, high] = value_range(input.simulation, view.field, view.raw);
         let span_now = high - low;
         let slider = low - 0.5 * span_now..=high + 0.5 * span_now;
@@ -85,11 +86,11 @@ pub(super) fn options(
     });
 }
 
-/// What the picture shows, in a few words.
+/// Returns a summary of the display options.
 pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     let moves = scene.analysis == Analysis::Dynamic;
     let name = tr(view.field.name());
-    // What stands in brackets or behind a comma says more about it.
+    // Drops a remark in brackets or after a comma from the field's name.
     let field = name.split([',', '(', '，', '（']).next().unwrap_or(name).trim_end();
     let shown = [
         (view.rest_outline, "rest"),
@@ -101,7 +102,7 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     joined(std::iter::once(field).chain(shown))
 }
 
-/// What can be taken away.
+/// Shows the buttons that open, save, record and copy.
 pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for (name, tip, action) in [
@@ -125,7 +126,7 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
     });
 }
 
-/// The smallest and the largest value of a field; never empty.
+/// Returns the smallest and the largest value of a field; the range is never empty.
 fn value_range(simulation: &Simulation, field: Field, raw: bool) -> [f64; 2] {
     let mut values = Vec::new();
     if raw {

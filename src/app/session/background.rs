@@ -1,5 +1,5 @@
-//! A large model is meshed and solved in the background, one solve at a time. The last snapshot stays on display; edits
-//! change the scene that is wanted, which the next solve takes.
+//! Background solve of large models, one at a time. The last snapshot stays on display; edits change the requested
+//! scene, which the next solve uses.
 
 use std::time::Instant;
 
@@ -17,14 +17,14 @@ use crate::simulation::{Simulation, Status};
 /// Background work of a session.
 #[derive(Debug)]
 pub(super) struct Background {
-    /// Larger models than this, in unknowns, are solved in the background.
+    /// Models with more unknowns than this are solved in the background.
     most_unknowns: u64,
     /// `true` if the wanted scene is larger: counting the unknowns of a mesh file takes too long for every frame.
     is_large: bool,
     work: Work,
-    /// Model of a solve that is not to be displayed: the next solve continues with it.
+    /// Model of a cancelled or rejected solve that is not displayed: the next solve continues with it.
     returned: Option<(Bodies, Option<DisplayGeometry>)>,
-    /// Start of the next solve, and its most iterations, if it is not to go to the end.
+    /// Initial state of the next solve.
     start: Start,
     iterations: Option<u32>,
 }
@@ -35,7 +35,7 @@ enum Work {
     /// The simulation is displayed and complete.
     #[default]
     Idle,
-    /// An edit waits for the thread to start.
+    /// An edit waits for the background thread to start.
     Waiting {
         rollback: Box<Rollback>,
     },
@@ -43,24 +43,24 @@ enum Work {
         solve: BackgroundSolve,
         rollback: Box<Rollback>,
     },
-    /// The user has cancelled; the model comes back when the thread has ended.
+    /// The user has cancelled; the model is returned when the thread has ended.
     Cancelled {
         solve: BackgroundSolve,
     },
 }
 
-/// The session before the first edit whose result is not complete: a cancelled edit goes back to it.
+/// Session before the first edit whose result is incomplete, restored if that edit is cancelled.
 #[derive(Debug)]
 struct Rollback {
     since: Instant,
     version: Version,
-    /// Number of steps that could be undone.
+    /// Number of undo steps.
     depth: usize,
-    /// The control that was edited.
+    /// Label of the control that was edited.
     label: Option<&'static str>,
-    /// `true` while the scene of another document is not displayed yet.
+    /// `true` while the scene of a newly opened document is not displayed yet.
     is_another_document: bool,
-    /// The display before the first snapshot.
+    /// Display before the first snapshot.
     snapshot: Option<Snapshot>,
     quality: Quality,
 }
@@ -116,18 +116,18 @@ impl Work {
 }
 
 impl Session {
-    /// Sets the size, in unknowns, above which a model is meshed and solved in the background.
+    /// Sets the number of unknowns above which a model is meshed and solved in the background.
     pub(crate) fn set_most_unknowns(&mut self, most: u64) {
         self.background.most_unknowns = most;
         self.note_size();
     }
 
-    /// `true` while a model is meshed or solved in the background.
+    /// Returns `true` while a model is meshed or solved in the background.
     pub(crate) fn is_working(&self) -> bool {
         self.background.work.solve().is_some()
     }
 
-    /// The scene that is solved in the background, the part that is done now, and seconds since the edit.
+    /// Returns the scene of the background solve, its current phase, and the time since the edit, s.
     pub(crate) fn work(&self) -> Option<(&Scene, Phase, u64)> {
         match &self.background.work {
             Work::Running { solve, rollback } => {
@@ -137,8 +137,8 @@ impl Session {
         }
     }
 
-    /// `true` if a scene is set up in the background: a large model that needs a mesh or has to be searched. Motions take
-    /// their steps between frames.
+    /// Returns `true` if `scene` is set up in the background: it is large, and has a new mesh or is static. Time steps
+    /// of motions are made between frames.
     pub(super) fn is_for_background(&self, scene: &Scene) -> bool {
         scene.unknowns() > self.background.most_unknowns && self.needs_work(scene)
     }
@@ -148,7 +148,7 @@ impl Session {
         is_search || !has_mesh_of(scene, self.simulation.scene())
     }
 
-    /// `true` if the displayed model is solved in the background.
+    /// Returns `true` if the displayed model is solved in the background.
     pub(crate) fn is_in_background(&self) -> bool {
         self.is_working() || self.background.is_large && self.needs_work(&self.scene)
     }
@@ -158,7 +158,7 @@ impl Session {
         self.background.is_large = self.scene.unknowns() > self.background.most_unknowns;
     }
 
-    /// Requests a scene, which the next background solve takes.
+    /// Requests a scene, which the next background solve uses.
     pub(super) fn request_scene(&mut self, scene: Scene) {
         self.keep_rollback();
         self.scene = scene;
@@ -167,7 +167,7 @@ impl Session {
         self.stop_solve();
     }
 
-    /// Notes that the requested scene comes from another document.
+    /// Records that the requested scene belongs to another document.
     pub(super) fn request_document(&mut self, document: Document) {
         self.document = document;
         self.is_outdated = false;
@@ -178,14 +178,14 @@ impl Session {
         self.poll();
     }
 
-    /// Names the control whose edit is under way.
+    /// Records the label of the control whose edit is in progress.
     pub(super) fn name_edit(&mut self, label: &'static str) {
         if let Some(rollback) = self.background.work.rollback() {
             rollback.label = Some(label);
         }
     }
 
-    /// Solves from another start, to the end or for some iterations.
+    /// Restarts the background solve from another state, without limit or for a number of iterations.
     pub(super) fn restart_in_background(&mut self, start: Start, iterations: Option<u32>) {
         self.keep_rollback();
         (self.background.start, self.background.iterations) = (start, iterations);
@@ -193,9 +193,9 @@ impl Session {
         self.poll();
     }
 
-    /// Keeps the present session as the one to go back to, unless an earlier one is kept.
+    /// Stores the current session for a rollback, unless an earlier one is stored.
     fn keep_rollback(&mut self) {
-        // The model that is displayed from now on is a copy, which cannot be pulled.
+        // From now on the displayed model is a copy, which cannot be grabbed.
         self.release();
         if self.background.work.rollback().is_some() {
             return;
@@ -215,7 +215,7 @@ impl Session {
         };
     }
 
-    /// Asks the solve to end with the model that it has.
+    /// Cancels the solve; it returns the model that it has.
     pub(super) fn stop_solve(&self) {
         self.background.work.solve().into_iter().for_each(BackgroundSolve::cancel);
     }
@@ -226,7 +226,7 @@ impl Session {
         self.background = Background { most_unknowns, is_large, ..Background::default() };
     }
 
-    /// Takes the news of the background solve, and starts the next one where there is something to solve.
+    /// Handles the updates of the background solve, and starts the next solve if one is needed.
     pub(crate) fn poll(&mut self) {
         while let Some(solve) = self.background.work.solve_mut() {
             match solve.poll() {
@@ -270,7 +270,7 @@ impl Session {
             SolveUpdate::Died => {
                 self.roll_back();
                 self.background.work = Work::Idle;
-                // The same solve would only end so again.
+                // Repeating the same solve would fail in the same way.
                 self.running = false;
                 self.notices.push(Notice::SolveDied);
             }
@@ -316,7 +316,7 @@ impl Session {
         self.notices.push(Notice::Rejected { label, message: rejected.error.to_string() });
     }
 
-    /// Displays a snapshot in the place of the present model.
+    /// Displays a snapshot in place of the current model.
     fn display(&mut self, snapshot: Snapshot) {
         let scene = self.simulation.scene().clone();
         let Snapshot { bodies, geometry, residuals } = snapshot;
@@ -338,7 +338,7 @@ impl Session {
         }
     }
 
-    /// Starts the next solve, if there is something to solve.
+    /// Starts the next solve, if one is needed.
     fn start_solve(&mut self) {
         if !(self.background.is_large && self.needs_work(&self.scene)) {
             return;
@@ -392,11 +392,11 @@ impl Session {
         Some(Model::Existing(Box::new((Bodies { simulation, linear }, None))))
     }
 
-    /// Cancels the background solve, and goes back to the session before the edit.
+    /// Cancels the background solve, and restores the session before the edit.
     pub(crate) fn cancel(&mut self) {
         self.stop_solve();
         self.roll_back();
-        // A search that had not ended would only go on.
+        // An iteration that had not ended before the edit would otherwise continue at once.
         self.running &= self.simulation.is_at_rest();
     }
 

@@ -1,53 +1,54 @@
-//! Keeps the time of a motion in step with the clock on the wall: steps are due as time goes by, whatever the frame rate.
+//! Real-time clock of a motion: the number of time steps that are due depends on the elapsed time, not on the frame
+//! rate.
 
 use std::time::{Duration, Instant};
 
 use crate::words::two_digits;
 
-/// Displayed frames a second, for which costs of motions are told.
+/// Displayed frames per second for which the costs of motions are stated.
 pub(crate) const FRAMES: f64 = 60.0;
-/// Share of a frame that steps may take: the rest is for drawing.
+/// Share of a frame's time available for time steps; the rest is for drawing.
 const WORK: Duration = Duration::from_millis(24);
 
-/// Least speed, simulated seconds per second.
+/// Lowest playback speed, simulated seconds per second.
 const SLOWEST: f64 = 1e-6;
-/// Slowest of the speeds that every motion offers.
+/// Slowest speed offered for every motion.
 const SLOW: f64 = 0.125;
-/// Periods per second, Hz, that can still be watched.
+/// Highest frequency, Hz, that the user can follow on the screen.
 const WATCHABLE: f64 = 2.0;
-/// A frame that was away for longer, s, makes up for no more than this.
+/// Longest time between two frames that is made up for, s.
 const LONGEST_FRAME: f64 = 0.1;
-/// Over so much time, s, the real-time factor is measured.
+/// Interval over which the real-time factor is measured, s.
 const WINDOW: f64 = 0.5;
 
-/// The speed, simulated seconds per second, that shows one period of a frequency, Hz, per second: a whole number's inverse.
-/// `None` where slow motion at 1/8 is slow enough.
+/// Returns the speed, simulated seconds per second, at which one period of `frequency`, Hz, takes one second: 1 over a
+/// whole number. `None` if the speed 1/8 is slow enough.
 pub(crate) fn speed_of_period(frequency: f64) -> Option<f64> {
     let is_fast = frequency.is_finite() && frequency * SLOW > WATCHABLE;
     is_fast.then(|| 1.0 / two_digits(frequency).round())
 }
 
-/// A speed in words: as a number, or as a fraction with numerator 1 where it is small.
+/// Formats a speed: as a decimal number, or as a fraction with numerator 1 if it is small.
 pub(crate) fn fraction(speed: f64) -> String {
     if speed > 0.0 && speed < 0.1 { format!("1/{:.0}", 1.0 / speed) } else { format!("{speed:.2}") }
 }
 
-/// How much time a motion owes.
+/// Simulated time that is due, playback speed and measured real-time factor of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RealTimeClock {
-    /// Simulated seconds a second that are asked for.
+    /// Requested playback speed, simulated seconds per second.
     speed: f64,
-    /// When the last frame was, s.
+    /// Time of the last frame, s.
     last: Option<f64>,
-    /// Simulated time that is due and not yet stepped, s.
+    /// Simulated time that is due but not yet computed, s.
     owed: f64,
-    /// Since when steps are counted, and the simulated time of those, s.
+    /// Start of the current measuring interval, s, and simulated time since then, s.
     counted: (f64, f64),
-    /// Simulated seconds a second, measured.
+    /// Measured real-time factor: simulated seconds per second.
     factor: Option<f64>,
 }
 
-/// Steps of a frame: those that are due, as far as there is time for them, and one at least.
+/// Time steps of one frame: those that are due, limited by the available time, but at least one.
 #[derive(Debug)]
 pub(crate) struct Steps {
     due: u32,
@@ -71,58 +72,59 @@ impl Default for RealTimeClock {
 }
 
 impl RealTimeClock {
-    /// Simulated seconds a second that are asked for.
+    /// Returns the requested playback speed, simulated seconds per second.
     pub(crate) fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Asks for so many simulated seconds a second.
+    /// Sets the requested playback speed, simulated seconds per second.
     pub(crate) fn set_speed(&mut self, speed: f64) {
         self.speed = speed.clamp(SLOWEST, 1.0);
         self.rest();
     }
 
-    /// Simulated seconds a second, measured; `None` at rest and before half a second has passed.
+    /// Returns the measured real-time factor; `None` at rest, and during the first half second.
     pub(crate) fn factor(&self) -> Option<f64> {
         self.factor
     }
 
-    /// Whether the machine cannot keep up with what is asked for.
+    /// Returns `true` if the machine is too slow for the requested speed.
     pub(crate) fn lags(&self) -> bool {
         self.factor.is_some_and(|factor| factor < 0.9 * self.speed)
     }
 
-    /// Nothing runs: the time that passes is not owed.
+    /// Stops the clock: time that passes until the next frame does not count.
     pub(crate) fn rest(&mut self) {
         self.last = None;
         self.owed = 0.0;
         self.factor = None;
     }
 
-    /// The frame at `now`, s, begins: whole steps of this length, s, that are due.
+    /// Starts the frame at `now`, s, and returns the number of whole steps of length `step`, s, that are due.
     fn begin(&mut self, now: f64, step: f64) -> u32 {
         let Some(last) = self.last.replace(now) else {
             self.counted = (now, 0.0);
-            // The first frame shows that it runs.
+            // The first frame makes one step, so that the motion visibly starts.
             return 1;
         };
         self.owed += (now - last).clamp(0.0, LONGEST_FRAME) * self.speed;
-        // Owed time that is a hair short of a step is a step: frames of the step's own length give one each.
+        // The tolerance counts a time that is shorter than a step by rounding only as a step: a frame as long as a step
+        // makes one.
         (self.owed / step + 1e-6) as u32
     }
 
-    /// The frame at `now`, s, begins: steps of this length, s.
+    /// Starts the frame at `now`, s, with time steps of length `step`, s.
     pub(crate) fn begin_steps(&mut self, now: f64, step: f64) -> Steps {
         Steps { due: self.begin(now, step), made: 0, begun: Instant::now() }
     }
 
-    /// The steps of the frame, of this length, s, have been made.
+    /// Ends a frame in which `steps` of length `step`, s, were made.
     pub(crate) fn end_steps(&mut self, steps: &Steps, step: f64) {
         self.end(steps.due, steps.made, step);
     }
 
-    /// So many steps were made of those that were due. What is missing is forgotten: a machine that cannot keep up slows
-    /// the motion down.
+    /// Ends a frame in which `made` of the `due` steps were made. Missing steps are dropped: the motion slows down on a
+    /// machine that cannot keep up.
     fn end(&mut self, due: u32, made: u32, step: f64) {
         self.owed = if made < due { 0.0 } else { (self.owed - f64::from(made) * step).max(0.0) };
         let now = self.last.unwrap_or_default();
@@ -139,7 +141,7 @@ impl RealTimeClock {
 mod tests {
     use super::*;
 
-    /// The steps made in four seconds of frames so long, s.
+    /// Returns the number of steps made in four seconds of frames of length `frame`, s.
     fn steps(frame: f64, speed: f64) -> u32 {
         let mut pace = RealTimeClock::default();
         pace.set_speed(speed);

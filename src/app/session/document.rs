@@ -1,4 +1,4 @@
-//! Where the scene comes from and how it is there: a built-in scene, or a file that is read, written and may change.
+//! Origin of the scene: a built-in scene, or a file that can be read, written, and changed by other programs.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -8,19 +8,19 @@ use thiserror::Error;
 
 use crate::scene::{self, Scene, SceneError, Source};
 
-/// A scene's place, and the scene that is there.
+/// Name of a scene's file or built-in scene, and the scene as it is stored there.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Document {
     pub source: Source,
-    /// The scene as it was opened or saved last.
+    /// Scene as last opened or saved.
     pub original: Scene,
     /// `true` if the scene comes from a file: it is neither built in nor read from a stream.
     has_file: bool,
-    /// When the file was written last, as far as is known.
+    /// Time of the last known change of the file.
     stamp: Option<SystemTime>,
 }
 
-/// Why a scene was not saved.
+/// Reason for which a scene was not saved.
 #[derive(Debug, Error)]
 pub(crate) enum SaveError {
     #[error("the scene could not be written as TOML: {0}")]
@@ -46,26 +46,26 @@ impl Document {
         Ok(Self::new(source, original))
     }
 
-    /// The scene's file; `None` for a built-in scene, and for one that came from a stream.
+    /// Returns the path of the scene's file; `None` for a built-in scene, and for one read from a stream.
     pub(crate) fn path(&self) -> Option<&Path> {
         self.has_file.then_some(self.source.name.as_path())
     }
 
-    /// Whether the file has been written since it was read or saved here.
+    /// Returns `true` if the file has been changed on disk since it was read or saved here.
     pub(crate) fn has_changed(&self) -> bool {
         self.path().and_then(written).is_some_and(|now| Some(now) != self.stamp)
     }
 
-    /// The file as it is now is known, and not wanted.
+    /// Records the current change of the file as known, so that it is not reported again.
     pub(crate) fn ignore_change(&mut self) {
         self.stamp = self.path().and_then(written);
     }
 
-    /// Writes a scene to a file, which it comes from then. A mesh that is found beside the file it came from is named by
-    /// its whole path where the new file is elsewhere.
+    /// Writes a scene to a file, and returns the document of that file. The relative path of a mesh file becomes
+    /// absolute if the new file is in another folder.
     ///
     /// # Errors
-    /// [`SaveError`]; the file is as it was then.
+    /// [`SaveError`]; the file is unchanged.
     pub(crate) fn save(&self, scene: &Scene, path: &Path) -> Result<Self, SaveError> {
         let mut scene = scene.clone();
         let folder =
@@ -84,29 +84,30 @@ impl Document {
     }
 }
 
-/// When a file was written last.
+/// Returns the time of the last change of a file.
 fn written(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).and_then(|m| m.modified()).ok()
 }
 
-/// Writes a file beside its place and moves it there: whoever reads it sees the old one or the new one, all of it.
+/// Writes a file under a temporary name in the same folder and then renames it, so that readers see the old content or
+/// the new content, never a part.
 ///
 /// # Errors
-/// The system's; what was there is unchanged then.
+/// The system's; the previous content is unchanged.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_beside(path, bytes, true)
 }
 
-/// [`write_whole`] without waiting for the disk: the file outlives a crash of the program, not of the machine.
+/// [`write_whole`] without waiting for the disk: the file survives a crash of the program, but not of the machine.
 ///
 /// # Errors
-/// The system's; what was there is unchanged then.
+/// The system's; the previous content is unchanged.
 pub(crate) fn write_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_beside(path, bytes, false)
 }
 
 fn write_beside(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
-    // Through a link, the file that it leads to is written.
+    // A symbolic link stays; the file that it points to is written.
     let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let name = path.file_name().ok_or(std::io::ErrorKind::InvalidInput)?;
     let mut beside = std::ffi::OsString::from(".");
@@ -139,12 +140,12 @@ mod tests {
         write_whole(&path, b"one").unwrap();
         write_whole(&path, b"two").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"two");
-        // A folder is in the way.
+        // A folder with the same name makes writing fail.
         let taken = folder.path().join("taken");
         std::fs::create_dir_all(taken.join("inside")).unwrap();
         assert!(write_whole(&taken, b"three").is_err());
         assert!(write_whole(&folder.path().join("nowhere/scene.toml"), b"three").is_err());
-        // Nothing is left beside.
+        // No temporary file remains.
         let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();
         assert_eq!(names, ["scene.toml", "taken"]);

@@ -1,4 +1,4 @@
-//! Results of a scene that take a while: computed in the background, and invalidated by edits in one place.
+//! Expensive results of a scene: computed in the background, and invalidated by edits here only.
 
 use std::f64::consts::TAU;
 
@@ -9,12 +9,12 @@ use crate::scene::{DynamicsSettings, Scene, SolverSettings};
 use crate::simulation::Simulation;
 use crate::study::{Effort, LoadCurve, LoadPath, PathSummary, Reference};
 
-/// Load and displacement of a scene.
+/// Load–displacement curve of a scene.
 #[derive(Debug)]
 pub(crate) enum Curve {
-    /// Load curve of a cantilever, with its scene.
+    /// Load curve of a cantilever, and its scene.
     Beam(Box<(LoadCurve, Scene)>),
-    /// Load path of any other scene at rest, with its scene.
+    /// Load path of any other scene at rest, and its scene.
     Path(Box<(LoadPath, Scene)>),
 }
 
@@ -26,13 +26,13 @@ impl Curve {
     }
 }
 
-/// Results of the present scene, each `None` until it is known.
+/// Results of the current scene; each is `None` until it has been computed.
 #[derive(Debug)]
 pub(crate) struct Facts {
-    /// Solution that errors are measured against.
+    /// Reference solution that errors are measured against.
     pub reference: Lazy<Reference>,
     pub curve: Lazy<Curve>,
-    /// Jumps of the body on the load path from rest.
+    /// Jumps of the body on the load path that starts at rest.
     pub jump: Lazy<PathSummary>,
     /// Lowest natural frequency, Hz.
     pub frequency: Lazy<f64>,
@@ -68,7 +68,7 @@ impl Facts {
         reference || jump || curve
     }
 
-    /// Computes the results of a scene at rest, however long it takes.
+    /// Computes the results of a scene at rest, and waits for them.
     pub(super) fn wait_at_rest(&mut self, scene: &Scene, needs_curve: bool) {
         self.reference.wait(scene);
         self.jump.wait(scene);
@@ -78,7 +78,8 @@ impl Facts {
     }
 }
 
-/// Returns the scene with default values of everything that a study varies: the reference solution depends on the rest.
+/// Returns the scene with default values of all settings that a study varies. The reference solution depends only on
+/// the other values.
 pub(crate) fn without_settings(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let first = scene.elements().next().unwrap_or_default();
@@ -97,7 +98,7 @@ fn find_reference(scene: &Scene, watch: Watch<'_>) -> Option<Reference> {
     Reference::find(scene, None, Effort::Bounded, &mut |progress| watch(progress.fraction)).ok()
 }
 
-/// The lowest natural frequency of a scene's body about rest, Hz.
+/// Returns the lowest natural frequency of a scene's body about rest, Hz.
 fn natural_frequency(scene: &Scene) -> Option<f64> {
     let simulation = Simulation::new(scene).ok()?;
     let problem = simulation.problem();

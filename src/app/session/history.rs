@@ -1,4 +1,4 @@
-//! What a motion has done so far, sample by sample: for plots and for the trail of the tip.
+//! Recorded time steps of a motion, for plots and for the trail of the tip.
 
 use std::collections::VecDeque;
 
@@ -7,44 +7,44 @@ use nalgebra::Vector2;
 use crate::dynamics::Ledger;
 use crate::simulation::Simulation;
 
-/// Samples that are kept: the older ones go.
+/// Largest number of samples; older ones are dropped.
 const MOST_SAMPLES: usize = 8192;
 
-/// A time step.
+/// Recorded time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
-    /// s.
+    /// Simulated time, s.
     pub time: f64,
-    /// Where the energy is.
+    /// Energy ledger.
     pub ledger: Ledger,
     /// Position of the first probe, m.
     pub position: Vector2<f64>,
-    /// Its displacement, m.
+    /// Displacement of the first probe, m.
     pub displacement: Vector2<f64>,
-    /// Its velocity, m/s.
+    /// Velocity of the first probe, m/s.
     pub velocity: Vector2<f64>,
 }
 
-/// Samples in the order of time.
+/// Samples ordered by time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct History {
     samples: VecDeque<Sample>,
-    /// The name of the probe.
+    /// Name of the probe.
     probe: String,
 }
 
 impl History {
-    /// Forgets everything.
+    /// Removes all samples.
     pub(crate) fn clear(&mut self) {
         self.samples.clear();
     }
 
-    /// Forgets what came after a time, s.
+    /// Removes the samples after `time`, s.
     pub(crate) fn forget_after(&mut self, time: f64) {
         self.samples.truncate(self.samples.partition_point(|sample| sample.time <= time));
     }
 
-    /// Adds where a motion is now; nothing of a search.
+    /// Records the current state of a motion; does nothing for a model at rest.
     pub(crate) fn record(&mut self, simulation: &Simulation) {
         let Some(motion) = simulation.motion() else { return };
         let state = simulation.state();
@@ -66,24 +66,24 @@ impl History {
         });
     }
 
-    /// All samples, the oldest first.
+    /// Returns all samples, the oldest first.
     pub(crate) fn samples(&self) -> &VecDeque<Sample> {
         &self.samples
     }
 
-    /// The name of the probe that is followed.
+    /// Returns the name of the recorded probe.
     pub(crate) fn probe(&self) -> &str {
         &self.probe
     }
 
-    /// Samples of the last `duration` seconds, the oldest first.
+    /// Returns the samples of the last `duration` seconds, the oldest first.
     pub(crate) fn last(&self, duration: f64) -> impl Iterator<Item = &Sample> {
         let end = self.samples.back().map_or(0.0, |s| s.time);
         let first = self.samples.partition_point(|s| s.time < end - duration);
         self.samples.range(first..)
     }
 
-    /// Samples of the `duration` seconds before a time, s, the oldest first.
+    /// Returns the samples of the `duration` seconds before `time`, s, the oldest first.
     pub(crate) fn before(&self, time: f64, duration: f64) -> impl Iterator<Item = &Sample> {
         let [first, end] = [
             self.samples.partition_point(|s| s.time < time - duration),
@@ -92,12 +92,12 @@ impl History {
         self.samples.range(first.min(end)..end)
     }
 
-    /// The sample at a time, s: the last one not after it.
+    /// Returns the last sample that is not after `time`, s.
     pub(crate) fn at(&self, time: f64) -> Option<&Sample> {
         self.samples.get(self.samples.partition_point(|s| s.time <= time).checked_sub(1)?)
     }
 
-    /// The axis along which the probe has moved more: 0 or 1.
+    /// Returns the axis along which the probe's displacement varies most: 0 for x, 1 for y.
     pub(crate) fn axis(&self) -> usize {
         let start = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
         let (low, high) =

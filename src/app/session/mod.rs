@@ -1,5 +1,5 @@
-//! One model that is being worked on, without the user interface: scene, simulation, linear theory's solution, motion,
-//! undo history, file, and results that are computed in the background.
+//! One model being worked on, without user interface: scene, simulation, solution of linear theory, motion, undo
+//! history, file, and results computed in the background.
 
 mod background;
 pub(crate) mod clock;
@@ -36,13 +36,13 @@ use crate::timings::Timings;
 /// A change of the model that can be undone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Edit {
-    /// Change the scene by the control of this label. Edits by one control during one press are one step.
+    /// Change the scene with the control of this label. Edits with one control during one press are one undo step.
     Scene(&'static str, Box<Scene>),
-    /// Use the scene of a measured setting, with its iterations a displayed frame.
+    /// Use the scene of a measured setting, with its number of iterations per displayed frame.
     Setting(Box<Scene>, u32),
-    /// Open a scene in the place of the present one.
+    /// Open a scene in place of the current one.
     Open(Source),
-    /// Take a document over, with a scene that may have been edited since.
+    /// Replace the document by this one, with a scene that may have been edited since the document was saved.
     Restore(Box<(Document, Scene)>),
     Undo,
     Redo,
@@ -52,18 +52,18 @@ pub(crate) enum Edit {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Changed {
     pub scene: bool,
-    /// `true` if the mesh is another one.
+    /// `true` if the mesh has changed.
     pub mesh: bool,
-    /// `true` if the mesh or the kind of analysis is another one.
+    /// `true` if the mesh or the kind of analysis has changed.
     pub body: bool,
     /// `true` if the scene comes from another document.
     pub document: bool,
 }
 
-/// News for the user, which follow no command at once.
+/// Message for the user about background work.
 #[derive(Debug)]
 pub(crate) enum Notice {
-    /// The scene that was solved in the background has no model; `label` names the control that was edited.
+    /// The scene of the last background solve has no model; `label` names the control that was edited.
     Rejected {
         label: Option<&'static str>,
         message: String,
@@ -72,7 +72,7 @@ pub(crate) enum Notice {
     NoThread(io::Error),
 }
 
-/// Why an edit was refused. The session is unchanged.
+/// Reason for which an edit was refused. The session is unchanged.
 #[derive(Debug, Error)]
 pub(crate) enum EditError {
     #[error(transparent)]
@@ -81,39 +81,39 @@ pub(crate) enum EditError {
     Simulation(#[from] SimulationError),
 }
 
-/// Grab of the body with the pointer during one frame, in the order of its parts.
+/// Grab of the body with the pointer during one frame. The fields are applied in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Grab {
     /// Material point that is grabbed.
     pub start: Option<MaterialPoint>,
-    /// Place that the grabbed point is pulled to, m.
+    /// Position that the grabbed point is pulled to, m.
     pub target: Option<Vector2<f64>>,
     pub release: bool,
 }
 
-/// One model that is being worked on.
+/// One model being worked on.
 #[derive(Debug)]
 pub(crate) struct Session {
     document: Document,
-    /// The scene that is wanted: the simulation's, unless a background solve is under way.
+    /// Requested scene. It differs from the simulation's scene only while a background solve is in progress.
     scene: Scene,
     undo: UndoHistory,
-    /// The displayed model; a copy of it while it is solved in the background.
+    /// Displayed model; a copy of it while it is solved in the background.
     simulation: Simulation,
-    /// Linear theory's solution of the scene; `None` where it could not be set up.
+    /// Solution of linear theory; `None` if it could not be set up.
     linear: Option<Simulation>,
     geometry: DisplayGeometry,
     background: Background,
     running: bool,
-    /// Iterations a displayed frame.
+    /// Iterations per displayed frame.
     iterations: u32,
-    /// Time of the last iterations of one displayed frame.
+    /// Time of the iterations of the last displayed frame.
     timings: Timings,
-    /// The residual after every iteration since the last change.
+    /// Residual after every iteration since the last change.
     residuals: Vec<f64>,
     playback: Playback,
     quality: Quality,
-    /// Last equilibrium, displayed in the place of a state that diverges.
+    /// Last equilibrium, displayed in place of a state that diverges.
     converged: Option<Simulation>,
     facts: Facts,
     /// `true` if the scene's file has changed on disk since it was read or saved.
@@ -123,7 +123,7 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// A session with this scene, iterating from rest.
+    /// Creates a session with `scene` that iterates from rest.
     pub(crate) fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
         let linear = solve_linear(simulation.scene(), simulation.system(), None);
         let mut session = Self {
@@ -154,7 +154,7 @@ impl Session {
         &self.document
     }
 
-    /// The scene that is wanted.
+    /// Returns the requested scene.
     pub(crate) fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -163,7 +163,7 @@ impl Session {
         &self.simulation
     }
 
-    /// Linear theory's solution of the scene.
+    /// Returns the solution of linear theory.
     pub(crate) fn linear(&self) -> Option<&Simulation> {
         self.linear.as_ref()
     }
@@ -188,12 +188,12 @@ impl Session {
         &self.timings
     }
 
-    /// The residual after every iteration since the last change.
+    /// Returns the residual after every iteration since the last change.
     pub(crate) fn residuals(&self) -> &[f64] {
         &self.residuals
     }
 
-    /// Iterations a displayed frame.
+    /// Returns the number of iterations per displayed frame.
     pub(crate) fn iterations(&self) -> u32 {
         self.iterations
     }
@@ -210,32 +210,32 @@ impl Session {
         self.undo.can_redo()
     }
 
-    /// `true` if the scene is a motion.
+    /// Returns `true` if the scene is a motion.
     pub(crate) fn is_motion(&self) -> bool {
         self.simulation.motion().is_some()
     }
 
-    /// `true` if iterations or time steps are made.
+    /// Returns `true` if iterations or time steps are being made.
     pub(crate) fn is_running(&self) -> bool {
         self.running
     }
 
-    /// `true` if the next frame changes the body.
+    /// Returns `true` if the next frame changes the body.
     pub(crate) fn iterates(&self) -> bool {
         self.running && !self.has_ended()
     }
 
-    /// `true` if everything is at rest, and the next iteration changes nothing.
+    /// Returns `true` if everything is at rest and the next iteration changes nothing.
     pub(crate) fn has_ended(&self) -> bool {
         self.simulation.is_at_rest() && !self.playback.companions_move()
     }
 
-    /// `true` if the scene has edits that no file has.
+    /// Returns `true` if the scene has unsaved edits.
     pub(crate) fn is_edited(&self) -> bool {
         self.scene != self.document.original
     }
 
-    /// Last equilibrium of the displayed mesh.
+    /// Returns the last equilibrium on the displayed mesh.
     pub(crate) fn converged(&self) -> Option<&Simulation> {
         self.converged.as_ref().filter(|kept| std::sync::Arc::ptr_eq(kept.system(), self.simulation.system()))
     }
@@ -245,26 +245,27 @@ impl Session {
         std::mem::take(&mut self.changed)
     }
 
-    /// Adds news for the user.
+    /// Adds a message for the user.
     pub(crate) fn notify(&mut self, notice: Notice) {
         self.notices.push(notice);
     }
 
-    /// Returns the news since the last call.
+    /// Returns the messages added since the last call.
     pub(crate) fn take_notices(&mut self) -> Vec<Notice> {
         std::mem::take(&mut self.notices)
     }
 
-    /// Follows the presses of the pointer: edits of one press are one step of the undo history.
+    /// Records the presses of the pointer: edits during one press are one undo step.
     pub(crate) fn follow_press(&mut self, press: Press) {
         self.undo.follow_press(press);
     }
 
-    /// Applies an edit, and returns the parts that it has changed. A large model is set up in the background, and changes
-    /// when a first snapshot of it is there.
+    /// Applies an edit, and returns the parts that have changed. A large model is set up in the background; the display
+    /// changes when its first snapshot arrives.
     ///
     /// # Errors
-    /// [`EditError`]; the session is unchanged. Errors of a mesh that is made in the background follow as a [`Notice`].
+    /// [`EditError`]; the session is unchanged. Errors of a mesh that is made in the background are reported later as a
+    /// [`Notice`].
     pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, EditError> {
         let before = self.version();
         match edit {
@@ -301,7 +302,7 @@ impl Session {
         Ok(self.changed)
     }
 
-    /// The session as the undo history keeps it.
+    /// Returns the session as the undo history stores it.
     fn version(&self) -> Version {
         Version { document: self.document.clone(), scene: self.scene.clone(), iterations: self.iterations }
     }
@@ -323,7 +324,7 @@ impl Session {
         Ok(())
     }
 
-    /// Changes the scene under the body, which continues from its present state if it can.
+    /// Changes the scene of the body, which continues from its current state if possible.
     ///
     /// # Errors
     /// [`SimulationError`]; the session is unchanged.
@@ -348,7 +349,7 @@ impl Session {
         Ok(())
     }
 
-    /// Makes everything belong to the simulation's scene, which was another one before.
+    /// Updates everything that depends on the simulation's scene after it has changed from `before`.
     fn follow_scene(&mut self, before: &Scene) {
         self.changed.scene = true;
         let scene = self.simulation.scene();
@@ -379,7 +380,7 @@ impl Session {
         Ok(())
     }
 
-    /// Sets everything that belonged to the document before to its default.
+    /// Resets everything that belongs to the document to its default.
     fn start_document(&mut self) {
         self.changed.document = true;
         self.running = true;
@@ -388,7 +389,7 @@ impl Session {
         self.iterations = 1;
     }
 
-    /// Makes the present scene that of a document, without a way back.
+    /// Makes the current scene the unedited scene of a document; the undo history is cleared.
     pub(crate) fn rebase(&mut self, source: Source) {
         self.document = Document::new(source, self.scene.clone());
         self.undo = UndoHistory::default();
@@ -410,18 +411,19 @@ impl Session {
         self.is_outdated |= self.document.has_changed();
     }
 
-    /// `true` if the scene's file has changed on disk since it was read or saved.
+    /// Returns `true` if the scene's file has changed on disk since it was read or saved.
     pub(crate) fn is_outdated(&self) -> bool {
         self.is_outdated
     }
 
-    /// Keeps the scene although its file has changed on disk.
+    /// Keeps the scene although its file has changed on disk, and stops reporting that change.
     pub(crate) fn ignore_file_change(&mut self) {
         self.document.ignore_change();
         self.is_outdated = false;
     }
 
-    /// The scene with one of its loads as in its document; `None` if that has no load of the same kind there.
+    /// Returns the scene with load number `load` as in its document; `None` if the document has no load of the same
+    /// kind with this number.
     pub(crate) fn with_original_load(&self, load: usize) -> Option<Scene> {
         let original = self.document.original.loads.get(load)?;
         let mut scene = self.scene.clone();
@@ -433,12 +435,12 @@ impl Session {
         Some(scene)
     }
 
-    /// `true` if a load of the document is a moment.
+    /// Returns `true` if load number `load` of the scene is a moment.
     pub(crate) fn is_moment(&self, load: usize) -> bool {
         self.scene.loads.get(load).is_some_and(Load::is_moment)
     }
 
-    /// Starts or stops to iterate.
+    /// Starts or stops iterating.
     pub(crate) fn set_running(&mut self, running: bool) {
         self.running = running;
         if !running {
@@ -446,13 +448,13 @@ impl Session {
         }
     }
 
-    /// Pauses. A background solve goes on to its end.
+    /// Pauses. A background solve continues to its end.
     pub(crate) fn pause(&mut self) {
         self.running = false;
     }
 
-    /// Makes the iterations of one displayed frame, or the time steps that are due at `now`, s of any clock that goes with
-    /// real time; returns `true` if it has iterated.
+    /// Makes the iterations of one displayed frame, or the time steps that are due at `now`, s (any clock that runs in
+    /// real time). Returns `true` if it has iterated.
     pub(crate) fn advance(&mut self, now: f64) -> bool {
         self.poll();
         if self.is_in_background() || !self.iterates() {
@@ -473,7 +475,7 @@ impl Session {
         self.playback.pace.rest();
     }
 
-    /// Makes iterations, or one time step.
+    /// Makes this number of iterations, or one time step of a motion.
     pub(crate) fn iterate(&mut self, iterations: u32) {
         if self.is_motion() {
             self.playback.step(&mut self.simulation);
@@ -490,7 +492,7 @@ impl Session {
         }
     }
 
-    /// Pauses, and makes one iteration or time step; a search that has ended starts again from rest.
+    /// Pauses, and makes one iteration or time step; a finished iteration restarts from rest.
     pub(crate) fn step(&mut self) {
         self.running = false;
         let is_at_rest = self.simulation.is_at_rest();
@@ -504,7 +506,7 @@ impl Session {
         self.iterate(1);
     }
 
-    /// Goes back to rest, or to the start of the motion.
+    /// Returns to rest, or to the start of the motion.
     pub(crate) fn reset(&mut self) {
         if self.is_in_background() {
             return self.restart_in_background(Start::Rest, None);
@@ -513,7 +515,7 @@ impl Session {
         self.residuals.clear();
     }
 
-    /// Iterates to the end, or to the end of the motion's duration, and computes the results.
+    /// Iterates until the status is final, or to the end of the motion's duration, and computes the results.
     pub(crate) fn solve(&mut self, needs_curve: bool) {
         self.wait_for_background();
         while *self.simulation.status() == Status::Running {
@@ -531,8 +533,8 @@ impl Session {
         self.quality.follow(&self.simulation);
     }
 
-    /// Requests the results of the scene, once the body is at rest; returns `true` while one of them is pending. A motion's
-    /// are not requested during a press: a dragged slider need not wait for them.
+    /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. Results
+    /// of a motion are not requested during a press, so that dragging a slider stays smooth.
     pub(crate) fn request_facts(&mut self, needs_curve: bool, is_pressed: bool) -> bool {
         if self.is_motion() {
             return !is_pressed && self.facts.frequency.request(&self.scene);
@@ -547,12 +549,12 @@ impl Session {
         self.facts.request_at_rest(&self.scene, needs_curve)
     }
 
-    /// Requests the reference solution, whatever the body's state; returns `true` while it is pending.
+    /// Requests the reference solution, in any state of the body; returns `true` while it is pending.
     pub(crate) fn request_reference(&mut self) -> bool {
         self.facts.reference.request(&self.scene)
     }
 
-    /// Keeps a copy of an equilibrium, to be displayed when a later state diverges.
+    /// Stores a copy of an equilibrium, to be displayed when a later state diverges.
     pub(crate) fn keep_converged(&mut self) {
         let simulation = &self.simulation;
         let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
@@ -563,12 +565,12 @@ impl Session {
         }
     }
 
-    /// Puts the body into a state of its own; returns `false` if the state does not fit the mesh.
+    /// Displays `state`; returns `false` if it does not fit the mesh.
     pub(crate) fn restore(&mut self, state: &State) -> bool {
         self.simulation.restore(state).is_ok()
     }
 
-    /// Grabs, pulls and releases the body, and the same motion under other integrators.
+    /// Grabs, pulls and releases the body, and its companion motions under other integrators.
     pub(crate) fn grab(&mut self, grab: Grab) {
         if self.is_in_background() {
             return;
@@ -581,7 +583,7 @@ impl Session {
         if let Some(target) = grab.target
             && self.simulation.hand().is_some_and(|(hand, _)| hand.target() != target)
         {
-            // A pointer has a finite place.
+            // Pulling fails only for a position that is not finite; the pointer's is.
             let _ = self.simulation.pull_to(target);
             self.playback.pull_to(target);
         }
@@ -595,13 +597,14 @@ impl Session {
         self.playback.release();
     }
 
-    /// Displays the moment of a motion that is closest to a time, s, and pauses there.
+    /// Displays the recorded moment of a motion that is closest to `time`, s, and pauses there.
     pub(crate) fn show_moment(&mut self, time: f64) {
         self.running = false;
         self.playback.show_moment(time, &mut self.simulation);
     }
 
-    /// Displays the moment before, or after, and pauses there. After the last one a time step is made.
+    /// Displays the next recorded moment (`forward`) or the previous one, and pauses there. After the last one, makes a
+    /// time step.
     pub(crate) fn show_neighbour(&mut self, forward: bool) {
         self.running = false;
         let is_shown = self.playback.show_neighbour(forward, &mut self.simulation);
@@ -610,7 +613,8 @@ impl Session {
         }
     }
 
-    /// Makes the present state the one that a reset goes to, or the start again; returns `true` for the present state.
+    /// Makes the current state the one that a reset returns to, or makes it the start again. Returns `true` in the
+    /// first case.
     pub(crate) fn toggle_mark(&mut self) -> bool {
         self.playback.mark(&self.simulation);
         self.playback.is_marked()
@@ -634,7 +638,7 @@ impl Session {
     }
 }
 
-/// `true` if two scenes have the same mesh.
+/// Returns `true` if two scenes have the same mesh.
 pub(crate) fn has_mesh_of(scene: &Scene, other: &Scene) -> bool {
     scene.beam == other.beam && scene.mesh == other.mesh
 }

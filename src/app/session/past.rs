@@ -1,22 +1,23 @@
-//! The last seconds of a motion, to go back to.
+//! Recorded moments of the last seconds of a motion.
 
 use std::collections::VecDeque;
 
 use crate::simulation::{Moment, Simulation};
 
-/// Most moments that are kept: fifteen seconds of play at 60 a second.
+/// Largest number of moments: fifteen seconds of playing time at 60 Hz.
 const MOST_MOMENTS: usize = 900;
 
-/// Moments of a motion in the order of time.
+/// Moments of a motion ordered by time.
 #[derive(Debug, Default)]
 pub(crate) struct Past {
     moments: VecDeque<Moment>,
-    /// Moments that are no longer of use, to be filled again.
+    /// Dropped moments whose memory is reused.
     spare: Vec<Moment>,
 }
 
 impl Past {
-    /// Adds where a motion is now, and forgets the oldest moments beyond so many bytes. Nothing of a search.
+    /// Records the current state of a motion, and drops the oldest moments if they exceed `most_bytes`. Does nothing
+    /// for a model at rest.
     pub(crate) fn record(&mut self, simulation: &Simulation, most_bytes: usize) {
         let now = simulation.state().time();
         if self.moments.back().is_some_and(|last| last.state().time() == now) {
@@ -43,35 +44,35 @@ impl Past {
         self.moments.extend(recorded);
     }
 
-    /// Forgets everything.
+    /// Removes all moments.
     pub(crate) fn clear(&mut self) {
         *self = Self::default();
     }
 
-    /// Forgets what came after a time, s.
+    /// Removes the moments after `time`, s.
     pub(crate) fn forget_after(&mut self, time: f64) {
         self.moments.truncate(self.moments.partition_point(|moment| moment.state().time() <= time));
     }
 
-    /// Moments, the oldest first.
+    /// Returns the moments, the oldest first.
     pub(crate) fn moments(&self) -> &VecDeque<Moment> {
         &self.moments
     }
 
-    /// The moment at a time, s, exactly.
+    /// Returns the moment at exactly `time`, s.
     pub(crate) fn at(&self, time: f64) -> Option<&Moment> {
         let after = self.moments.partition_point(|moment| moment.state().time() < time);
         self.moments.get(after).filter(|moment| moment.state().time() == time)
     }
 
-    /// The time of the moment that is nearest to a time, s.
+    /// Returns the time of the moment closest to `time`, s.
     pub(crate) fn nearest(&self, time: f64) -> Option<f64> {
         let after = self.moments.partition_point(|moment| moment.state().time() < time);
         let near = self.moments.range(after.saturating_sub(1)..self.moments.len().min(after + 1));
         near.map(|moment| moment.state().time()).min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()))
     }
 
-    /// The time, s, of the last moment before a time, or of the first one after it.
+    /// Returns the time, s, of the first moment after `time` (`forward`) or of the last one before it.
     pub(crate) fn neighbour(&self, time: f64, forward: bool) -> Option<f64> {
         let at = if forward {
             self.moments.partition_point(|moment| moment.state().time() <= time)
@@ -92,7 +93,8 @@ mod tests {
     use super::*;
     use crate::{IntegratorKind, Scene};
 
-    /// A past of steps of 1 s under a bound of memory, in moments; and the bytes of one.
+    /// Returns a record of `steps` steps of 1 s that is limited to the memory of `most` moments, and the bytes of one
+    /// moment.
     fn after(steps: u32, most: usize) -> (Past, usize) {
         let scene = Scene::beam(2.0, 1.0).clamp("left").moving(IntegratorKind::TrBdf2, 1.0);
         let mut simulation = Simulation::new(&scene).unwrap();
@@ -100,7 +102,7 @@ mod tests {
         let mut past = Past::default();
         for _ in 0..steps {
             past.record(&simulation, most * bytes);
-            // Nothing has moved on.
+            // A second record of the same time is ignored.
             past.record(&simulation, most * bytes);
             simulation.step();
             assert!(past.bytes() <= most.max(1) * bytes, "{} bytes", past.bytes());

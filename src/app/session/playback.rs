@@ -1,4 +1,4 @@
-//! A motion in the window: its pace, its past, the place to go back to, and the same motion under other integrators.
+//! Playback of a motion: clock, recorded past, marked start, and the same motion under other integrators.
 
 use nalgebra::Vector2;
 
@@ -10,40 +10,40 @@ use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::{Motion, Simulation, Status};
 use crate::state::State;
 
-/// Memory that the last seconds of everything that moves may take, bytes.
+/// Largest memory for the recorded moments of all motions, bytes.
 const MOST_BYTES: usize = 64 << 20;
-/// Least time of play between two moments that are kept, s: a frame at 60 a second, less rounding.
+/// Shortest playing time between two recorded moments, s: one frame at 60 Hz, less rounding.
 const BETWEEN_MOMENTS: f64 = 1.0 / 61.0;
 
-/// The same motion under another integrator, to be compared.
+/// The same motion under another integrator, for comparison.
 #[derive(Debug)]
 pub(crate) struct Companion {
     pub integrator: IntegratorKind,
     pub simulation: Simulation,
     pub history: History,
     past: Past,
-    /// `true` while the body is shown at a moment at which this motion had not been added.
+    /// `true` while the displayed moment is earlier than the one at which this motion was added.
     pub is_absent: bool,
 }
 
-/// What a window of moving things has beside the body.
+/// Playback of a motion and its companions.
 #[derive(Debug, Default)]
 pub(crate) struct Playback {
     pub pace: RealTimeClock,
     pub history: History,
-    /// Moments of the last seconds.
+    /// Recorded moments of the last seconds.
     past: Past,
-    /// Time of the moment that is shown, s, where it is not the latest.
+    /// Time of the displayed moment, s; `None` if it is the latest.
     shown: Option<f64>,
-    /// Seconds of play since the start: simulated time over speed.
+    /// Playing time since the start, s: simulated time over speed.
     played: f64,
-    /// Seconds of play until the last moment that was kept.
+    /// Playing time at which the last moment was recorded, s.
     kept: f64,
-    /// Where a reset goes, in place of the start.
+    /// State that a reset returns to in place of the start.
     here: Option<State>,
     companions: Vec<Companion>,
-    /// Integrators that became unstable and were taken out of the comparison since this was last asked for, with their longest
-    /// stable step, s, where they have one.
+    /// Integrators that became unstable and were removed from the comparison since the last [`Self::take_unstable`],
+    /// with their longest stable step, s, if they have one.
     unstable: Vec<(IntegratorKind, Option<f64>)>,
 }
 
@@ -64,7 +64,7 @@ impl Playback {
         }
     }
 
-    /// One time step of everything that moves.
+    /// Makes one time step of the motion and its companions.
     pub(crate) fn step(&mut self, simulation: &mut Simulation) {
         self.make_step(simulation);
         self.keep_moment(simulation);
@@ -84,7 +84,7 @@ impl Playback {
             companion.simulation.step();
             companion.history.record(&companion.simulation);
         }
-        // Its energies would set the axes of everything else.
+        // Energies of an unstable companion would set the scale of all axes.
         let unstable = &mut self.unstable;
         self.companions.retain(|companion| {
             let stopped = matches!(companion.simulation.status(), Status::Stopped(_));
@@ -96,7 +96,7 @@ impl Playback {
         });
     }
 
-    /// Keeps the present moment of everything that moves.
+    /// Records the current moment of the motion and its companions.
     fn keep_moment(&mut self, simulation: &Simulation) {
         let most_bytes = MOST_BYTES / (1 + self.companions.len());
         self.past.record(simulation, most_bytes);
@@ -106,31 +106,31 @@ impl Playback {
         self.kept = self.played;
     }
 
-    /// Times of the first and the last moment that can be shown, s; `None` where there is one at most.
+    /// Returns the times of the first and the last recorded moment, s; `None` if there is only one or none.
     pub(crate) fn span(&self) -> Option<[f64; 2]> {
         let moments = self.past.moments();
         let ends = [moments.front()?.state().time(), moments.back()?.state().time()];
         (ends[0] < ends[1]).then_some(ends)
     }
 
-    /// Time of the moment that is shown, s, where it is not the latest.
+    /// Returns the time of the displayed moment, s; `None` if it is the latest.
     pub(crate) fn shown_time(&self) -> Option<f64> {
         self.shown
     }
 
-    /// Seconds of play since the start.
+    /// Returns the playing time since the start, s.
     pub(crate) fn played(&self) -> f64 {
         self.played
     }
 
-    /// Shows the moment next to a time, s. What came after it stays until the next step.
+    /// Displays the recorded moment closest to `time`, s. Later moments are kept until the next step.
     pub(crate) fn show_moment(&mut self, time: f64, simulation: &mut Simulation) {
         self.keep_latest(simulation);
         let Some(time) = self.past.nearest(time) else { return };
         self.show_exactly(time, simulation);
     }
 
-    /// Shows the moment before the one that is shown, or the one after it. Returns `false` where there is none.
+    /// Displays the next recorded moment (`forward`) or the previous one. Returns `false` if there is none.
     pub(crate) fn show_neighbour(&mut self, forward: bool, simulation: &mut Simulation) -> bool {
         self.keep_latest(simulation);
         let Some(time) = self.past.neighbour(simulation.state().time(), forward) else { return false };
@@ -145,7 +145,7 @@ impl Playback {
     }
 
     fn show_exactly(&mut self, time: f64, simulation: &mut Simulation) {
-        // The pointer holds a body of another moment.
+        // The grabbed state is another moment.
         simulation.release();
         self.release();
         let Some(moment) = self.past.at(time) else { return };
@@ -159,7 +159,7 @@ impl Playback {
         }
     }
 
-    /// Forgets what came after the moment that is shown. Motions that had not been added then begin there.
+    /// Removes the moments after the displayed one. Companions that had not been added at that moment start there.
     fn forget_future(&mut self) {
         let shown = self.shown.take();
         let is_whole = self.companions.iter().all(|companion| !companion.is_absent);
@@ -172,7 +172,7 @@ impl Playback {
             companion.past.forget_after(time);
             companion.history.forget_after(time);
             if let Some(here) = here.filter(|_| companion.is_absent) {
-                // It is a state of the same body.
+                // Cannot fail: the state belongs to the same body.
                 let _ = companion.simulation.restore(here.state());
                 companion.is_absent = false;
             }
@@ -185,41 +185,41 @@ impl Playback {
         (self.shown, self.kept) = (None, self.played);
     }
 
-    /// Takes the integrators that became unstable since the last call, with their longest stable step, s.
+    /// Returns the integrators that became unstable since the last call, with their longest stable step, s.
     pub(crate) fn take_unstable(&mut self) -> Vec<(IntegratorKind, Option<f64>)> {
         std::mem::take(&mut self.unstable)
     }
 
-    /// The same motion under other integrators.
+    /// Returns the same motion under other integrators.
     pub(crate) fn companions(&self) -> &[Companion] {
         &self.companions
     }
 
-    /// Whether one of these moves still.
+    /// Returns `true` if a companion is still moving.
     pub(crate) fn companions_move(&self) -> bool {
         self.companions.iter().any(|c| !c.simulation.is_at_rest())
     }
 
-    /// Back to the start of the scene, or to the place that was marked.
+    /// Returns to the start of the scene, or to the marked state.
     pub(crate) fn reset(&mut self, simulation: &mut Simulation) {
         let here = self.here.clone();
         let bodies = std::iter::once(simulation).chain(self.companions.iter_mut().map(|c| &mut c.simulation));
         for body in bodies {
             body.reset();
             if let Some(here) = &here {
-                // A mark of a body that is no more was forgotten with it.
+                // Cannot fail: the mark is removed when the body changes.
                 let _ = body.restore(here);
             }
         }
         self.start_anew();
     }
 
-    /// A reset goes to where the body is now, from now on; or to the start again.
+    /// Marks the current state as the one that a reset returns to, or removes the mark.
     pub(crate) fn mark(&mut self, simulation: &Simulation) {
         self.here = if self.here.is_none() { Some(simulation.state().clone()) } else { None };
     }
 
-    /// Whether a reset goes to a marked place.
+    /// Returns `true` if a reset returns to a marked state.
     pub(crate) fn is_marked(&self) -> bool {
         self.here.is_some()
     }
@@ -234,8 +234,8 @@ impl Playback {
         self.pace.rest();
     }
 
-    /// The scene under the body has changed; `is_another` says whether the body has. The moments before were another
-    /// scene's.
+    /// Adapts to a change of the scene; `is_another` is `true` if the body has changed. Recorded moments belong to the
+    /// previous scene and are removed.
     pub(crate) fn follow(&mut self, scene: &Scene, is_another: bool) {
         self.forget_future();
         self.forget_past();
@@ -250,7 +250,7 @@ impl Playback {
         });
     }
 
-    /// Shows the same motion under another integrator, from where the body is now; or no longer.
+    /// Adds the same motion under another integrator, starting from the current state, or removes it.
     pub(crate) fn toggle(&mut self, kind: IntegratorKind, simulation: &Simulation) {
         let before = self.companions.len();
         self.companions.retain(|c| c.integrator != kind);
@@ -261,7 +261,7 @@ impl Playback {
 
     fn add(&mut self, integrator: IntegratorKind, simulation: &Simulation) {
         let scene = with(simulation.scene(), integrator);
-        // On the body's own equations: nothing of them is made twice.
+        // The companion shares the body's equations.
         let Ok(mut companion) = Simulation::with_system(&scene, simulation.system().clone()) else { return };
         if companion.restore(simulation.state()).is_ok() {
             let (history, past) = (History::default(), Past::default());
@@ -270,22 +270,22 @@ impl Playback {
         }
     }
 
-    /// Takes hold of the same point of everything that moves.
+    /// Grabs the same point of every companion.
     pub(crate) fn grab(&mut self, point: MaterialPoint) {
         for companion in &mut self.companions {
             companion.simulation.grab(point);
         }
     }
 
-    /// Pulls everything to the same place.
+    /// Pulls every companion to the same position.
     pub(crate) fn pull_to(&mut self, place: Vector2<f64>) {
         for companion in &mut self.companions {
-            // A pointer has a finite place.
+            // Pulling fails only for a position that is not finite; the pointer's is.
             let _ = companion.simulation.pull_to(place);
         }
     }
 
-    /// Lets everything go.
+    /// Releases every companion.
     pub(crate) fn release(&mut self) {
         self.companions.iter_mut().for_each(|c| c.simulation.release());
     }
@@ -302,7 +302,8 @@ mod tests {
     use super::*;
     use crate::dynamics::INTEGRATORS;
 
-    /// A beam that falls, compared with another integrator after five steps of ten.
+    /// Returns a falling beam, to which a companion is added after five of ten steps, with its last five pairs of
+    /// states.
     fn falling(kind: IntegratorKind) -> (Playback, Simulation, Vec<[State; 2]>) {
         let scene = Scene::beam(2.0, 0.5).clamp("left").gravity([0.0, -9.81]).moving(kind, 0.01);
         let (mut playback, mut simulation) = (Playback::default(), Simulation::new(&scene).unwrap());
@@ -319,7 +320,7 @@ mod tests {
 
     #[test]
     fn everything_goes_back_to_the_same_moment() {
-        // The steps are too long for an explicit one.
+        // The steps are too long for explicit integrators.
         for integrator in INTEGRATORS.iter().filter(|entry| !entry.is_explicit()) {
             let (mut playback, mut simulation, states) = falling(integrator.kind);
             for [own, other] in states.iter().rev() {
@@ -330,7 +331,7 @@ mod tests {
                 let at_present = own.time() == states[4][0].time();
                 assert_eq!(playback.shown_time().is_none(), at_present);
             }
-            // On from there both take the steps that they took.
+            // Continuing from an earlier moment repeats the same steps.
             playback.show_moment(states[2][0].time(), &mut simulation);
             playback.step(&mut simulation);
             let distance = |a: &State, b: &State| (a.displacement()[1] - b.displacement()[1]).norm();
@@ -352,7 +353,7 @@ mod tests {
             !companion.is_absent && companion.simulation.state().time() == simulation.state().time()
         };
         assert!(is_along(&playback, &simulation));
-        // Added in the past, it begins at the latest moment where that goes on.
+        // A companion added at an earlier moment starts at the latest moment if that one is continued.
         playback.toggle(IntegratorKind::ImplicitEuler, &simulation);
         playback.step(&mut simulation);
         playback.show_moment(0.01, &mut simulation);

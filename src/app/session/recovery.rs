@@ -1,7 +1,7 @@
-//! A copy of unsaved edits in the settings folder, which outlives a crash: the next window offers it.
+//! Copy of unsaved edits in the settings folder. It survives a crash, and the next window offers to restore it.
 //!
-//! Every window locks a numbered place of its own, so that windows that are open at the same time leave each other's
-//! copies alone. A copy whose place nobody locks belongs to a window that has crashed.
+//! Every window locks a numbered file of its own, so that several open windows do not overwrite each other's copies. A
+//! copy that is not locked belongs to a window that has crashed.
 
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -14,21 +14,21 @@ use thiserror::Error;
 use crate::app::session::document::{Document, write_without_sync};
 use crate::scene::{Scene, SceneError, Source};
 
-/// Number of windows that may be open or have crashed.
+/// Largest number of windows that are open or have crashed.
 const PLACES: usize = 100;
 /// Shortest time between two writes.
 const PAUSE: Duration = Duration::from_secs(1);
 /// Time after a failure before another attempt.
 const AFTER_FAILURE: Duration = Duration::from_secs(30);
 
-/// An edited scene, and the scene as it was opened or saved last.
+/// Edited scene, and its document as last opened or saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unsaved {
     pub(crate) document: Document,
     pub(crate) scene: Scene,
 }
 
-/// Why a copy cannot be read.
+/// Reason for which a copy cannot be read.
 #[derive(Debug, Error)]
 enum CopyError {
     #[error(transparent)]
@@ -39,22 +39,22 @@ enum CopyError {
     Scene(#[from] SceneError),
 }
 
-/// Form of a copy in its file.
+/// Content of a copy's file.
 #[derive(Deserialize, Serialize)]
 struct Copy {
     /// Built-in name or absolute path of the scene.
     name: String,
     assignments: Vec<String>,
-    /// Scene as it was opened or saved last, TOML.
+    /// Scene as last opened or saved, TOML.
     original: String,
     /// Scene with its edits, TOML.
     scene: String,
 }
 
-/// Writes an edited scene to a file.
+/// Writes an edited scene and its document to a file.
 ///
 /// # Errors
-/// The system's; what was there is unchanged then.
+/// The system's; the previous content is unchanged.
 fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
     let Source { name, assignments } = &document.source;
     let name = if document.path().is_some() { std::path::absolute(name)? } else { name.clone() };
@@ -80,20 +80,20 @@ impl Unsaved {
     }
 }
 
-/// Place of this window's copy, and the copy that a crashed window has left.
+/// File for this window's copy, and the copy left by a crashed window.
 #[derive(Debug)]
 pub struct Recovery {
     place: Place,
-    /// Edits that the file has.
+    /// Edits that the file contains.
     written: Option<Unsaved>,
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,
     left: Option<Place>,
-    /// `true` once the copy of the crashed window is not needed any more.
+    /// `true` if the copy of the crashed window is no longer needed.
     forgets_left: bool,
 }
 
-/// A numbered file, locked as long as this lives.
+/// Numbered file, locked during the lifetime of this value.
 #[derive(Debug)]
 struct Place {
     file: PathBuf,
@@ -101,7 +101,7 @@ struct Place {
 }
 
 impl Place {
-    /// Locks a place; `None` where another window has it.
+    /// Locks the file with this number; `None` if another window has locked it.
     fn lock(folder: &Path, number: usize) -> io::Result<Option<Self>> {
         let lock = folder.join(format!("{number}.lock"));
         let lock = OpenOptions::new().create(true).truncate(false).write(true).open(lock)?;
@@ -114,10 +114,11 @@ impl Place {
 }
 
 impl Recovery {
-    /// Finds a place in this folder, which is made where there is none, and the edits that a crashed window has left there.
+    /// Locks a free file in `folder`, which is created if it does not exist, and reads the edits that a crashed window
+    /// has left there.
     ///
     /// # Errors
-    /// The system's; or all places are taken.
+    /// The system's, or all files are taken.
     pub fn open(folder: &Path) -> io::Result<(Self, Option<Unsaved>)> {
         std::fs::create_dir_all(folder)?;
         let mut left = None;
@@ -130,7 +131,7 @@ impl Recovery {
             if left.is_none() {
                 match Unsaved::read(&place.file) {
                     Ok(edits) => left = Some((place, edits)),
-                    // It stays where it is, for who can mend it.
+                    // An unreadable copy is kept: the user may repair it by hand.
                     Err(error) => log::warn!("{}: {error}", place.file.display()),
                 }
             }
@@ -138,8 +139,8 @@ impl Recovery {
         Err(io::Error::other(format!("{} has {PLACES} copies of unsaved scenes", folder.display())))
     }
 
-    /// Writes the edits if the file has others, or removes the file where there are none. Returns when to ask again,
-    /// where it is too early to write.
+    /// Writes the edits if the file does not contain them, or removes the file if there are none. Returns the time of
+    /// the next attempt if it is too early to write.
     ///
     /// # Errors
     /// The system's.
@@ -149,7 +150,7 @@ impl Recovery {
             if due.is_some() && edits.is_some() {
                 return Ok(due);
             }
-            // A failure is not repeated at once.
+            // After a failure the next attempt waits.
             self.last = Some(Instant::now() + AFTER_FAILURE);
             match edits {
                 Some((document, scene)) => write(document, scene, &self.place.file)?,
@@ -166,13 +167,13 @@ impl Recovery {
         Ok(None)
     }
 
-    /// Lets the next [`Self::keep`] remove the copy that a crashed window has left, once this window's own edits are written.
+    /// Lets the next [`Self::keep`] remove the copy left by a crashed window, once this window's own edits are written.
     pub fn forget_left(&mut self) {
         self.forgets_left = true;
     }
 }
 
-/// Removes a file, if it is still there.
+/// Removes a file if it exists.
 fn remove(file: &Path) -> io::Result<()> {
     match std::fs::remove_file(file) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),

@@ -1,4 +1,4 @@
-//! A session without a user interface: edits, undo history, background solves, files, motions and grabs.
+//! Tests of the session without user interface: edits, undo history, background solves, files, motions and grabs.
 
 use std::fs;
 use std::path::PathBuf;
@@ -81,7 +81,7 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
     wait(&mut session);
     assert!(session.simulation().status().is_success() && tip(&session) < 1.5 * first);
     assert_eq!(session.simulation().scene(), session.scene());
-    // Another mesh is made in the background, too.
+    // A new mesh of a large model is made in the background, too.
     let second = tip(&session);
     let finer = Edit::Scene("Cells along", Box::new(session.scene().clone().with_cells(64, 16)));
     session.take_changed();
@@ -171,7 +171,7 @@ fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     assert!(!session.request_facts(true, false));
     let facts = session.facts();
     assert!(facts.reference.get().is_some() && facts.curve.get().is_some());
-    // The reference solution does not depend on the method, but on the load.
+    // The reference solution depends on the load, but not on the method.
     let mut scene = session.scene().clone();
     scene.solver.method = MethodKind::Warped;
     session.apply(Edit::Scene("Method", Box::new(scene))).unwrap();

@@ -1,48 +1,50 @@
-//! What has been done to the scene, so that it can be undone.
+//! Undo history of the scene.
 
 use std::collections::VecDeque;
 
 use crate::app::session::document::Document;
 use crate::scene::Scene;
 
-/// So many steps are remembered.
+/// Largest number of undo steps.
 const MOST: usize = 200;
 
-/// A scene as it was, and where it came from.
+/// Scene of an earlier state of the session, and its document.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Version {
     pub document: Document,
     pub scene: Scene,
-    /// Iterations a displayed frame.
+    /// Iterations per displayed frame.
     pub iterations: u32,
 }
 
-/// The pointer in one frame.
+/// State of the pointer in one frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Press {
     /// Time, s.
     pub now: f64,
     /// `true` in the frame in which a button goes down.
     pub is_pressed: bool,
-    /// `true` from the frame in which a button goes down to the one in which it comes up.
+    /// `true` from the frame in which a button goes down to the frame in which it is released.
     pub goes_on: bool,
     /// Longest time between the presses of a double click, s.
     pub double_click: f64,
 }
 
-/// The steps that can be undone and done again.
+/// Steps that can be undone and redone.
 #[derive(Debug, Default)]
 pub(crate) struct UndoHistory {
     past: VecDeque<Version>,
     future: Vec<Version>,
-    /// What the present press has edited: to edit it again is the same step.
+    /// Label of the control edited during the current press: further edits with it belong to the same step.
     edited: Option<&'static str>,
-    /// What the press before has edited, and when that was over, s: both clicks of a double click are one step.
+    /// Label of the control edited during the previous press, and the end of that press, s: both clicks of a double
+    /// click are one step.
     before: Option<(&'static str, f64)>,
 }
 
 impl UndoHistory {
-    /// Follows the pointer: edits of one press, or of both presses of a double click, are one step.
+    /// Records the state of the pointer: edits during one press, or during both presses of a double click, are one
+    /// step.
     pub(crate) fn follow_press(&mut self, press: Press) {
         let Press { now, is_pressed, goes_on, double_click } = press;
         if goes_on && !is_pressed {
@@ -56,7 +58,8 @@ impl UndoHistory {
         }
     }
 
-    /// The scene is no longer as it was `before`; `label` says what was edited, if it was a value.
+    /// Records that the scene has changed; `before` is the version before the change, and `label` names the control if
+    /// a value was edited.
     pub(crate) fn record(&mut self, before: Version, label: Option<&'static str>) {
         self.future.clear();
         if label.is_some() && self.edited == label {
@@ -69,10 +72,10 @@ impl UndoHistory {
         self.past.push_back(before);
     }
 
-    /// The step before the present one, which can be done again then.
+    /// Returns the version before the last step; `present` can then be redone.
     pub(crate) fn undo(&mut self, present: Version) -> Option<Version> {
         self.edited = None;
-        // A drag that came back to where it began has changed nothing.
+        // A drag that ended where it began has changed nothing.
         while self.past.back() == Some(&present) {
             self.past.pop_back();
         }
@@ -81,7 +84,7 @@ impl UndoHistory {
         Some(before)
     }
 
-    /// The step that was undone last.
+    /// Returns the version that was undone last.
     pub(crate) fn redo(&mut self, present: Version) -> Option<Version> {
         self.edited = None;
         let after = self.future.pop()?;
@@ -89,12 +92,12 @@ impl UndoHistory {
         Some(after)
     }
 
-    /// Steps that can be undone.
+    /// Returns the number of steps that can be undone.
     pub(crate) fn depth(&self) -> usize {
         self.past.len()
     }
 
-    /// Forgets what has been done since there were so many steps, for good.
+    /// Removes the steps beyond the first `depth`; they cannot be redone.
     pub(crate) fn take_back(&mut self, depth: usize) {
         self.edited = None;
         self.past.truncate(depth);

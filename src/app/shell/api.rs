@@ -1,4 +1,4 @@
-//! Reading and setting the lab from outside: by the window, screenshots, recordings and tests.
+//! Public interface of the lab: read and set by the window, screenshots, recordings and tests.
 
 use std::path::Path;
 
@@ -29,12 +29,12 @@ impl Lab {
         self.adapter = adapter;
     }
 
-    /// Shows or hides the panel and the bars: without them the view is all of the picture.
+    /// Shows or hides the panel and the bars; without them the view fills the window or image.
     pub fn set_panel(&mut self, shown: bool) {
         self.desk.view.bars = shown;
     }
 
-    /// Animates the growth of the load when the window opens. Nothing waits for it, and any input ends it.
+    /// Animates the growth of the load when the window opens. It delays nothing, and any input ends it.
     pub(crate) fn introduce(&mut self) {
         self.intro = Intro::new(self.desk.session.simulation());
     }
@@ -49,7 +49,7 @@ impl Lab {
         self.desk.view.drawer = Some(Drawer::Motion);
     }
 
-    /// Shows a card of the mode Learn, which count from 1. The present scene comes back at the end of the mode.
+    /// Shows card `number` of the mode Learn, from 1. The current scene is restored when the mode ends.
     pub fn show_card(&mut self, number: usize) {
         let card = number.saturating_sub(1).min(learn::CARDS.len() - 1);
         if self.lesson.is_some() {
@@ -61,13 +61,13 @@ impl Lab {
         }
     }
 
-    /// The number of the card that is shown, from 1, and of how many; `None` in other modes.
+    /// Returns the number of the displayed card, from 1, and the number of cards; `None` in other modes.
     #[must_use]
     pub fn card(&self) -> Option<(usize, usize)> {
         self.lesson.as_ref().map(|_| (self.card + 1, learn::CARDS.len()))
     }
 
-    /// Shows a study under the body.
+    /// Shows a speed–accuracy study in the mode Budget.
     pub fn show_study(&mut self, study: Study) {
         if self.lesson.is_none() {
             self.desk.view.mode = Mode::Budget;
@@ -75,7 +75,7 @@ impl Lab {
         self.desk.budget.set(self.desk.session.scene(), study);
     }
 
-    /// Shows panes side by side, one a setting, under the same load: two to four. A scene in motion is not compared so.
+    /// Shows two to four panes side by side under the same load, one per setting. Does nothing for a motion.
     pub fn show_comparison(&mut self, settings: &[PaneSetting]) {
         if self.desk.session.is_motion() {
             return;
@@ -84,38 +84,38 @@ impl Lab {
         self.desk.compare.set(settings);
     }
 
-    /// The panes that are compared.
+    /// Returns the panes that are compared.
     #[must_use]
     pub fn panes(&self) -> &[Pane] {
         self.desk.compare.panes()
     }
 
-    /// The panes in which motions are compared.
+    /// Returns the panes in which motions are compared.
     #[must_use]
     pub fn motion_panes(&self) -> &[MotionPane] {
         self.desk.motions.panes()
     }
 
-    /// Equilibria that the comparison has traced under the present kind of load: the setting; the load, and both components
-    /// of the first probe's displacement, m.
+    /// Returns the equilibria that the comparison has traced under the current kind of load. Each has its setting, and
+    /// three numbers: the load, and both components of the first probe's displacement, m.
     #[must_use]
     pub fn traced(&self) -> Vec<(PaneSetting, [f64; 3])> {
         self.desk.compare.traced()
     }
 
-    /// The measurements of the scene, and `true` if more are being made.
+    /// Returns the study of the scene, if there is one, and `true` if measurements are in progress.
     #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {
         (self.desk.budget.study(), self.desk.budget.runs())
     }
 
-    /// Measurements of the scene's motion.
+    /// Returns the study of the scene's motion.
     #[must_use]
     pub fn motion_study(&self) -> Option<&MotionStudy> {
         self.desk.budget.motion_study()
     }
 
-    /// Iterations a displayed frame.
+    /// Returns the number of iterations per displayed frame.
     #[must_use]
     pub fn iterations(&self) -> u32 {
         self.desk.session.iterations()
@@ -126,72 +126,72 @@ impl Lab {
         self.desk.session.restore(state)
     }
 
-    /// Fixes the camera and the range of colours.
+    /// Fixes the camera and the range of the colour map.
     pub(crate) fn fix_view(&mut self, camera: Camera, range: [f64; 2]) {
         self.desk.viewport.look(camera);
         self.desk.view.fixed_range = Some(range);
     }
 
-    /// Returns the camera that shows a box, m, and the linear solution, in a view of this size, points.
+    /// Returns the camera that shows a box, m, and the linear solution, in a view of size `view`, points.
     pub(crate) fn fit(&self, low: Vector2<f64>, high: Vector2<f64>, view: [f64; 2]) -> Camera {
         self.desk.viewport.fitted(&self.content(), low, high, view)
     }
 
-    /// Shows or hides the outlines at rest and of the linear solution.
+    /// Shows or hides the outlines at rest, of the linear solution and of the reference solution.
     pub fn set_outlines(&mut self, shown: bool) {
         let view = &mut self.desk.view;
         (view.rest_outline, view.ghost, view.exact) = (shown, shown, shown);
     }
 
-    /// The scene, with its edits.
+    /// Returns the scene with its edits.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         self.desk.session.scene()
     }
 
-    /// Place that the scene comes from.
+    /// Returns the source of the scene.
     pub(crate) fn source(&self) -> &Source {
         &self.desk.session.document().source
     }
 
-    /// The displayed simulation.
+    /// Returns the displayed simulation.
     #[must_use]
     pub fn simulation(&self) -> &Simulation {
         self.desk.session.simulation()
     }
 
-    /// Linear theory's solution of the scene, where there is one.
+    /// Returns the solution of linear theory, if there is one.
     #[must_use]
     pub fn linear(&self) -> Option<&Simulation> {
         self.desk.session.linear()
     }
 
-    /// Displacement of the linear solution, m, where there is one.
+    /// Returns the displacement of the linear solution, m, if there is one.
     #[must_use]
     pub fn linear_displacement(&self) -> Option<&[Vector2<f64>]> {
         self.linear().map(Simulation::displacement)
     }
 
-    /// The view's place in the window, points.
+    /// Returns the area of the view in the window, points.
     #[must_use]
     pub fn view_rect(&self) -> Rect {
         self.desk.viewport.rect()
     }
 
-    /// Tips of the loads' arrows in the window, points, with the number of each among the scene's loads.
+    /// Returns the tips of the load arrows in the window, points, with the index of each load in the scene.
     #[must_use]
     pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
         let arrows = self.desk.viewport.arrows(&self.content());
         arrows.iter().map(|arrow| (arrow.load(), arrow.tip())).collect()
     }
 
-    /// Feet of the arrows of forces, and centres of those of moments, in the window, points.
+    /// Returns the start points of force arrows, and the centres of moment arrows, in the window, points.
     #[must_use]
     pub fn arrow_feet(&self) -> Vec<egui::Pos2> {
         self.desk.viewport.arrows(&self.content()).iter().map(Handle::foot).collect()
     }
 
-    /// The camera of the last [`Self::ui`].
+    /// Returns the camera of the last [`Self::ui`].
     #[must_use]
     pub fn camera(&self) -> Camera {
         match self.desk.view.mode {
@@ -201,7 +201,7 @@ impl Lab {
         }
     }
 
-    /// Title of the window: the scene's name, a star where it has been edited, and the name of its file.
+    /// Returns the title of the window: the scene's name, an asterisk if it has been edited, and the name of its file.
     #[must_use]
     pub fn title(&self) -> String {
         let session = &self.desk.session;
@@ -212,42 +212,42 @@ impl Lab {
         format!("{}{edited}{file} \u{2013} warpbeam", tr(&session.scene().name))
     }
 
-    /// `true` if there is an edit to undo.
+    /// Returns `true` if there is an edit to undo.
     #[must_use]
     pub fn can_undo(&self) -> bool {
         self.desk.session.can_undo()
     }
 
-    /// `true` if there is an undone edit to do again.
+    /// Returns `true` if there is an undone edit to redo.
     #[must_use]
     pub fn can_redo(&self) -> bool {
         self.desk.session.can_redo()
     }
 
-    /// Lets the camera move smoothly, as in a window, or at once, as in pictures.
+    /// Turns the animation of the camera on, as in a window, or off, as in images.
     pub fn set_easing(&mut self, eases: bool) {
         self.desk.viewport.set_easing(eases);
     }
 
-    /// The material point whose values are shown over the body.
+    /// Returns the pinned material point, whose values are shown over the body.
     #[must_use]
     pub fn probed(&self) -> Option<MaterialPoint> {
         self.desk.viewport.probe()
     }
 
-    /// Sets the size, in unknowns, above which a model is meshed and solved in the background.
+    /// Sets the number of unknowns above which a model is meshed and solved in the background.
     pub fn set_most_unknowns(&mut self, most: u64) {
         self.desk.session.set_most_unknowns(most);
     }
 
-    /// `true` while a model is meshed or solved in the background.
+    /// Returns `true` while a model is meshed or solved in the background.
     #[must_use]
     pub fn is_working(&self) -> bool {
         self.desk.session.is_working()
     }
 
-    /// Changes the scene under the body, which continues from its present state if it can. A large model is set up in the
-    /// background; errors of its mesh are shown then.
+    /// Changes the scene of the body, which continues from its current state if possible. A large model is set up in
+    /// the background; errors of its mesh are shown later as a message.
     ///
     /// # Errors
     /// [`SimulationError`]; the lab is unchanged.
@@ -257,17 +257,17 @@ impl Lab {
         Ok(())
     }
 
-    /// Shows the same motion under another integrator as an outline, or no longer.
+    /// Shows the outline of the same motion under another integrator; if it is shown, hides it.
     pub fn compare_with(&mut self, integrator: IntegratorKind) {
         self.desk.session.toggle_companion(integrator);
     }
 
-    /// Sets the speed of a motion, simulated seconds per second: 1, or slow motion.
+    /// Sets the playback speed of a motion, simulated seconds per second, at most 1.
     pub fn set_speed(&mut self, speed: f64) {
         self.desk.session.set_speed(speed);
     }
 
-    /// `true` while something that is shown of the scene is being computed in the background.
+    /// Returns `true` while a displayed result of the scene is being computed in the background.
     #[must_use]
     pub fn is_searching(&self) -> bool {
         let Desk { session, view, .. } = &self.desk;
@@ -298,23 +298,23 @@ impl Lab {
         }
     }
 
-    /// Sets the language of every text.
+    /// Sets the language of the user interface.
     pub fn set_language(&mut self, language: Language) {
         self.settings.language = language;
     }
 
-    /// The language of every text.
+    /// Returns the language of the user interface.
     #[must_use]
     pub fn language(&self) -> Language {
         self.settings.language
     }
 
-    /// Notes the size of the window, points.
+    /// Records the size of the window, points, for the settings.
     pub fn set_window_size(&mut self, size: [f32; 2]) {
         self.settings.set_size(size);
     }
 
-    /// The settings to be saved.
+    /// Returns the settings to be saved.
     #[must_use]
     pub fn settings(&self, ctx: &egui::Context) -> Settings {
         let theme = match ctx.options(|options| options.theme_preference) {
@@ -322,7 +322,7 @@ impl Lab {
             egui::ThemePreference::Light => Some(ThemeChoice::Light),
             egui::ThemePreference::System => None,
         };
-        // The cards have a view of their own, which is not saved.
+        // The cards of Learn have view options of their own, which are not saved.
         let desk = self.lesson.as_ref().map_or(&self.desk, |lesson| &lesson.aside);
         let ViewOptions { panel, drawer, field, .. } = desk.view;
         let mut settings = self.settings.clone();
@@ -331,13 +331,13 @@ impl Lab {
         settings
     }
 
-    /// The drawn body, as of the last [`Self::ui`].
+    /// Returns the input of the body's render pass, as of the last [`Self::ui`].
     #[must_use]
     pub fn frame(&self) -> Frame<'_> {
         self.desk.viewport.frame(&self.content())
     }
 
-    /// The drawn bodies, as of the last [`Self::ui`], at this number of pixels a point.
+    /// Returns the displayed bodies, as of the last [`Self::ui`], at this number of pixels per point.
     pub(crate) fn views(&self, pixels_per_point: f32) -> Vec<View<'_>> {
         let Desk { view, session, compare, motions, .. } = &self.desk;
         match view.mode {
@@ -347,7 +347,7 @@ impl Lab {
         }
     }
 
-    /// Shows the progress of the scene's recording; `None` once it has ended.
+    /// Shows the progress of the scene's recording; `None` when it has ended.
     pub(crate) fn show_recording(&mut self, progress: Option<String>) {
         self.recording = progress;
     }

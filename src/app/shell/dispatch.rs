@@ -1,4 +1,4 @@
-//! The dispatch of actions: edits go to the session, the rest to the part of the window that it concerns.
+//! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
 use crate::app::action::{Action, MOST_ITERATIONS};
 use crate::app::language::{fill, tr, translated};
@@ -16,7 +16,7 @@ use crate::scene::Source;
 use crate::study::Extent;
 
 impl Lab {
-    /// Makes the rest of the window follow the changes of the session.
+    /// Updates the window after changes of the session.
     pub(super) fn follow_session(&mut self) {
         let Desk { session, viewport, view, panel, budget, compare, motions } = &mut self.desk;
         let changed = session.take_changed();
@@ -52,7 +52,7 @@ impl Lab {
         applied.is_ok()
     }
 
-    /// Does what the user asks for.
+    /// Performs an action.
     pub(super) fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
         match action {
             Action::Open(id) => {
@@ -85,7 +85,7 @@ impl Lab {
             }
             Action::ToggleRun => {
                 let is_running = self.desk.session.is_running();
-                // A body that has come to its end has nothing to pause.
+                // A body that has reached its end cannot be paused.
                 if !(is_running && self.readout().ended) {
                     self.desk.session.set_running(!is_running);
                 }
@@ -123,7 +123,7 @@ impl Lab {
                 self.desk.compare.fit();
                 self.desk.motions.fit();
             }
-            // The other kind of scene has other plots.
+            // The drawer of the other kind of scene does not exist here.
             Action::Toggle(Toggle::Drawer(drawer)) if drawer != Drawer::of(self.scene()) => {}
             Action::Toggle(toggle) => {
                 self.desk.view.toggle(toggle);
@@ -158,7 +158,7 @@ impl Lab {
             Action::Copy => self.copy(ctx),
             Action::CopyRust => self.copy_rust(ctx),
             Action::Measure(true) => {
-                // Full studies of motions take many minutes.
+                // A full study of a motion takes many minutes.
                 let is_quick = self.lesson.is_some() || self.desk.session.is_motion();
                 let extent = if is_quick { Extent::Quick } else { Extent::Full };
                 self.desk.budget.measure(self.desk.session.scene(), extent);
@@ -173,14 +173,14 @@ impl Lab {
         self.follow_session();
     }
 
-    /// Pauses, and makes one step of the shown mode.
+    /// Pauses, and makes one step in the current mode.
     fn step(&mut self) {
         if self.desk.view.mode == Mode::Compare {
             self.desk.session.pause();
             return self.desk.compare.step();
         }
         let session = &mut self.desk.session;
-        // On the card of the pseudocode a step goes to the next line, and one line iterates.
+        // On the pseudocode card a step goes to the next line, and only one of the lines iterates.
         let ended = !session.is_motion() && session.simulation().is_at_rest();
         let line = self.lesson.as_ref().and_then(|lesson| lesson.learn.next_line(session.simulation(), ended));
         let Some(line) = line.filter(|_| !session.is_in_background()) else {
@@ -199,7 +199,7 @@ impl Lab {
         }
     }
 
-    /// Goes back to rest, or to the start of the motion.
+    /// Returns to rest, or to the start of the motion.
     pub(super) fn reset(&mut self) {
         let Desk { session, viewport, compare, motions, .. } = &mut self.desk;
         compare.reset();
@@ -214,7 +214,7 @@ impl Lab {
         }
     }
 
-    /// Sets the load whose arrow is dragged, or gives a load the value of the scene's document.
+    /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document.
     pub(super) fn edit_loads(&mut self, ctx: &egui::Context, interaction: &Interaction, requests: &mut Vec<Request>) {
         let mut edit = |lab: &mut Self, label, scene| {
             lab.act(ctx, Action::Edit(label, Box::new(scene)), requests);
@@ -230,7 +230,7 @@ impl Lab {
                 }
                 Pull::Moment(moment) => ("Moment", scene.set_moment(load, moment)),
             };
-            // The load of an arrow exists.
+            // An arrow always belongs to an existing load.
             if set.is_ok() && scene != *self.scene() {
                 edit(self, label, scene);
             }

@@ -1,4 +1,4 @@
-//! A dialog that asks for a scene file: a path to type, the files of its folder to click, and those used last.
+//! Dialog for a scene file: a path to type, the files of its folder to click, and recent files.
 
 use std::path::{Path, PathBuf};
 
@@ -6,23 +6,23 @@ use egui::{Context, Key, Modal, RichText, ScrollArea, TextEdit};
 
 use crate::app::language::{fill, tr, translated};
 
-/// What the file is for.
+/// Purpose of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     Open,
     Save,
 }
 
-/// What was answered.
+/// Answer of the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// No file.
+    /// Cancelled.
     Cancel,
-    /// This one.
+    /// The chosen file.
     File(PathBuf),
 }
 
-/// The dialog.
+/// State of the dialog.
 #[derive(Debug)]
 pub(crate) struct FileDialog {
     pub purpose: Purpose,
@@ -31,13 +31,13 @@ pub(crate) struct FileDialog {
     folders: Vec<String>,
     files: Vec<String>,
     message: Option<String>,
-    /// A file that is there and that is to be written over when it is asked for once more.
+    /// Existing file that is replaced if the user confirms.
     replaced: Option<PathBuf>,
     is_new: bool,
 }
 
 impl FileDialog {
-    /// Asks for a file, at first in the folder of `near`.
+    /// Creates a dialog that starts in the folder of `near`.
     pub(crate) fn new(purpose: Purpose, near: Option<&Path>, name: &str) -> Self {
         let folder = near.and_then(Path::parent).filter(|folder| folder.is_dir());
         let folder = std::path::absolute(folder.unwrap_or(Path::new("."))).unwrap_or_default();
@@ -55,7 +55,7 @@ impl FileDialog {
         dialog
     }
 
-    /// Lists a folder.
+    /// Lists the files of a folder.
     fn enter(&mut self, folder: PathBuf) {
         (self.folders, self.files) = (Vec::new(), Vec::new());
         match std::fs::read_dir(&folder) {
@@ -81,12 +81,12 @@ impl FileDialog {
         }
     }
 
-    /// Says that a file cannot be used; the dialog stays.
+    /// Shows an error message; the dialog stays open.
     pub(crate) fn refuse(&mut self, message: String) {
         self.message = Some(translated(&message));
     }
 
-    /// Takes the typed path: a folder is entered, a file is the answer.
+    /// Accepts the typed path: enters a folder, or returns a file as the answer.
     fn accept(&mut self) -> Option<Answer> {
         let typed = self.text.trim();
         if typed.is_empty() {
@@ -112,7 +112,7 @@ impl FileDialog {
         Some(Answer::File(path))
     }
 
-    /// Shows it; returns the answer once there is one.
+    /// Shows the dialog; returns the answer when there is one.
     pub(crate) fn show(&mut self, ctx: &Context, recent: &[PathBuf]) -> Option<Answer> {
         let (title, verb) = match self.purpose {
             Purpose::Open => ("Open a scene", "Open"),

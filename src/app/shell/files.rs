@@ -1,4 +1,4 @@
-//! Files in the window: opening, saving, dropping, changes on disk, and copies of the scene.
+//! Files: opening, saving, dropping, changes on disk, and copies of the scene to the clipboard.
 
 use std::path::Path;
 
@@ -12,14 +12,14 @@ use crate::app::shell::messages::banner;
 use crate::scene::Source;
 
 impl Lab {
-    /// Opens a scene in the place of the present one, and shows a message if that fails.
+    /// Opens a scene in place of the current one, and shows a message if that fails.
     pub(super) fn open(&mut self, ctx: &egui::Context, source: Source) {
         if self.apply(ctx, Edit::Open(source)) {
             self.note_recent();
         }
     }
 
-    /// Adds the scene's file to the recent ones.
+    /// Adds the scene's file to the recent files.
     fn note_recent(&mut self) {
         if let Some(path) = self.desk.session.document().path() {
             self.settings.add_recent(path);
@@ -37,7 +37,7 @@ impl Lab {
         Ok(())
     }
 
-    /// Saves the scene to its file, or asks for one.
+    /// Saves the scene to its file; if it has none, shows the file dialog.
     pub(super) fn save_here(&mut self, ctx: &egui::Context) {
         let Some(path) = self.desk.session.document().path().map(Path::to_owned) else {
             return self.ask_where_to_save();
@@ -59,7 +59,7 @@ impl Lab {
         self.dialog = Some(FileDialog::new(Purpose::Save, document.path(), &name));
     }
 
-    /// Shows the dialog that asks for a file, and does what it answers.
+    /// Shows the file dialog, and processes its answer.
     pub(super) fn ask_for_file(&mut self, ctx: &egui::Context) {
         let Some(mut dialog) = self.dialog.take() else { return };
         let Some(answer) = dialog.show(ctx, self.settings.recent()) else {

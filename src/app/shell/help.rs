@@ -1,11 +1,11 @@
-//! The overlay that lists keys and mouse.
+//! Help overlay with the list of keys and mouse actions.
 
 use egui::{Align2, Context};
 
 use crate::app::language::tr;
 use crate::app::shell::shortcuts::SHORTCUTS;
 
-/// Keys that belong to what is shown or has the focus.
+/// Keys that belong to a mode or to the control with the focus.
 const HERE: &[(&str, &str)] = &[
     ("Left, Right", "On a slider: a little less or more; on the cards of Learn: the card before or after"),
     ("Delete", "On a slider: the scene's own value"),
@@ -21,7 +21,7 @@ const MOUSE: &[(&str, &str)] = &[
     ("Drop a file", "Open it"),
 ];
 
-/// Shows the list over everything; `open` goes off when it is closed.
+/// Shows the list over everything; sets `open` to `false` when it is closed.
 pub(crate) fn show(ctx: &Context, open: &mut bool) {
     if !*open {
         return;
@@ -31,7 +31,7 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .open(open)
         .collapsible(false)
         .resizable(false)
-        // The list is longer than a small window is high.
+        // The list is higher than a small window.
         .vscroll(true)
         .max_height(ctx.content_rect().height() - 80.0)
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)

@@ -1,29 +1,28 @@
-//! The first seconds of a newcomer: the load grows from nothing to the scene's, and the body bends under it.
+//! Opening animation: the load grows from zero to the scene's, and the body bends under it.
 
 use crate::method::is_useful_start;
 use crate::scene::{Load, MethodKind, Scene};
 use crate::simulation::Simulation;
 
-/// How long it lasts, s.
+/// Duration, s.
 const DURATION: f64 = 1.5;
-/// More unknowns than this are not solved anew for every picture.
+/// Largest number of unknowns: every frame solves the model again.
 const MOST_UNKNOWNS: usize = 2000;
 
-/// A body on its way to the equilibrium that the lab has found already. Every picture is an equilibrium under a part of
-/// the load.
+/// Animation towards an equilibrium that is already known. Every frame is an equilibrium under a fraction of the load.
 #[derive(Debug)]
 pub(crate) struct Intro {
-    /// The scene under a part of its load.
+    /// Simulation under a fraction of the load.
     simulation: Simulation,
-    /// Linear theory's, under the same part.
+    /// Solution of linear theory under the same fraction.
     linear: Option<Simulation>,
     loads: Vec<Load>,
-    /// When it began, s.
+    /// Time of the start, s.
     start: Option<f64>,
 }
 
 impl Intro {
-    /// That of a scene which is at rest under constant loads.
+    /// Returns the animation of a static scene; `None` for a motion or a large model.
     pub(crate) fn new(simulation: &Simulation) -> Option<Self> {
         let scene = simulation.scene();
         let small = simulation.system().dofs() <= MOST_UNKNOWNS;
@@ -45,11 +44,11 @@ impl Intro {
         })
     }
 
-    /// The body at `now`, s; `false` at the end.
+    /// Updates the body to the time `now`, s; returns `false` at the end.
     pub(crate) fn advance(&mut self, now: f64) -> bool {
         let start = *self.start.get_or_insert(now);
         let t = ((now - start) / DURATION).clamp(0.0, 1.0);
-        // Starts and ends gently.
+        // Smoothstep: starts and ends with zero velocity.
         let factor = t * t * (3.0 - 2.0 * t);
         let bodies = std::iter::once(&mut self.simulation).chain(self.linear.as_mut());
         let mut good = true;
@@ -62,18 +61,18 @@ impl Intro {
         good && t < 1.0
     }
 
-    /// The body under a part of its load.
+    /// Returns the body under the current fraction of the load.
     pub(crate) fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// The same under linear theory.
+    /// Returns the solution of linear theory under the same fraction.
     pub(crate) fn linear(&self) -> Option<&Simulation> {
         self.linear.as_ref()
     }
 }
 
-/// A scene under a part of some loads.
+/// Returns the scene with `loads` times `factor`.
 fn scaled(scene: &Scene, loads: &[Load], factor: f64) -> Scene {
     let mut scene = scene.clone();
     scene.loads = loads.to_vec();
@@ -93,7 +92,7 @@ mod tests {
     use super::*;
     use crate::scene::{Source, open};
 
-    /// The load grows, so does the deflection, and the end is where the solve ends.
+    /// The deflection grows with the load, and the end is the solved equilibrium.
     #[test]
     fn the_body_goes_to_its_equilibrium_in_a_second_and_a_half() {
         let scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();

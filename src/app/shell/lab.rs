@@ -1,4 +1,4 @@
-//! The lab: everything that a window shows. Window, screenshots and tests show it through [`Lab::ui`].
+//! [`Lab`]: the complete content of a window. Window, screenshots and tests all show it through [`Lab::ui`].
 
 use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare, PaneInput};
@@ -18,14 +18,14 @@ use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::{Scene, Source};
 use crate::simulation::Simulation;
 
-/// Requests of the lab to the window that shows it.
+/// Request of the lab to the window that shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// Save a picture.
+    /// Save an image of the window.
     Screenshot,
     /// Close the window.
     Close,
-    /// Remove the copy of unsaved edits that a crashed window has left.
+    /// Remove the copy of unsaved edits left by a crashed window.
     ForgetCopy,
     /// Record the window, or end the recording.
     Record,
@@ -33,7 +33,7 @@ pub enum Request {
     RecordScene,
 }
 
-/// A model with its view and its tools. Learn has one of its own.
+/// Model with its view and tools. The mode Learn has a desk of its own.
 #[derive(Debug)]
 pub(super) struct Desk {
     pub session: Session,
@@ -58,7 +58,7 @@ impl Desk {
         }
     }
 
-    /// The input of the panes of Compare.
+    /// Returns the common input of the panes of Compare.
     pub(super) fn pane_input<'a>(
         session: &'a Session,
         view: &'a ViewOptions,
@@ -75,15 +75,15 @@ impl Desk {
     }
 }
 
-/// The mode Learn while it is shown.
+/// State of the mode Learn.
 #[derive(Debug)]
 pub(super) struct Lesson {
     pub learn: Learn,
-    /// The user's desk, which comes back at the end.
+    /// The user's desk, which is restored when the mode ends.
     pub aside: Desk,
 }
 
-/// Request that would lose the edits.
+/// Action that would lose unsaved edits.
 #[derive(Clone, Debug)]
 pub(super) enum Departure {
     Close,
@@ -91,7 +91,7 @@ pub(super) enum Departure {
     AskForFile,
 }
 
-/// State of the question.
+/// State of the question about unsaved edits.
 #[derive(Debug, Default)]
 pub(super) enum Question {
     #[default]
@@ -102,33 +102,33 @@ pub(super) enum Question {
     Saving(Departure),
 }
 
-/// Everything that a window shows.
+/// Complete content of a window.
 #[derive(Debug)]
 pub struct Lab {
     pub(super) desk: Desk,
     pub(super) lesson: Option<Box<Lesson>>,
-    /// The card that was shown last, from 0.
+    /// Number of the last displayed card, from 0.
     pub(super) card: usize,
     pub(super) intro: Option<Intro>,
     pub(super) dialog: Option<FileDialog>,
     /// Question about unsaved edits.
     pub(super) question: Question,
-    /// Edits that a crashed window has left, while they are offered.
+    /// Edits left by a crashed window, while they are offered.
     pub(super) left: Option<Unsaved>,
-    /// `true` once the window is to close.
+    /// `true` if the window is to close.
     pub(super) closes: bool,
     pub(super) settings: Settings,
     /// Name of the graphics adapter.
     pub(super) adapter: String,
-    /// A message, and the time until which it is shown, s.
+    /// Message, and the time until which it is shown, s.
     pub(super) toast: Option<(String, f64)>,
-    /// Progress of the scene's recording, while it is made.
+    /// Progress of the scene's recording; `None` if there is none.
     pub(super) recording: Option<String>,
     pub(super) gallery: Gallery,
 }
 
 impl Lab {
-    /// A lab with this scene, iterating from rest.
+    /// Creates a lab with `scene`, iterating from rest.
     #[must_use]
     pub fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
         Self {
@@ -148,8 +148,8 @@ impl Lab {
         }
     }
 
-    /// A lab that shows the first built-in scene until this one, which is large, has been meshed in the background;
-    /// `None` if the built-in scene cannot be shown.
+    /// Creates a lab that shows the first built-in scene until `scene`, which is large, has been meshed in the
+    /// background; `None` if the built-in scene cannot be shown.
     pub(crate) fn opening(source: Source, scene: Scene) -> Option<Self> {
         let (own, meanwhile) = learn::article()?;
         let mut simulation = Simulation::new(&meanwhile).ok()?;
@@ -162,13 +162,13 @@ impl Lab {
         Some(lab)
     }
 
-    /// `true` if motions are compared: the body of Explore waits.
+    /// Returns `true` if motions are compared; the body of Explore is then paused.
     pub(super) fn compares_motions(&self) -> bool {
         self.desk.view.mode == Mode::Compare && self.desk.session.is_motion()
     }
 
-    /// Makes the iterations of one displayed frame if it runs, or the time steps that are due at `now`, s of any clock
-    /// that goes with real time; returns `true` if there are others to make.
+    /// Makes the iterations of one displayed frame if the lab runs, or the time steps that are due at `now`, s (any
+    /// clock that runs in real time). Returns `true` if more remain.
     pub fn advance(&mut self, now: f64) -> bool {
         if self.compares_motions() {
             let Desk { session, motions, .. } = &mut self.desk;
@@ -181,14 +181,14 @@ impl Lab {
         self.iterates()
     }
 
-    /// Lights up the last line of the pseudocode, after an iteration.
+    /// Highlights the last line of the pseudocode, after an iteration.
     pub(super) fn show_last_line(&mut self) {
         if let Some(lesson) = &mut self.lesson {
             lesson.learn.line = learn::UNTIL;
         }
     }
 
-    /// `true` if the next frame changes the body.
+    /// Returns `true` if the next frame changes the body.
     #[must_use]
     pub fn iterates(&self) -> bool {
         if self.compares_motions() {
@@ -197,7 +197,7 @@ impl Lab {
         self.desk.session.iterates()
     }
 
-    /// Makes iterations, or one time step.
+    /// Makes this number of iterations, or one time step of a motion.
     pub(crate) fn iterate(&mut self, iterations: u32) {
         self.desk.session.iterate(iterations);
         if !self.desk.session.is_motion() {
@@ -205,7 +205,7 @@ impl Lab {
         }
     }
 
-    /// Iterates to the end, or to the end of the motion's duration, and computes everything that is shown of the result.
+    /// Iterates until the status is final, or to the end of the motion's duration, and computes all displayed results.
     pub fn solve(&mut self) {
         let Desk { session, view, compare, .. } = &mut self.desk;
         session.solve(view.drawer == Some(Drawer::Curve));
@@ -221,19 +221,19 @@ impl Lab {
         self.show_last_line();
     }
 
-    /// Everything that the view of the body shows.
+    /// Returns the content of the body's view.
     pub(super) fn content(&self) -> Content<'_> {
         let Self { desk: Desk { session, view, panel, .. }, intro, lesson, .. } = self;
         content(session, view, panel, intro.as_ref(), lesson.as_deref())
     }
 
-    /// The view of the body, and everything that it shows.
+    /// Returns the view of the body, and its content.
     pub(super) fn viewport_and_content(&mut self) -> (&mut Viewport, Content<'_>) {
         let Self { desk: Desk { session, viewport, view, panel, .. }, intro, lesson, .. } = self;
         (viewport, content(session, view, panel, intro.as_ref(), lesson.as_deref()))
     }
 
-    /// The state that bars, panel and cards show.
+    /// Returns the state that bars, panel and cards show.
     pub(super) fn readout(&self) -> Readout<'_> {
         let Desk { session, viewport, view, compare, motions, .. } = &self.desk;
         let facts = session.facts();

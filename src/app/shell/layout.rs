@@ -1,4 +1,4 @@
-//! The layout of the window: bars, panel, plots, the body or the panes that are compared, and everything over them.
+//! Layout of the window: bars, panel, plots, the body or the compared panes, and everything over them.
 
 use egui::{CentralPanel, Color32, Panel, Rect, Ui};
 
@@ -17,18 +17,19 @@ use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::{overlay, time_line};
 use crate::app::widgets::palette::{self, Palette};
 
-/// A window narrower than this, points, has no place for the panel: it lies over the body, and can be put away.
+/// In a window narrower than this, points, the panel lies over the body and can be closed.
 const NARROW: f32 = 900.0;
 
-/// Height of the bar along the bottom, points.
+/// Height of the status bar, points.
 const STATUS_BAR_HEIGHT: f32 = 42.0;
 
-/// Height of the plots under the body, points; at most a part of the window's.
+/// Height of the plots under the body, points, and its largest fraction of the window's height.
 const DRAWER_HEIGHT: f32 = 270.0;
 const DRAWER_SHARE: f32 = 0.45;
 
 impl Lab {
-    /// Shows everything but the body, which is drawn under it, and does what the user asks for.
+    /// Shows the user interface and performs the user's actions. The body itself is drawn by another pass, under the
+    /// interface.
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
         palette::install(ui.ctx());
         language::speak(self.settings.language);
@@ -40,7 +41,7 @@ impl Lab {
         self.continue_intro(ui.ctx());
         self.show_notices(ui.ctx());
         self.desk.view.narrow = ui.available_width() < NARROW;
-        // Enter ends a text within its frame: the other keys of that frame were typed into it.
+        // Enter ends text editing within its frame, and the other keys of that frame belong to the text.
         let was_typing = ui.ctx().text_edit_focused();
         if self.desk.view.bars {
             self.bars(ui, &mut actions);
@@ -86,7 +87,7 @@ impl Lab {
         requests
     }
 
-    /// Requests the results that are shown of the scene.
+    /// Requests the displayed results of the scene.
     fn request_facts(&mut self, ctx: &egui::Context) {
         let Desk { session, view, .. } = &mut self.desk;
         let is_pressed = ctx.input(|i| i.pointer.any_down());
@@ -95,7 +96,7 @@ impl Lab {
         }
     }
 
-    /// Continues the animation of the first seconds, until it is over or the user does something.
+    /// Continues the opening animation, until it ends or the user does something.
     fn continue_intro(&mut self, ctx: &egui::Context) {
         if self.intro.is_none() {
             return;
@@ -106,7 +107,7 @@ impl Lab {
             };
             (i.time, i.events.iter().any(|event| !idle(event)))
         });
-        // The camera is fitted to the end of the animation, which has to be known.
+        // The camera is fitted to the end of the animation, so the equilibrium must be known first.
         let waits = self.iterates() || self.desk.session.facts().reference.is_pending();
         let goes_on = waits || self.intro.as_mut().is_some_and(|intro| intro.advance(now));
         if touched || !goes_on {
@@ -114,7 +115,7 @@ impl Lab {
         }
     }
 
-    /// The bars along the top and the bottom, and the panel where it has its place.
+    /// Shows the toolbar, the status bar, and the panel if the window is wide enough for it.
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let errors = diagnosis::errors(&self.readout());
         let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
@@ -125,7 +126,7 @@ impl Lab {
         let mut gallery = std::mem::take(&mut self.gallery);
         top.show(ui, |ui| toolbar::show(ui, &self.readout(), &mut gallery, &self.desk.view, actions));
         self.gallery = gallery;
-        // Compared panes have a status each; over a card a low window has no room for the bar.
+        // Compared panes have a status each; over a card of Learn a low window has no room for the status bar.
         let is_low_card = self.lesson.is_some() && learn::is_low(ui.ctx());
         if self.desk.view.mode != Mode::Compare && !is_low_card {
             let bottom = Panel::bottom("headline").exact_size(STATUS_BAR_HEIGHT).resizable(false).frame(bar(ui));
@@ -138,7 +139,7 @@ impl Lab {
         }
     }
 
-    /// The panel over the body, where the window is narrow.
+    /// Shows the panel over the body in a narrow window.
     fn sheet(&mut self, ui: &Ui, actions: &mut Vec<Action>) {
         let errors = diagnosis::errors(&self.readout());
         let rect = self.view_rect();
@@ -163,14 +164,14 @@ impl Lab {
     }
 
     fn panel(&mut self, ui: &mut Ui, errors: &Errors, actions: &mut Vec<Action>) {
-        // The panel's state is apart from the readout that it shows.
+        // The panel's state is taken out of the desk, because the readout borrows the desk.
         let mut state = std::mem::take(&mut self.desk.panel);
         let mut view = self.desk.view.clone();
         panel::show(ui, &self.readout(), errors, &mut state, &mut view, actions);
         (self.desk.panel, self.desk.view) = (state, view);
     }
 
-    /// The plots under the body, where they are open.
+    /// Shows the plots under the body, if they are open.
     fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let Desk { session, view, .. } = &mut self.desk;
         let Some(drawer) = view.drawer else { return };
@@ -187,7 +188,7 @@ impl Lab {
         });
     }
 
-    /// The presets over the panes that are compared, and the load curve under them.
+    /// Shows the presets over the compared panes, and the load curve under them.
     fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         if self.desk.session.is_motion() {
             let Desk { session, viewport, view, panel, motions, .. } = &mut self.desk;
@@ -197,7 +198,7 @@ impl Lab {
         compare.bars(ui, &input, actions);
     }
 
-    /// The panes that are compared, in the place of the body.
+    /// Shows the compared panes in place of the body.
     fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let rect = ui.available_rect_before_wrap();
         self.desk.viewport.set_rect(rect);
@@ -205,7 +206,7 @@ impl Lab {
             let Desk { session, viewport, view, panel, motions, .. } = &mut self.desk;
             motions.show(ui, &Desk::pane_input(session, view, panel, viewport.eases()))
         } else {
-            // The reference solution does not depend on the search of the panel's own setting.
+            // The reference solution does not depend on the iteration of the panel's own setting.
             if !self.desk.compare.is_iterating() && self.desk.session.request_reference() {
                 ui.ctx().request_repaint_after(POLL);
             }
@@ -219,7 +220,7 @@ impl Lab {
         self.paint_toast(ui, &painter, rect);
     }
 
-    /// The comparison of equilibria, and its input.
+    /// Returns the comparison of equilibria, and its input.
     fn compared(&mut self) -> (&mut Compare, CompareInput<'_>) {
         let Desk { session, viewport, view, panel, budget, compare, .. } = &mut self.desk;
         let input = CompareInput {
@@ -233,23 +234,23 @@ impl Lab {
         (compare, input)
     }
 
-    /// The row of cards under the body.
+    /// Shows the row of cards under the body.
     fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        // The state of the cards is apart from the readout that they show.
+        // The state of the cards is taken out of the lab, because the readout borrows the lab.
         let Some(mut lesson) = self.lesson.take() else { return };
         let rho = lesson.learn.rho();
         let budget = &self.desk.budget;
         let mut readout = self.readout();
         readout.equilibrium_rho = rho;
         let shown = Shown { input: readout, study: budget.study(), progress: budget.progress() };
-        // The panel over the body has Escape first.
+        // Escape closes the panel over the body first.
         let sheet = self.desk.view.narrow && self.desk.view.sheet;
         let keys = !self.has_dialog() && !self.desk.view.help && !sheet;
         lesson.learn.show(ui, &shown, keys, actions);
         self.lesson = Some(lesson);
     }
 
-    /// The body, with its overlays.
+    /// Shows the body with its overlays.
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
@@ -270,7 +271,7 @@ impl Lab {
         let readout = self.readout();
         let errors = diagnosis::errors(&readout);
         let (words, is_bad) = diagnosis::status_words(readout.simulation, true, readout.shows_converged);
-        // Beside bars the status says it.
+        // If there is a status bar, it shows the warning.
         let warning = (is_bad && !self.desk.view.bars).then_some(words.as_str());
         self.desk.viewport.paint(&painter, ui.visuals(), &self.content(), errors, warning);
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
@@ -311,18 +312,18 @@ impl Lab {
         self.paint_toast(ui, &painter, rect);
     }
 
-    /// The status over the body, its reasons, and a remedy.
+    /// Shows the status over the body, its explanation, and a remedy.
     fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
         const WIDEST: f32 = 460.0;
-        /// The same beside a small body.
+        /// Width next to a small body.
         const WIDEST_BESIDE: f32 = 250.0;
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
         let narrow = rect.width() < 640.0;
-        // Where two lines would lie over the body there is one.
+        // In a low view there is room for one line only.
         let is_low = rect.height() < 220.0;
         let (words, bad) = diagnosis::summary(&input);
-        // A card that leaves the body little room says itself that all is well.
+        // A card that leaves the body little room shows a good status itself.
         let is_tight = self.lesson.is_some() && rect.height() < 300.0;
         let shows_reasons = self.desk.view.why;
         if is_tight && !(bad || shows_reasons || diagnosis::is_stale(&input)) {
@@ -376,7 +377,7 @@ impl Lab {
         });
     }
 
-    /// The progress of the background solve, with a button that cancels it.
+    /// Shows the progress of the background solve, with a button that cancels it.
     fn show_work(&self, ui: &Ui, rect: Rect, actions: &mut Vec<Action>) {
         let Some((scene, phase, seconds)) = self.desk.session.work() else { return };
         let palette = Palette::new(ui.visuals());
@@ -399,7 +400,7 @@ impl Lab {
     }
 }
 
-/// The pointer in this frame.
+/// Returns the state of the pointer in this frame.
 fn press(ctx: &egui::Context) -> Press {
     let double_click = ctx.options(|options| options.input_options.max_double_click_delay);
     ctx.input(|i| Press {
@@ -410,13 +411,13 @@ fn press(ctx: &egui::Context) -> Press {
     })
 }
 
-/// The panel of plots under the body.
+/// Returns the panel for the plots under the body.
 fn drawer_panel(ui: &Ui) -> Panel {
     let height = DRAWER_HEIGHT.min(DRAWER_SHARE * ui.ctx().content_rect().height());
     Panel::bottom("drawer").exact_size(height).resizable(false).frame(unfilled(ui))
 }
 
-/// A panel's frame without its background: the body's pass has filled that.
+/// Returns a panel's frame without background, which the body's render pass has filled.
 fn unfilled(ui: &Ui) -> egui::Frame {
     egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
 }

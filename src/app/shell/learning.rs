@@ -1,4 +1,5 @@
-//! The mode Learn in the window: it has a desk of its own with the article's beam, and the user's comes back at the end.
+//! Mode Learn in the window: it has a desk of its own with the article's beam, and the user's desk is restored when it
+//! ends.
 
 use crate::app::modes::learn::{self, Learn, Start};
 use crate::app::session::Session;
@@ -7,7 +8,7 @@ use crate::app::view_options::{Drawer, Mode, ViewOptions};
 use crate::simulation::Simulation;
 
 impl Lab {
-    /// Enters or leaves Learn where the mode has changed.
+    /// Enters or leaves Learn after a change of the mode.
     pub(super) fn enter_or_leave(&mut self) {
         match (self.desk.view.mode == Mode::Learn, self.lesson.take()) {
             (true, None) => self.enter(),
@@ -26,7 +27,7 @@ impl Lab {
         let mut desk = Desk::new(session);
         desk.viewport.set_easing(own.viewport.eases());
         desk.viewport.set_rect(own.viewport.rect());
-        // A card has the controls that it needs: the panel is folded away until it is asked for.
+        // A card has the controls that it needs, so the panel is closed until the user opens it.
         let (mode, panel, raw) = (Mode::Learn, false, true);
         desk.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };
         let aside = std::mem::replace(own, desk);
@@ -40,11 +41,11 @@ impl Lab {
         self.desk = lesson.aside;
         let view = &mut self.desk.view;
         view.mode = mode;
-        // Plots that were asked for on a card are shown.
+        // A drawer opened from a card stays open.
         view.drawer = drawer.map(|_| Drawer::of(self.desk.session.scene())).or(view.drawer);
     }
 
-    /// Goes to the card of this number, from 0.
+    /// Goes to card number `card`, from 0.
     pub(super) fn go_to_card(&mut self, card: usize) {
         if let Some(lesson) = &mut self.lesson {
             lesson.learn.go_to(card);
@@ -53,7 +54,7 @@ impl Lab {
         }
     }
 
-    /// Sets the card's scene and view up.
+    /// Sets up the scene and the view of the card.
     fn set_card_up(&mut self) {
         let Some(setup) = self.lesson.as_ref().map(|lesson| lesson.learn.card().setup) else { return };
         let Some((source, mut scene)) = learn::article() else { return };
@@ -65,7 +66,7 @@ impl Lab {
             simulation.solve();
             Some(simulation)
         });
-        // The article's beam has every card's scene.
+        // Cannot fail: the article's beam suits the scene of every card.
         if self.set_scene(scene).is_err() {
             return;
         }

@@ -1,4 +1,4 @@
-//! Messages over the view: news of the session, and the progress of a recording.
+//! Messages over the view: notices of the session, and the progress of a recording.
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ impl Lab {
         self.toast = Some((message, ctx.input(|i| i.time) + TOAST.as_secs_f64()));
     }
 
-    /// Shows the news of the session.
+    /// Shows the notices of the session.
     pub(super) fn show_notices(&mut self, ctx: &egui::Context) {
         self.follow_session();
         for (integrator, step) in self.desk.session.take_unstable() {
@@ -48,7 +48,7 @@ impl Lab {
         }
     }
 
-    /// Reports the first crossing of the outline of a document's body.
+    /// Reports the first self-intersection of the body's outline of a document.
     pub(super) fn report_crossing(&mut self, ui: &Ui) {
         let is_shown = self.desk.view.bars && self.lesson.is_none() && self.intro.is_none() && self.toast.is_none();
         let now = ui.input(|i| i.time);
@@ -86,7 +86,7 @@ impl Lab {
             ui.visuals().strong_text_color(),
             rect.width() - 48.0,
         );
-        // A screen reader reads it, too.
+        // For screen readers.
         let said = ui.interact(
             Rect::from_center_size(rect.center_bottom(), egui::Vec2::ZERO),
             egui::Id::unique("toast"),

@@ -1,4 +1,4 @@
-//! The window's contents: bars, dialogs, shortcuts, and the dispatch of actions.
+//! Content of the window: bars, dialogs, shortcuts, and the dispatch of actions.
 
 mod api;
 mod dispatch;

@@ -1,4 +1,4 @@
-//! What the window remembers from one run to the next.
+//! Settings of the window, saved between runs.
 
 use std::path::{Path, PathBuf};
 
@@ -11,30 +11,30 @@ use crate::app::session::document::write_whole;
 use crate::app::view_options::Drawer;
 use crate::simulation::Field;
 
-/// So many files are remembered.
+/// Largest number of recent files.
 const MOST_RECENT: usize = 10;
-/// Sides of a window, points.
+/// Accepted width and height of the window, points.
 const SIDES: std::ops::RangeInclusive<f32> = 200.0..=8192.0;
 
-/// How the window was left. What a file does not say, or says in a way that is not understood, is as at first.
+/// Settings of the window. Values that are missing in the file or invalid get their defaults.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Light or dark; `None` is as the system has it.
+    /// Theme; `None` follows the system.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub theme: Option<ThemeChoice>,
-    /// What the window speaks.
+    /// Language of the user interface.
     pub language: Language,
-    /// Whether the panel is shown.
+    /// `true` if the panel is shown.
     pub panel: bool,
-    /// What is shown under the body.
+    /// Drawer that is open under the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) drawer: Option<Drawer>,
-    /// The name of the field that colours the body.
+    /// Name of the field that colours the body.
     color: String,
     /// Size of the window, points.
     size: [f32; 2],
-    /// Scene files that were opened or saved, the last one first.
+    /// Recent scene files, the last one first.
     recent: Vec<PathBuf>,
 }
 
@@ -53,14 +53,14 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Where the settings of this user are; `None` where the system has no such place.
+    /// Returns the path of this user's settings; `None` if the system has no folder for them.
     #[must_use]
     pub fn file() -> Option<PathBuf> {
         let folder = etcetera::choose_base_strategy().ok()?.config_dir();
         Some(folder.join("warpbeam").join("settings.toml"))
     }
 
-    /// Those in a file; those of the first run where there is none, or none that can be read.
+    /// Reads the settings from a file; returns the defaults if there is none, or if it cannot be read.
     #[must_use]
     pub fn load(file: &Path) -> Self {
         let text = match std::fs::read_to_string(file) {
@@ -78,7 +78,7 @@ impl Settings {
         })
     }
 
-    /// Writes them to a file, whose folder is made where there is none.
+    /// Writes the settings to a file, and creates its folder if necessary.
     ///
     /// # Errors
     /// The system's.
@@ -90,39 +90,39 @@ impl Settings {
         write_whole(file, toml.as_bytes())
     }
 
-    /// Size of the window, points.
+    /// Returns the size of the window, points.
     #[must_use]
     pub fn size(&self) -> [f32; 2] {
         let [width, height] = self.size;
         if SIDES.contains(&width) && SIDES.contains(&height) { self.size } else { Self::default().size }
     }
 
-    /// Remembers the size of the window, points.
+    /// Stores the size of the window, points.
     pub fn set_size(&mut self, size: [f32; 2]) {
         self.size = size;
     }
 
-    /// The field that colours the body.
+    /// Returns the field that colours the body.
     #[must_use]
     pub fn color(&self) -> Field {
         Field::ALL.into_iter().find(|field| field.name() == self.color).unwrap_or_default()
     }
 
-    /// Remembers the field that colours the body.
+    /// Stores the field that colours the body.
     pub fn set_color(&mut self, field: Field) {
         field.name().clone_into(&mut self.color);
     }
 
-    /// Scene files that were opened or saved, the last one first.
+    /// Returns the recent scene files, the last one first.
     #[must_use]
     pub fn recent(&self) -> &[PathBuf] {
         &self.recent
     }
 
-    /// Remembers a scene file.
+    /// Adds a file to the recent scene files.
     pub fn add_recent(&mut self, path: &Path) {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        // TOML has no place for a path that is no text.
+        // TOML cannot represent a path that is not valid Unicode.
         if path.to_str().is_none() {
             return;
         }

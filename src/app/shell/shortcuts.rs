@@ -1,4 +1,4 @@
-//! Keys and what they do.
+//! Keyboard shortcuts.
 
 use egui::{Context, Event, Key, Modifiers};
 
@@ -6,7 +6,7 @@ use crate::app::action::Action;
 use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::simulation::Field;
 
-/// A key and what it does.
+/// Key with its modifiers, description and action.
 pub(crate) struct Shortcut {
     modifiers: Modifiers,
     key: Key,
@@ -25,7 +25,7 @@ const fn with(modifiers: Modifiers, key: Key, does: &'static str, act: fn() -> A
 }
 
 impl Shortcut {
-    /// What is pressed, in words.
+    /// Returns the name of the key with its modifiers.
     pub(crate) fn words(&self) -> String {
         let command = if self.modifiers.command { "Ctrl+" } else { "" };
         let shift = if self.modifiers.shift { "Shift+" } else { "" };
@@ -33,7 +33,7 @@ impl Shortcut {
     }
 }
 
-/// Every key, in the order of the help.
+/// All shortcuts, in the order of the help.
 pub(crate) const SHORTCUTS: &[Shortcut] = &[
     key(Key::Space, "Run or pause", || Action::ToggleRun),
     key(Key::N, "One iteration, or one time step", || Action::Step),
@@ -77,14 +77,15 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     key(Key::F1, "This list", || Action::Toggle(Toggle::Help)),
 ];
 
-/// What the keys of this frame ask for; none while text is edited. Space belongs to the control that has the focus.
+/// Returns the actions of the keys pressed in this frame; none while text is edited. Space belongs to the control with
+/// the focus, if there is one.
 pub(crate) fn actions(ctx: &Context) -> Vec<Action> {
     if ctx.text_edit_focused() {
         return Vec::new();
     }
     let focused = ctx.memory(|memory| memory.focused().is_some());
     ctx.input(|i| {
-        // The modifiers at the press: they may be up again before the frame that hears of it.
+        // The modifiers at the time of the press; they may be released before the frame that processes it.
         let is_pressed = |s: &&Shortcut| {
             i.events.iter().any(|event| {
                 matches!(event, Event::Key { key, pressed: true, modifiers, .. }

@@ -1,4 +1,4 @@
-//! The bar along the bottom: three numbers that say it all, the residual's way down, and the drawer with the plots.
+//! Status bar along the bottom: the main numbers of the result, a plot of the residual, and the button of the drawer.
 
 use crate::app::diagnosis::{DRIFT_TIP, Errors, error_color, rho, rho_number, truth_words};
 use crate::app::widgets::text::{UNKNOWN, semibold};
@@ -19,14 +19,14 @@ use crate::scene::Scene;
 use crate::simulation::Motion;
 use crate::words::{engineering, grouped, two_digits};
 
-/// Below this width, points, numbers stand without their gauges.
+/// In a bar narrower than this, points, the numbers have no gauges.
 const GAUGES: f32 = 820.0;
 
-/// A number, what it is called, and how much of it there is.
+/// Number with its name and its gauge.
 struct Headline {
     name: &'static str,
     value: String,
-    /// More about it, after the number.
+    /// Remark after the number.
     word: Cow<'static, str>,
     tip: String,
     color: Color32,
@@ -35,9 +35,9 @@ struct Headline {
 
 enum Gauge {
     None,
-    /// So many of four blocks.
+    /// Number of filled blocks out of four.
     Blocks(u32),
-    /// A part of a whole, and the part at which there is a mark.
+    /// Filled fraction of the bar, and the fraction at which it has a mark.
     Bar(f64, f64),
 }
 
@@ -106,7 +106,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Head
             gauge: Gauge::Blocks(level((1e6 * seconds).max(1.0).log10())),
         },
     ];
-    // Linear theory iterates nothing.
+    // Linear theory does not iterate.
     if !simulation.is_linear() {
         headlines.push(Headline {
             name: "ρ",
@@ -161,7 +161,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: &Motion) -> [Headli
     ]
 }
 
-/// A name, its number and its gauge.
+/// Shows a name, its number and its gauge.
 fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Response {
     const GAP: f32 = 6.0;
     const BLOCK: egui::Vec2 = vec2(5.0, 13.0);
@@ -179,7 +179,7 @@ fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Res
         Gauge::Bar(..) => BAR.x + GAP,
     };
     let after_width = if word.is_empty() { 0.0 } else { after.size().x + GAP };
-    // As wide as most numbers are: what follows does not move with every digit.
+    // A minimum width keeps what follows in place when the number of digits changes.
     let number_width = big.size().x.max(if wide { 62.0 } else { 0.0 });
     let size = vec2(title.size().x + GAP + number_width + gauge_width + after_width, ui.spacing().interact_size.y);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -224,7 +224,7 @@ fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Res
     response.on_hover_text(tip)
 }
 
-/// How the residual has fallen, iteration by iteration, down to what is asked for.
+/// Plots the residual of every iteration, and the tolerance.
 fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
     const NAME: f32 = 9.0;
     let name = tr("residual").to_owned();
@@ -252,7 +252,7 @@ fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
         .zip(input.residuals)
         .map(|(i, &r)| pos2(rect.left() + rect.width() * f32::from(i) / last, y(decades(r))))
         .collect();
-    // Joints of one thick line would stick out where it turns sharply.
+    // As one thick line its joints would stick out at sharp corners.
     for pair in points.windows(2) {
         ui.painter().line(pair.to_vec(), Stroke::new(1.5, palette.method(input.scene.solver.method)));
     }
@@ -265,7 +265,7 @@ fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
     response.on_hover_text(fill!("%{residual}; dashed: what is asked for", residual = words));
 }
 
-/// Returns the text of the present part of a background solve.
+/// Returns the text of the current phase of a background solve.
 pub(crate) fn phase_text(scene: &Scene, phase: Phase) -> String {
     let body = body_text(scene);
     match phase {
@@ -277,7 +277,7 @@ pub(crate) fn phase_text(scene: &Scene, phase: Phase) -> String {
     }
 }
 
-/// Returns `500,000 triangles`, or the name of a mesh file.
+/// Returns a text such as `500,000 triangles`, or the name of a mesh file.
 fn body_text(scene: &Scene) -> String {
     let cell = scene.element().entry().cell;
     match (&scene.beam, &scene.mesh) {

@@ -1,4 +1,4 @@
-//! The bar along the top: scene, run, modes, theme, help.
+//! Toolbar along the top: scene, run, modes, theme, help.
 
 use crate::app::widgets::buttons::{Icon, icon_button};
 use egui::{Align, Button, Layout, Ui};
@@ -9,13 +9,13 @@ use crate::app::readout::Readout;
 use crate::app::shell::gallery::Gallery;
 use crate::app::view_options::{MODES, Toggle, ViewOptions};
 
-/// Below this width, points, buttons show no words.
+/// In a window narrower than this, points, buttons have no words.
 const WORDS: f32 = 1050.0;
 
-/// Below this width, points, modes have a row of their own.
+/// In a window narrower than this, points, the modes have a row of their own.
 const ONE_ROW: f32 = 890.0;
 
-/// The height of the bar in a window of this width, points.
+/// Returns the height of the toolbar in a window of this width, points.
 pub(crate) fn height(width: f32) -> f32 {
     if width >= ONE_ROW { 36.0 } else { 68.0 }
 }
@@ -76,7 +76,7 @@ fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &m
         };
         button(Icon::Help, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
         button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
-        // Who does not read the present language finds the other one by its own name.
+        // The other language is named in that language, for users who do not read the current one.
         button(Icon::Language, "Language", false, language.other().name(), Action::ToggleLanguage);
         let tip = "Show or hide the controls (P)";
         button(Icon::Panel, "Panel", view.shows_panel(), tip, Action::Toggle(Toggle::Panel));

@@ -1,5 +1,4 @@
-//! Edits that no file has: the question that is asked before they are lost, and the offer of those that a crashed window
-//! has left.
+//! Unsaved edits: the question before they are lost, and the offer to restore those left by a crashed window.
 
 use egui::{Context, Event, Id, Key, Modal, RichText};
 
@@ -14,19 +13,19 @@ use crate::app::view_options::Mode;
 use crate::scene::Scene;
 
 impl Lab {
-    /// The scene with edits that no file has, and where it comes from; `None` where there are none.
+    /// Returns the edited scene and its document; `None` if there are no unsaved edits.
     pub(crate) fn unsaved(&self) -> Option<(&Document, &Scene)> {
         let desk = self.lesson.as_ref().map_or(&self.desk, |lesson| &lesson.aside);
         desk.session.is_edited().then(|| (desk.session.document(), desk.session.scene()))
     }
 
-    /// Offers edits that a crashed window has left.
+    /// Offers to restore the edits left by a crashed window.
     pub fn offer(&mut self, left: Unsaved) {
         self.left = Some(left);
     }
 
-    /// Returns `true` if the window may close now. Else the user is asked about unsaved edits, and [`Request::Close`] follows
-    /// if the answer is not "Cancel".
+    /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits, and
+    /// [`Request::Close`] follows unless the answer is "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {
         if self.unsaved().is_some() && self.lesson.is_some() {
             self.desk.view.mode = Mode::Explore;
@@ -36,22 +35,23 @@ impl Lab {
         std::mem::take(&mut self.closes)
     }
 
-    /// `true` while a dialog has the keyboard.
+    /// Returns `true` while a dialog has the keyboard focus.
     pub(crate) fn has_dialog(&self) -> bool {
         self.dialog.is_some() || matches!(self.question, Question::Asked(_))
     }
 
-    /// Opens or closes something, after a question if edits would be lost. Learn keeps the scene from before.
+    /// Opens a scene or closes the window, after a question if edits would be lost. In Learn nothing is lost, because
+    /// the user's scene is kept.
     pub(super) fn depart(&mut self, ctx: &Context, departure: Departure) {
         let loses = self.lesson.is_none() && self.unsaved().is_some();
         if !loses {
             return self.go(ctx, departure);
         }
-        // Keys belong to the question.
+        // The question gets the keys.
         if let Some(focused) = ctx.memory(egui::Memory::focused) {
             ctx.memory_mut(|memory| memory.surrender_focus(focused));
         }
-        // The key that has led here is no answer.
+        // The key that opened the question must not answer it.
         ctx.input_mut(|i| i.events.retain(|event| !pressed(event, Key::Enter) && !pressed(event, Key::D)));
         self.question = Question::Asked(departure);
         ctx.request_repaint();
@@ -68,14 +68,14 @@ impl Lab {
         ctx.request_repaint();
     }
 
-    /// Goes on after the scene has been saved where "Save" was the answer.
+    /// Continues with the departure after the scene has been saved, if "Save" was the answer to the question.
     pub(crate) fn after_save(&mut self, ctx: &Context) {
         if let Question::Saving(departure) = std::mem::take(&mut self.question) {
             self.go(ctx, departure);
         }
     }
 
-    /// Asks whether to save, where that is to be asked.
+    /// Shows the question about unsaved edits, if it is due.
     pub(crate) fn ask_to_save(&mut self, ctx: &Context) {
         let Question::Asked(departure) = &self.question else { return };
         let departure = departure.clone();
@@ -101,7 +101,7 @@ impl Lab {
             self.question = Question::None;
         } else if discard {
             self.question = Question::None;
-            // Undo brings them back after another scene has been opened.
+            // After another scene has been opened, undo restores the discarded edits.
             self.go(ctx, departure);
         } else if save {
             self.question = Question::Saving(departure);
@@ -109,7 +109,7 @@ impl Lab {
         }
     }
 
-    /// Shows the offer of edits that a crashed window has left; the answer ends it.
+    /// Offers the edits left by a crashed window, until the user answers.
     pub(crate) fn offer_unsaved(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
         let Some(left) = &self.left else { return };
         let words = fill!(
@@ -135,7 +135,7 @@ impl Lab {
     }
 }
 
-/// `true` if an event is the first press of a key.
+/// Returns `true` if an event is the first press of a key.
 fn pressed(event: &Event, wanted: Key) -> bool {
     matches!(event, Event::Key { key, pressed: true, repeat: false, .. } if *key == wanted)
 }

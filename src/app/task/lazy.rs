@@ -1,27 +1,28 @@
-//! A value that is computed in the background and invalidated by edits.
+//! Value that is computed in the background and invalidated by edits.
 
 use std::ops::ControlFlow;
 
 use crate::app::task::thread::{Task, Update};
 use crate::scene::Scene;
 
-/// Receives the fraction that is done; breaks to cancel.
+/// Callback that receives the fraction done; it breaks to cancel.
 pub(crate) type Watch<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
-/// Computes a value that a scene may or may not have.
+/// Function that computes the value of a scene; `None` if the scene has none.
 pub(crate) type Compute<T> = fn(&Scene, Watch<'_>) -> Option<T>;
 
-/// A value that a scene may or may not have, computed in the background.
+/// Value of a scene, computed in the background; a scene may have none.
 #[derive(Debug)]
 pub(crate) struct Lazy<T> {
     compute: Compute<T>,
-    /// Fraction of the present computation that is done.
+    /// Fraction of the current computation that is done.
     done: f64,
-    /// Value of the present scene: `None` while it is not known, `Some(None)` if the scene has none.
+    /// Value of the current scene: `None` until it has been computed, `Some(None)` if the scene has none.
     value: Option<Option<T>>,
     /// Value of the previous scene.
     previous: Option<T>,
-    /// The computation, and `true` if it is of the present scene. One thread at a time: edits do not pile up.
+    /// Running computation, and `true` if it is for the current scene. Only one thread runs at a time, so that edits do
+    /// not pile up.
     running: Option<(Task<f64, Option<T>>, bool)>,
 }
 
@@ -30,7 +31,7 @@ impl<T: Send + 'static> Lazy<T> {
         Self { compute, done: 0.0, value: None, previous: None, running: None }
     }
 
-    /// Forgets the value, which was another scene's.
+    /// Invalidates the value after an edit of the scene.
     pub(crate) fn invalidate(&mut self) {
         self.previous = self.value.take().unwrap_or_else(|| self.previous.take());
         if let Some((task, is_current)) = &mut self.running {
@@ -39,7 +40,7 @@ impl<T: Send + 'static> Lazy<T> {
         }
     }
 
-    /// Polls the computation, and starts it where the value is not known. Returns `true` while it is pending.
+    /// Polls the computation, and starts it if the value is unknown. Returns `true` while it is pending.
     pub(crate) fn request(&mut self, scene: &Scene) -> bool {
         if self.value.is_some() {
             return false;
@@ -69,12 +70,12 @@ impl<T: Send + 'static> Lazy<T> {
         true
     }
 
-    /// Fraction that is done, while the value is being computed.
+    /// Returns the fraction done while the value is being computed.
     pub(crate) fn progress(&self) -> Option<f64> {
         self.running.as_ref().map(|_| self.done)
     }
 
-    /// Computes the value, however long it takes.
+    /// Computes the value, and waits for it.
     pub(crate) fn wait(&mut self, scene: &Scene) {
         if self.value.is_none() {
             self.value = Some((self.compute)(scene, &mut |_| ControlFlow::Continue(())));
@@ -82,17 +83,17 @@ impl<T: Send + 'static> Lazy<T> {
         }
     }
 
-    /// The value, once it is known.
+    /// Returns the value, if it has been computed and the scene has one.
     pub(crate) fn get(&self) -> Option<&T> {
         self.value.as_ref().and_then(Option::as_ref)
     }
 
-    /// The value; the previous scene's while it is not known.
+    /// Returns the value, or the previous scene's value until it has been computed.
     pub(crate) fn latest(&self) -> Option<&T> {
         self.value.as_ref().map_or(self.previous.as_ref(), Option::as_ref)
     }
 
-    /// `true` while the value is not known.
+    /// Returns `true` until the value has been computed.
     pub(crate) fn is_pending(&self) -> bool {
         self.value.is_none()
     }
@@ -113,7 +114,7 @@ mod tests {
         assert_eq!((length.get(), length.latest(), length.is_pending()), (None, Some(&2.0), true));
         length.wait(&Scene::beam(3.0, 1.0));
         assert_eq!(length.latest(), Some(&3.0));
-        // A scene without the value has no previous one either.
+        // For a scene that has no value, the previous value is not returned either.
         length.invalidate();
         length.wait(&Scene { beam: None, ..scene });
         assert_eq!((length.latest(), length.is_pending()), (None, false));

@@ -1,4 +1,4 @@
-//! Background work: a thread with progress and cancellation, values computed in one, and the solve of a large model.
+//! Background work: threads with progress and cancellation, lazily computed values, and the solve of a large model.
 
 pub(crate) mod lazy;
 pub(crate) mod quality;

@@ -1,4 +1,4 @@
-//! How far a result at rest is to be trusted beside its convergence: found once for a state.
+//! Quality of a result at rest beyond its convergence, computed once per state.
 
 use nalgebra::Vector2;
 
@@ -6,20 +6,20 @@ use crate::scene::Material;
 use crate::simulation::{Deformation, Simulation};
 use crate::stress::strain_warning;
 
-/// What has been found of the last state that was asked about.
+/// Quality of the last state that was evaluated.
 #[derive(Debug, Default)]
 pub(crate) struct Quality {
     of: Option<(Vec<Vector2<f64>>, Material)>,
-    /// The mesh's own error in the energy norm, estimated, percent.
+    /// Estimated discretization error in the energy norm, percent.
     pub mesh_error_percent: Option<f64>,
-    /// The largest principal strain.
+    /// Largest principal strain.
     pub max_strain: f64,
-    /// Whether an element is turned inside out.
+    /// `true` if an element is turned inside out.
     is_inside_out: bool,
 }
 
 impl Quality {
-    /// Finds it of the present state, unless that is the last one.
+    /// Computes the quality of the current state, unless it is already known.
     pub(crate) fn follow(&mut self, simulation: &Simulation) {
         if self.is_of(simulation) {
             return;
@@ -35,7 +35,8 @@ impl Quality {
         self.of.as_ref().is_some_and(|(known, of)| known == u && of == material)
     }
 
-    /// Whether an element is turned inside out, somewhere: no body does that. Of a state that is not known it is found.
+    /// Returns `true` if an element is turned inside out, which no real body can be. For a state that has not been
+    /// evaluated it is computed here.
     pub(crate) fn is_inside_out(&self, simulation: &Simulation) -> bool {
         if self.is_of(simulation) {
             return self.is_inside_out;
@@ -43,7 +44,7 @@ impl Quality {
         simulation.system().elements().smallest_area_ratio(simulation.displacement()) <= 0.0
     }
 
-    /// What is to be said of large strains.
+    /// Returns the warning for large strains.
     pub(crate) fn warning(&self) -> Option<String> {
         strain_warning(self.max_strain)
     }

@@ -11,18 +11,18 @@ use crate::scene::{Analysis, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::State;
 
-/// Most unknowns of a model that is meshed and solved between two frames.
+/// Largest number of unknowns of a model that is meshed and solved between two frames.
 pub(crate) const MOST_UNKNOWNS: u64 = 16_000;
-/// Most unknowns of a model that is solved between two frames in a pane, which is one of several.
+/// Largest number of unknowns of a model that is solved between two frames in a pane of Compare, which shows several.
 pub(crate) const MOST_PANE_UNKNOWNS: u64 = 4000;
 
 /// Time between two snapshots while a model is solved.
 const SNAPSHOT: Duration = Duration::from_millis(100);
 
-/// Most residuals that are kept of one search.
+/// Largest number of residuals recorded for one solve.
 const MOST_RESIDUALS: usize = 400;
 
-/// A simulation, and linear theory's on the same equations; `None` where that could not be set up.
+/// Simulation, and the one of linear theory on the same equations; `None` if it could not be set up.
 #[derive(Debug)]
 pub(crate) struct Bodies {
     pub simulation: Simulation,
@@ -37,43 +37,43 @@ impl Bodies {
     }
 }
 
-/// The model that a solve begins with.
+/// Model that a solve starts with.
 #[derive(Debug)]
 pub(crate) enum Model {
-    /// An existing one, with its display geometry where that has not been shown yet.
+    /// Existing model, with its display geometry if that has not been displayed yet.
     Existing(Box<(Bodies, Option<DisplayGeometry>)>),
-    /// A new one on existing equations.
+    /// New model on existing equations.
     Equations(Arc<System>),
-    /// A new one, which is meshed first.
+    /// New model, which is meshed first.
     New,
 }
 
-/// The state that a solve begins in.
+/// State that a solve starts from.
 #[derive(Debug, Default)]
 pub(crate) enum Start {
-    /// The model's own.
+    /// Current state of the model.
     #[default]
     Present,
     Rest,
     State(State),
 }
 
-/// A solve to be done.
+/// Request for a solve.
 #[derive(Debug)]
 pub(crate) struct SolveRequest {
     pub scene: Scene,
     pub model: Model,
     pub start: Start,
-    /// Most iterations; `None` for no limit.
+    /// Largest number of iterations; `None` for no limit.
     pub iterations: Option<u32>,
-    /// Residuals before the solve.
+    /// Residuals recorded before the solve.
     pub residuals: Vec<f64>,
-    /// `true` if the main view shows the model: the solve then reports snapshots, and computes linear theory's solution,
-    /// display geometry and quality.
+    /// `true` if the main view shows the model: the solve then reports snapshots, and also computes the solution of
+    /// linear theory, the display geometry and the quality.
     pub is_displayed: bool,
 }
 
-/// A model to display, of one instant.
+/// Model to display, at one instant.
 #[derive(Debug)]
 pub(crate) struct Snapshot {
     pub bodies: Bodies,
@@ -82,12 +82,12 @@ pub(crate) struct Snapshot {
     pub residuals: Vec<f64>,
 }
 
-/// The present part of a solve.
+/// Current phase of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
     Meshing,
     LinearSolve,
-    /// The search, with the iterations that it has made.
+    /// Iterating, with the number of iterations made.
     Iterating(u32),
     Certifying,
 }
@@ -98,11 +98,11 @@ enum Progress {
     Snapshot(Box<Snapshot>),
 }
 
-/// A solved model: itself, not a copy.
+/// Solved model: the original, not a copy.
 #[derive(Debug)]
 pub(crate) struct Solved {
     pub snapshot: Snapshot,
-    /// Quality of a displayed model whose search has ended.
+    /// Quality of a displayed model whose iteration has ended.
     pub quality: Option<Quality>,
 }
 
@@ -115,7 +115,7 @@ pub(crate) struct Rejected {
 
 type Outcome = Result<Box<Solved>, Box<Rejected>>;
 
-/// News of a background solve.
+/// Update of a background solve.
 #[derive(Debug)]
 pub(crate) enum SolveUpdate {
     None,
@@ -126,7 +126,7 @@ pub(crate) enum SolveUpdate {
     Died,
 }
 
-/// A solve in a thread of its own. Dropping it cancels it.
+/// Solve in a background thread. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct BackgroundSolve {
     task: Task<Progress, Outcome>,
@@ -139,7 +139,7 @@ impl BackgroundSolve {
     /// Starts the thread.
     ///
     /// # Errors
-    /// The system has no thread for it.
+    /// The system cannot start another thread.
     pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
         let (scene, is_new) = (request.scene.clone(), matches!(request.model, Model::New));
         let phase = if is_new { Phase::Meshing } else { Phase::Iterating(0) };
@@ -147,12 +147,12 @@ impl BackgroundSolve {
         Ok(Self { task, scene, is_new, phase })
     }
 
-    /// The scene that is solved.
+    /// Returns the scene that is solved.
     pub(crate) fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// `true` if a new model is meshed.
+    /// Returns `true` if a new model is meshed.
     pub(crate) fn is_new(&self) -> bool {
         self.is_new
     }
@@ -161,7 +161,7 @@ impl BackgroundSolve {
         self.phase
     }
 
-    /// Asks the solve to end with the model that it has.
+    /// Cancels the solve; it ends with the model that it has.
     pub(crate) fn cancel(&self) {
         self.task.cancel();
     }
@@ -192,7 +192,7 @@ impl BackgroundSolve {
     }
 }
 
-/// Notes the residual of an iteration; a new search begins a new list.
+/// Records the residual of an iteration; a new solve starts a new list.
 pub(crate) fn note_residual(simulation: &Simulation, residuals: &mut Vec<f64>) {
     if simulation.iterations() <= 1 || residuals.len() >= MOST_RESIDUALS {
         residuals.clear();
@@ -200,13 +200,14 @@ pub(crate) fn note_residual(simulation: &Simulation, residuals: &mut Vec<f64>) {
     residuals.push(simulation.residual());
 }
 
-/// A scene under linear theory.
+/// Returns the scene with linear theory as the method.
 fn linear_scene(scene: &Scene) -> Scene {
     let solver = SolverSettings { method: MethodKind::Linear, ..scene.solver.clone() };
     Scene { solver, ..scene.clone() }
 }
 
-/// Solves a scene at rest under linear theory on existing equations; `known` is the solution of the scene before.
+/// Solves a static scene with linear theory on existing equations; `None` for a motion. `known` is the solution of the
+/// previous scene.
 pub(crate) fn solve_linear(scene: &Scene, system: &Arc<System>, known: Option<Simulation>) -> Option<Simulation> {
     if scene.analysis == Analysis::Dynamic {
         return None;
@@ -219,7 +220,7 @@ pub(crate) fn solve_linear(scene: &Scene, system: &Arc<System>, known: Option<Si
     Some(linear)
 }
 
-/// Makes the model of a request, before its first iteration.
+/// Creates the model of a request, before its first iteration.
 fn set_up(scene: &Scene, model: Model, is_displayed: bool) -> Result<(Bodies, Option<DisplayGeometry>), Box<Rejected>> {
     let rejected = |error| Box::new(Rejected { error, model: None });
     let made = |simulation| (Bodies { simulation, linear: None }, None);
@@ -233,7 +234,7 @@ fn set_up(scene: &Scene, model: Model, is_displayed: bool) -> Result<(Bodies, Op
         Model::New => {
             let (bodies, _) = Simulation::new(scene).map(made).map_err(rejected)?;
             let geometry = is_displayed.then(|| {
-                // Smooth fields need the recovery, which is made here instead of between two frames.
+                // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
                 let _ = bodies.simulation.system().recovery();
                 DisplayGeometry::new(bodies.simulation.system().mesh())
             });
@@ -248,7 +249,7 @@ fn run(request: SolveRequest, reporter: &Reporter<Progress, Outcome>) -> Outcome
     match start {
         Start::Present => {}
         Start::Rest => bodies.simulation.reset(),
-        // The state of another mesh is not restored.
+        // A state of another mesh does not fit and is ignored.
         Start::State(state) => _ = bodies.simulation.restore(&state),
     }
     if is_displayed && bodies.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {

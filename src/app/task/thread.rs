@@ -1,4 +1,4 @@
-//! Work in a thread of its own, with progress and cancellation.
+//! Background thread with progress and cancellation.
 
 use std::io;
 use std::ops::ControlFlow;
@@ -16,27 +16,27 @@ enum Message<P, T> {
     Done(T),
 }
 
-/// News of a task.
+/// Update of a task.
 #[derive(Debug)]
 pub(crate) enum Update<P, T> {
-    /// No news since the last poll.
+    /// No update since the last poll.
     None,
-    /// A report of its progress.
+    /// Progress report.
     Progress(P),
-    /// Its result: no more updates follow.
+    /// Result; no more updates follow.
     Done(T),
-    /// The end of a thread without a result.
+    /// The thread ended without a result.
     Died,
 }
 
-/// Work in a thread of its own, which reports its progress as `P` and ends with a `T`. Dropping it cancels it.
+/// Work in a background thread that reports its progress as `P` and ends with a `T`. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct Task<P, T> {
     receiver: Receiver<Message<P, T>>,
     is_cancelled: Arc<AtomicBool>,
 }
 
-/// The thread's end of a task.
+/// Interface of a task for its thread.
 pub(crate) struct Reporter<P, T> {
     sender: Sender<Message<P, T>>,
     is_cancelled: Arc<AtomicBool>,
@@ -46,7 +46,7 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
     /// Starts the thread.
     ///
     /// # Errors
-    /// The system has no thread for it.
+    /// The system cannot start another thread.
     pub(crate) fn start(name: &str, work: impl FnOnce(&Reporter<P, T>) -> T + Send + 'static) -> io::Result<Self> {
         let (sender, receiver) = channel();
         let is_cancelled = Arc::new(AtomicBool::new(false));
@@ -98,12 +98,12 @@ impl<P, T> From<Message<P, T>> for Update<P, T> {
 impl<P, T> Reporter<P, T> {
     /// Reports progress; breaks if the task is cancelled.
     pub(crate) fn report(&self, progress: P) -> ControlFlow<()> {
-        // A task that was dropped has no receiver.
+        // If the task was dropped, there is no receiver.
         let is_received = self.sender.send(Message::Progress(progress)).is_ok();
         if is_received && !self.is_cancelled() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
-    /// `true` if the thread is to end with the result that it has.
+    /// Returns `true` if the thread is to end with the result that it has.
     pub(crate) fn is_cancelled(&self) -> bool {
         self.is_cancelled.load(Ordering::Relaxed)
     }
@@ -113,7 +113,7 @@ impl<P, T> Reporter<P, T> {
 mod tests {
     use super::*;
 
-    /// Counts until it is cancelled.
+    /// Starts a task that counts until it is cancelled.
     fn counter() -> Task<u32, u32> {
         Task::start("counter", |reporter| {
             let mut n = 0;

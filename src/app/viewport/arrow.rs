@@ -1,4 +1,4 @@
-//! The arrow of a force: how long it is, where its tip is, and which force a dragged tip asks for.
+//! Arrow of a force: its length, the position of its tip, and the force that a dragged tip sets.
 
 use egui::{Align, Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 use nalgebra::Vector2;
@@ -11,30 +11,31 @@ use crate::mesh::Mesh;
 use crate::scene::{Load, Material, Place, Scene};
 use crate::words::{engineering, round_down, three_digits};
 
-/// Length of an arrow without force, points: something to take hold of.
+/// Length of the arrow of a zero force, points: long enough to be grabbed.
 const STUB: f64 = 16.0;
-/// Length of the arrow of the force that the scene opens with, points, in small views and in large ones: a pixel is 1 to 2 %.
+/// Length of the arrow of the force that the scene opens with, points, in small views and in large ones. Dragging the
+/// tip by one pixel changes the force by 1 to 2 %.
 const OPENING: [f64; 2] = [50.0, 72.0];
-/// Length of a tenfold force beyond twice that, points, in small views and in large ones.
+/// Additional length per factor of ten above twice the opening force, points, in small views and in large ones.
 const DECADE: [f64; 2] = [20.0, 60.0];
-/// The same lengths over the shorter side of a view, where that lies between.
+/// Opening length and additional length as fractions of the shorter side of the view, limited by the ranges above.
 const SHARE: [f64; 2] = [0.12, 0.09];
-/// Least ratio between the largest force of a slider and the one that the scene opens with.
+/// Smallest ratio of the largest force of a slider to the force that the scene opens with.
 pub(crate) const LEAST_SPAN: f64 = 4.0;
-/// So near to a tip, points, a press takes hold of it.
+/// Distance from a tip within which a press grabs it, points.
 pub(crate) const NEAR: f32 = 13.0;
-/// Directions snap to multiples of this while Shift is down, degrees.
+/// Step of the direction while Shift is down, degrees.
 const SNAP: f64 = 15.0;
-/// Direction of a force of which none is known, degrees.
+/// Default direction of a force of zero, degrees.
 pub(crate) const DOWN: f64 = -90.0;
 
-/// Magnitude and direction (degrees) of a vector; the direction is `None` at zero.
+/// Returns magnitude and direction (degrees) of a vector; the direction is `None` for the zero vector.
 pub(crate) fn polar_form([x, y]: [f64; 2]) -> (f64, Option<f64>) {
     let magnitude = x.hypot(y);
     (magnitude, (magnitude > 0.0).then(|| y.atan2(x).to_degrees()))
 }
 
-/// The vector of a magnitude and a direction in degrees, exact along the axes.
+/// Returns the vector with this magnitude and direction in degrees, exact along the axes.
 pub(crate) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
     let (s, c) = match degrees {
         0.0 => (0.0, 1.0),
@@ -46,15 +47,17 @@ pub(crate) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
     [magnitude * c, magnitude * s]
 }
 
-/// As far as anything can be seen, N, rounded up to a power of ten: a force that strains the whole section by 1, or, of
-/// what is slender, a thousand times the one that bends it by its length under linear theory.
+/// Returns the largest force with a visible effect, N, rounded up to a power of ten: the force that strains the whole
+/// section by 1, or, for slender bodies, a thousand times the force that bends the body by its length under linear
+/// theory.
 fn largest_force(material: &Material, system: &System) -> f64 {
     const TIMES: f64 = 1e3;
     let [bending, axial] = bending_force(material, system);
     power_of_ten_above(axial.min(TIMES * bending))
 }
 
-/// Force that bends a body by its length under linear theory, and force that strains its section by 1, N.
+/// Returns the force that bends a body by its length under linear theory, and the force that strains its section by 1,
+/// N.
 fn bending_force(material: &Material, system: &System) -> [f64; 2] {
     let [length, height] = system.strip();
     let axial = material.young * material.thickness * height;
@@ -62,14 +65,15 @@ fn bending_force(material: &Material, system: &System) -> [f64; 2] {
     [0.25 * axial * (height / length).powi(2), axial]
 }
 
-/// The power of ten that is not below a value; never too small or too large to count with.
+/// Returns the smallest power of ten that is not below `value`, limited to a range without overflow.
 pub(crate) fn power_of_ten_above(value: f64) -> f64 {
-    /// What is above a power of ten only by rounding is that.
+    /// A value above a power of ten by rounding only counts as that power.
     const ROUNDING: f64 = 1e-9;
     10f64.powf((value.clamp(1e-6, 1e14).log10() - ROUNDING).ceil())
 }
 
-/// Scale of the arrows of a scene that opens with forces up to `usual`, N, in a view of this size, points.
+/// Returns the scale of the arrows of a scene that opens with forces up to `usual`, N, in a view of size `view`,
+/// points.
 pub(crate) fn scale(usual: f64, view: Vec2) -> LoadScale {
     let side = f64::from(view.min_elem());
     let within = |[low, high]: [f64; 2], share: f64| (share * side).clamp(low, high);
@@ -77,14 +81,15 @@ pub(crate) fn scale(usual: f64, view: Vec2) -> LoadScale {
     LoadScale { usual, stub: STUB, opening: within(OPENING, opening), decade: within(DECADE, decade) }
 }
 
-/// Forces, N, that arrows and sliders of a scene are scaled by: the largest it opens with, or, of a scene without forces, one
-/// that bends its body by a third of its length under linear theory; and the one they end at.
+/// Returns the forces, N, that scale the arrows and sliders of a scene: the largest opening force and the largest force
+/// of sliders. For a scene without forces the first is the one that bends its body by about a third of its length under
+/// linear theory.
 pub(crate) fn force_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
     let usual = opening.force.unwrap_or_else(|| round_down(0.3 * bending_force(material, system)[0]));
     [usual, largest_force(material, system).max(LEAST_SPAN * usual)]
 }
 
-/// Where a load pulls: the middle of its edge, or its node; `None` where there is no such place.
+/// Returns the point of application of a load: the middle of its edge, or its node; `None` if the edge does not exist.
 pub(crate) fn load_point(mesh: &Mesh, positions: &[Vector2<f64>], place: &Place) -> Option<Vector2<f64>> {
     let nodes = match place {
         Place::Edge(name) => mesh.edge_nodes(name)?,
@@ -94,39 +99,39 @@ pub(crate) fn load_point(mesh: &Mesh, positions: &[Vector2<f64>], place: &Place)
     (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
 }
 
-/// The arrow of a force, in the window.
+/// Arrow of a force, in window coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrow {
-    /// The force's number among the scene's loads.
+    /// Index of the force among the scene's loads.
     pub load: usize,
-    /// Where it pulls.
+    /// Point of application.
     pub from: Pos2,
-    /// From there to the tip.
+    /// Vector from the point of application to the tip.
     pub way: Vec2,
     scale: LoadScale,
-    /// N.
+    /// Magnitude of the force, N.
     magnitude: f64,
     /// Largest force that it can be dragged to, N.
     largest: f64,
 }
 
-/// What arrows are of.
+/// Scene and state whose load arrows are drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct Forces<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
-    /// Where the nodes are, m.
+    /// Positions of the nodes, m.
     pub positions: &'a [Vector2<f64>],
     /// Simulated time, s.
     pub time: f64,
-    /// Direction of an arrow without force, degrees.
+    /// Direction of the arrow of a zero force, degrees.
     pub direction: f64,
     /// Loads that the scene opens with.
     pub opening: OpeningLoads,
 }
 
 impl Forces<'_> {
-    /// The arrows of all forces that pull at the present time.
+    /// Returns the arrows of all forces that act at the current time.
     pub(crate) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
         let mesh = self.system.mesh();
         let [usual, largest] = force_range(self.opening, &self.scene.material, self.system);
@@ -144,9 +149,9 @@ impl Forces<'_> {
     }
 }
 
-/// Whether a load is drawn: of a pulse only while there is something of it.
+/// Returns `true` if a load is drawn; a pulse is drawn only while it acts.
 pub(crate) fn is_seen(load: &Load, time: f64) -> bool {
-    /// Less than this part of a pulse is not drawn.
+    /// Smallest fraction of a pulse's peak that is drawn.
     const SEEN: f64 = 0.02;
     load.pulse().is_none_or(|pulse| pulse.factor(time) >= SEEN)
 }
@@ -156,27 +161,27 @@ impl Arrow {
         self.from + self.way
     }
 
-    /// The force, N, and its direction, degrees, of this arrow with its tip moved by so many points. Numbers are round:
-    /// a pointer knows no more.
+    /// Returns the force, N, and its direction, degrees, after the tip has moved by `by`, points. The numbers are
+    /// rounded to the pointer's accuracy.
     pub(crate) fn dragged(&self, by: Vec2, snap: bool) -> (f64, f64) {
         let way = self.way + by;
         let degrees = f64::from(-way.y).atan2(f64::from(way.x)).to_degrees();
         let step = if snap { SNAP } else { 1.0 };
-        // −0 and −180 are 0 and 180.
+        // Normalizes −0 to 0 and, below, −180 to 180.
         let degrees = (degrees / step).round() * step + 0.0;
-        // As far as the slider goes; a force beyond it, which was typed, can be made smaller only.
+        // Dragging ends at the slider's largest force; a larger force that was typed can only be reduced.
         let most = self.magnitude.max(self.largest);
         let magnitude = three_digits(self.scale.load(f64::from(way.length()))).min(most);
         (magnitude, if degrees == -180.0 { 180.0 } else { degrees })
     }
 
-    /// Paints it with its force beside it.
+    /// Paints the arrow with its force next to it.
     pub(crate) fn paint(&self, painter: &Painter, color: Color32, visuals: &Visuals, is_hot: bool) {
         let direction = self.way.normalized();
         let is_stub = self.magnitude == 0.0;
         let faint = if is_stub && !is_hot { color.gamma_multiply(0.55) } else { color };
         let tip = paint_arrow(painter, self.from, self.way, faint);
-        // The handle: a ring around the tip says that it can be taken.
+        // A ring around the tip shows that it can be grabbed.
         let grip = tip - direction * 6.0;
         if is_hot {
             painter.circle(grip, NEAR, color.gamma_multiply(0.25), Stroke::new(2.0, color));
@@ -188,7 +193,7 @@ impl Arrow {
         boxed_text(painter, at, anchor, &label, visuals, faint, 200.0);
     }
 
-    /// Paints, where it was when its tip was taken, what the pointer has made of it.
+    /// Paints the dragged arrow at the position where its tip was grabbed.
     pub(crate) fn paint_handle(&self, painter: &Painter, by: Vec2, color: Color32) {
         let stroke = Stroke::new(1.5, color.gamma_multiply(0.8));
         let tip = self.tip() + by;
@@ -198,9 +203,10 @@ impl Arrow {
     }
 }
 
-/// Where the force of an arrow stands: beyond its tip, or over it where it lies nearly level; never on the arrow.
+/// Returns the position of an arrow's label: beyond its tip, or above the tip of a nearly horizontal arrow, so that it
+/// does not cover the arrow.
 fn label_place(tip: Pos2, direction: Vec2) -> (Align2, Pos2) {
-    /// The sine of 22.5 degrees: less is level, or upright.
+    /// Sine of 22.5 degrees: directions closer to an axis count as horizontal or vertical.
     const SLIGHT: f32 = 0.383;
     if direction.y.abs() < SLIGHT {
         return (Align2::CENTER_BOTTOM, tip - direction * 20.0 - vec2(0.0, 15.0));
@@ -214,7 +220,7 @@ fn label_place(tip: Pos2, direction: Vec2) -> (Align2, Pos2) {
     (Align2([across, down]), tip + vec2(6.0 * direction.x, 11.0 * direction.y.signum()))
 }
 
-/// Paints an arrow from a point along a way; returns its tip.
+/// Paints an arrow with the vector `way` at `from`, and returns its tip.
 pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, way: Vec2, color: Color32) -> Pos2 {
     const HEAD: f32 = 12.0;
     let direction = way.normalized();
@@ -243,7 +249,7 @@ mod tests {
         assert_eq!(polar_form([0.0, 0.0]), (0.0, None));
     }
 
-    /// The force that the scene opens with has an arrow whose pixels are 1 to 2 % each, in every view.
+    /// In every view, a pixel of the arrow of the opening force is 1 to 2 % of the force.
     #[test]
     fn a_pixel_is_one_or_two_percent_of_the_force() {
         for side in [120.0, 340.0, 480.0, 700.0, 2000.0] {
@@ -255,7 +261,7 @@ mod tests {
         }
     }
 
-    /// Whatever its direction and length, the words are beside the arrow.
+    /// The label does not cover the arrow, whatever the direction and length.
     #[test]
     fn labels_do_not_cover_arrows() {
         let size = vec2(48.0, 17.0);
@@ -278,15 +284,15 @@ mod tests {
         let way = vec2(0.0, scale.length(1e3) as f32);
         let arrow = Arrow { load: 0, from: Pos2::ZERO, way, scale, magnitude: 1e3, largest: 1e6 };
         assert_eq!(arrow.dragged(Vec2::ZERO, false), (1e3, DOWN));
-        // Its own length further it is twice the force.
+        // Twice the length is twice the force.
         assert_eq!(arrow.dragged(way, false), (2e3, DOWN));
         assert_eq!(arrow.dragged(vec2(0.0, 10.0), false), (1140.0, DOWN));
         let (_, direction) = arrow.dragged(vec2(20.0, 0.0), true);
         assert_eq!(direction, -75.0);
         assert_eq!(arrow.dragged(-arrow.way, false).0, 0.0);
-        // As the slider, it ends at the largest force.
+        // Dragging ends at the slider's largest force.
         assert!((arrow.dragged(vec2(0.0, 900.0), false).0 / 1e6 - 1.0).abs() < 1e-9);
-        // Straight to the left is +180, whichever side of it the tip is.
+        // A force exactly to the left has the direction +180, on either side of the axis.
         let left = arrow.dragged(-arrow.way + vec2(-60.0, 1e-4), false);
         assert_eq!(left.1, 180.0);
     }

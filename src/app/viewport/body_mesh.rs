@@ -1,4 +1,4 @@
-//! What is drawn of a body in a state: where its points are, and the colours of its field. Kept between frames.
+//! Displayed mesh of a body: positions of its points, and colours of its field. Kept between frames.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,29 +18,29 @@ use crate::scene::Material;
 use crate::simulation::{Field, Simulation};
 use crate::stress::{NodalStress, RecoveryScratch};
 
-/// What is drawn of a body at present.
+/// Displayed mesh of a body in its current state.
 #[derive(Debug, Default)]
 pub(crate) struct BodyMesh {
-    /// Where the nodes are, m.
+    /// Positions of the nodes, m.
     pub nodes: Vec<Vector2<f64>>,
-    /// Where the drawn points are, m.
+    /// Positions of the drawn points, m.
     points: Vec<Vector2<f64>>,
-    /// The number of the last change of points and values.
+    /// Revision number of points and values.
     stamp: u64,
-    /// Of fields that are recovered at the nodes.
+    /// Nodal stresses, for fields that are recovered at the nodes.
     pub nodal: Option<NodalStress>,
     scratch: RecoveryScratch,
-    /// At quadrature points or nodes.
+    /// Values of the field at quadrature points or nodes.
     pub known: Vec<Option<f64>>,
-    /// At the corners of what is drawn.
+    /// Values of the field at the corners of the drawn triangles.
     pub values: Vec<[Option<f64>; 3]>,
-    /// The field's values at the two ends of the colour map.
+    /// Values of the field at both ends of the colour map.
     pub range: [f64; 2],
-    /// What the range is of.
+    /// Field that the range belongs to.
     field: Option<Field>,
-    /// Extremes of the field in the last seconds of a motion.
+    /// Extreme values of the field in the last seconds of a motion.
     recent: Recent,
-    /// What the values are of, beside the places of the nodes.
+    /// Inputs that the current values were computed from, except for the positions of the nodes.
     of: Option<Values>,
     line_color: [u8; 4],
     background: [u8; 3],
@@ -49,30 +49,30 @@ pub(crate) struct BodyMesh {
     map: ColorMap,
 }
 
-/// The extremes of a field that is shown in motion, over the last seconds of play: in two windows, one after the other.
+/// Extreme values of a field in the last seconds of a motion, collected in two consecutive time windows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Recent {
-    /// When the window began, s.
+    /// Start of the current window, playing time in s.
     since: f64,
-    /// When it was last extended, s.
+    /// Time of the last update, playing time in s.
     now: f64,
-    /// Extremes in it, and in the window before.
+    /// Extreme values in the current window, and in the previous one.
     window: [f64; 2],
     before: [f64; 2],
 }
 
 impl Recent {
-    /// Length of a window, s: longer than a period of what is watched.
+    /// Length of a window, s: longer than a period of the motion at a watchable speed.
     const WINDOW: f64 = 2.5;
-    /// Time constant, s, with which a range becomes narrower.
+    /// Time constant of the narrowing of the range, s.
     const EASE: f64 = 0.7;
 
     fn new(now: f64, range: [f64; 2]) -> Self {
         Self { since: now, now, window: range, before: range }
     }
 
-    /// Adds the field's extremes at `now`, s of play. Returns the range to show after the range `shown`: it widens at once,
-    /// and narrows slowly to the extremes of both windows.
+    /// Adds the field's extreme values at `now`, playing time in s. Returns the range that follows the range `shown`:
+    /// it widens at once, and narrows slowly to the extremes of both windows.
     fn extend(&mut self, now: f64, range: [f64; 2], shown: [f64; 2]) -> [f64; 2] {
         if now - self.since >= Self::WINDOW {
             *self = Self { since: now, now: self.now, window: range, before: self.window };
@@ -90,7 +90,7 @@ fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// What decides the values of a body's field, but for where its nodes are.
+/// Inputs of the values of a body's field, except for the positions of the nodes.
 #[derive(Debug)]
 struct Values {
     system: Arc<System>,
@@ -118,15 +118,15 @@ impl Values {
     }
 }
 
-/// A number that no shape has had.
+/// Returns a revision number that no mesh has had before.
 fn stamp() -> u64 {
     static LAST: AtomicU64 = AtomicU64::new(0);
     LAST.fetch_add(1, Ordering::Relaxed) + 1
 }
 
 impl BodyMesh {
-    /// Takes the state of a body on. In motion, after so many seconds of play, the range of colours is that of the last
-    /// seconds.
+    /// Updates points and values to the state of a body. For a motion, `played` is the playing time, s, and the colour
+    /// range covers the last seconds.
     pub(crate) fn update(
         &mut self,
         simulation: &Simulation,
@@ -136,7 +136,8 @@ impl BodyMesh {
     ) {
         let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
         let of = Values::of(simulation, view);
-        // The values of a large body are dear, and most pictures are of the state before.
+        // Computing the values of a large body is expensive, and the state has usually not changed since the last
+        // frame.
         let is_known =
             self.of.as_ref().is_some_and(|known| known.are(&of)) && self.nodes.iter().copied().eq(places.clone());
         self.of = Some(of);
@@ -168,36 +169,36 @@ impl BodyMesh {
         self.range = view.fixed_range.unwrap_or_else(|| self.recent.extend(now, [low, high], self.range));
     }
 
-    /// Where the drawn points are, m.
+    /// Returns the positions of the drawn points, m.
     pub(crate) fn points(&self) -> &[Vector2<f64>] {
         &self.points
     }
 
-    /// Number of the last change of points and values.
+    /// Returns the revision number of points and values.
     pub(crate) fn stamp(&self) -> u64 {
         self.stamp
     }
 
-    /// Draws the points elsewhere, until the next [`Self::update`].
+    /// Moves the drawn points until the next [`Self::update`].
     pub(crate) fn displace(&mut self, place: impl FnOnce(&mut [Vector2<f64>])) {
         place(&mut self.points);
         self.stamp = stamp();
         self.of = None;
     }
 
-    /// Takes the colours of a theme on.
+    /// Sets the colours of the theme and the colour map of the field.
     pub(crate) fn color(&mut self, visuals: &Visuals, field: Field) {
         let palette = Palette::new(visuals);
         let opaque = |color: Color32| [color.r(), color.g(), color.b()];
         self.background = opaque(palette.canvas);
-        // What is behind panels: these fill nothing themselves, which is dear where a processor draws.
+        // Background colour of the panels. They do not fill their own areas, because filling is slow without a GPU.
         self.surround = opaque(palette.panel);
         self.absent_color = opaque(palette.absent);
         self.line_color = palette.wire;
         self.map = palette.map(field);
     }
 
-    /// The value of the field at a material point.
+    /// Returns the value of the field at a material point.
     pub(crate) fn value_at(&self, view: &ViewOptions, mesh: &Mesh, point: MaterialPoint) -> Option<f64> {
         match &self.nodal {
             Some(nodal) if view.is_smooth() => view.field.smooth_at(mesh, nodal, point),
@@ -205,7 +206,7 @@ impl BodyMesh {
         }
     }
 
-    /// What the body's pass draws.
+    /// Returns the input of the body's render pass.
     pub(crate) fn frame<'a>(&'a self, drawing: &'a DisplayGeometry, wireframe: bool) -> Frame<'a> {
         Frame {
             stamp: self.stamp,

@@ -1,53 +1,54 @@
-//! Where the view looks: at the whole body, to which it eases, or where somebody has moved it.
+//! Camera controller: the camera fits the whole body, with smooth transitions, or stays where the user has moved it.
 
 use nalgebra::Vector2;
 
 use crate::render::{Camera, Margins};
 
-/// The lowest and the highest corner of a box, m.
+/// Lowest and highest corner of a box, m.
 type Box2 = [Vector2<f64>; 2];
 
-/// In this time, s, the way that is left falls to 1/e.
+/// Time constant of the camera animation, s.
 const EASE: f64 = 0.11;
-/// What is left of a way that nobody sees, points.
+/// The animation stops within this distance of its target, points.
 const THERE: f64 = 0.3;
-/// The smallest and the largest magnification over that which shows the body at rest.
+/// Smallest and largest magnification relative to the one that fits the body at rest.
 const ZOOM: [f64; 2] = [0.02, 2e4];
 
-/// The camera of a view, and where it goes.
+/// Camera of a view, and the target of its animation.
 #[derive(Clone, Debug)]
 pub(crate) struct CameraController {
-    /// Where somebody has moved it; `None`: it shows the whole body.
+    /// Camera set by the user; `None` means fit to the body.
     own: Option<Camera>,
-    /// What the whole body is.
+    /// Box that the camera fits, m.
     whole: Box2,
-    /// The body at rest.
+    /// Box of the body at rest, m.
     rest: Box2,
-    /// What shows the whole body, as of the last [`Self::aim`].
+    /// Camera that fits the whole body, as passed to the last [`Self::aim`].
     fitted: Camera,
     shown: Camera,
-    /// Whether it has looked at this body yet: it does not come from anywhere then.
+    /// `true` until the first frame of a body, which is shown without animation.
     is_new: bool,
 }
 
 impl CameraController {
-    /// One that shows a body whose rest box is this.
+    /// Creates the camera of a body with the rest box `rest`, m.
     pub(crate) fn new(rest: Box2) -> Self {
         let camera = Camera { center: (rest[0] + rest[1]) * 0.5, scale: 1.0 };
         Self { own: None, whole: rest, rest, fitted: camera, shown: camera, is_new: true }
     }
 
-    /// What is seen now.
+    /// Returns the current camera.
     pub(crate) fn camera(&self) -> Camera {
         self.shown
     }
 
-    /// Another body, whose rest box is this. Somebody's own view of the one before is kept.
+    /// Changes to a body with the rest box `rest`, m. A camera set by the user is kept.
     pub(crate) fn set_body(&mut self, rest: Box2) {
         (self.rest, self.whole) = (rest, rest);
     }
 
-    /// The whole body is so large now. Only for states that may be followed: converged ones, and motions.
+    /// Sets the box that the camera fits, m; boxes that are not finite are ignored. To be called for converged states
+    /// and motions only.
     pub(crate) fn follow(&mut self, whole: Box2) {
         let sound = |p: &Vector2<f64>| p.x.is_finite() && p.y.is_finite();
         if whole.iter().all(sound) {
@@ -55,36 +56,36 @@ impl CameraController {
         }
     }
 
-    /// What it takes for the whole body.
+    /// Returns the box that the camera fits, m.
     pub(crate) fn whole(&self) -> Box2 {
         self.whole
     }
 
-    /// `true` while it shows the whole body, not a view that the user has chosen.
+    /// Returns `true` while the camera fits the body instead of being set by the user.
     pub(crate) fn shows_whole(&self) -> bool {
         self.own.is_none()
     }
 
-    /// Back to the whole body.
+    /// Returns to the camera that fits the whole body.
     pub(crate) fn fit(&mut self) {
         self.own = None;
     }
 
-    /// There, at once: what follows the pointer may not lag behind it.
+    /// Jumps to `camera` without animation, so that dragging does not lag.
     pub(crate) fn look(&mut self, camera: Camera) {
         self.own = Some(camera);
         self.shown = camera;
         self.is_new = false;
     }
 
-    /// Magnifications that leave something to see, in a view of this size, points.
+    /// Returns the range of useful magnifications in a view of size `view`, points.
     pub(crate) fn scales(&self, view: [f64; 2]) -> std::ops::RangeInclusive<f64> {
         let home = Camera::fit(self.rest[0], self.rest[1], view, Margins::default()).scale;
         ZOOM[0] * home..=ZOOM[1] * home
     }
 
-    /// One frame, `dt` s after the last: goes towards `fitted`, which shows [`Self::whole`], or stays where it was moved
-    /// to. Without a `dt` it is there at once. Says whether it is on its way.
+    /// Advances the animation by one frame of `dt` s: towards `fitted`, which shows [`Self::whole`], or towards the
+    /// camera set by the user. Without `dt` it jumps there. Returns `true` while the animation is in progress.
     pub(crate) fn aim(&mut self, fitted: Camera, dt: Option<f64>) -> bool {
         self.fitted = fitted;
         let goal = self.own.unwrap_or(fitted);
@@ -94,7 +95,7 @@ impl CameraController {
             return false;
         };
         let part = 1.0 - (-dt.max(0.0) / EASE).exp();
-        // A magnification goes by ratios.
+        // Magnifications are interpolated geometrically.
         let ratio = (goal.scale / self.shown.scale).powf(part);
         self.shown.scale *= ratio;
         self.shown.center += (goal.center - self.shown.center) * part;
@@ -142,7 +143,7 @@ mod tests {
         assert!((10..200).contains(&frames), "{frames} frames");
     }
 
-    /// Where it is after a while does not depend on how many frames that took.
+    /// The position after a given time does not depend on the number of frames.
     #[test]
     fn the_way_depends_on_the_time_and_not_on_the_frames() {
         let after = |frames: u32| {

@@ -1,7 +1,7 @@
-//! The range of the colours of a field.
+//! Value range of the colour map of a field.
 
-/// The smallest and the largest of some values; never empty. Values that differ by rounding only are given a range in
-/// which they look the same.
+/// Returns the smallest and the largest value; the range is never empty. If the values differ by rounding only, the
+/// range is widened so that they get the same colour.
 pub(crate) fn range_of(values: &[Option<f64>]) -> [f64; 2] {
     const SAME: f64 = 1e-6;
     const WIDENED: f64 = 1e-2;

@@ -1,13 +1,14 @@
-//! Crossings of a body's outline with itself: bodies are not kept apart where they touch.
+//! Self-intersections of a body's outline: the model has no contact, so a body can pass through itself.
 
 use nalgebra::Vector2;
 
 use crate::mesh::{Mesh, Segment};
 
-/// Part of the way to the middle of its elements by which a node is moved inwards: what overlaps by less only touches.
+/// Fraction of the distance to the centres of its elements by which a node is moved inwards, so that overlaps that are
+/// smaller count as contact.
 const INWARDS: f64 = 0.1;
 
-/// A straight piece of the outline.
+/// Straight segment of the outline.
 struct Piece {
     nodes: [u32; 2],
     ends: [Vector2<f64>; 2],
@@ -16,12 +17,12 @@ struct Piece {
     to: f64,
 }
 
-/// `true` if a body with its nodes at these positions passes through itself.
+/// Returns `true` if a body with its nodes at `positions` passes through itself.
 pub(crate) fn passes_through_itself(mesh: &Mesh, outline: &[Segment], positions: &[Vector2<f64>]) -> bool {
     crosses_itself(outline, &moved_inwards(mesh, positions))
 }
 
-/// Positions of the nodes on a body that is a little smaller.
+/// Returns the positions of the nodes of a slightly smaller body.
 fn moved_inwards(mesh: &Mesh, positions: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
     let mut middles = vec![(Vector2::zeros(), 0.0); positions.len()];
     for nodes in mesh.elements() {
@@ -35,8 +36,8 @@ fn moved_inwards(mesh: &Mesh, positions: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
     own.map(|(x, (sum, count))| if count > 0.0 { x + (sum / count - x) * INWARDS } else { *x }).collect()
 }
 
-/// `true` if two pieces of the outline cross that have no node in common. A sweep along the body's longer side: pieces are
-/// sorted, and only those that overlap along it are compared.
+/// Returns `true` if two segments of the outline without a common node cross. Sweep along the longer side of the body:
+/// the segments are sorted, and only those that overlap along this axis are compared.
 fn crosses_itself(outline: &[Segment], positions: &[Vector2<f64>]) -> bool {
     let start = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
     let (low, high) = positions.iter().fold(start, |(low, high), x| (low.inf(x), high.sup(x)));
@@ -72,7 +73,7 @@ impl Piece {
         !self.nodes.iter().any(|node| other.nodes.contains(node)) && self.separates(other) && other.separates(self)
     }
 
-    /// `true` if the ends of another piece are on both sides of this one's line.
+    /// Returns `true` if the ends of `other` are on different sides of this segment's line.
     fn separates(&self, other: &Self) -> bool {
         let way = self.ends[1] - self.ends[0];
         let [a, b] = other.ends.map(|end| way.perp(&(end - self.ends[0])));
@@ -86,7 +87,8 @@ mod tests {
     use crate::render::display_geometry::DisplayGeometry;
     use crate::{ElementKind, Scene, Simulation};
 
-    /// A beam of 10 × 1 cells of 1 m × 0.1 m, bent into an arc of this angle, rad.
+    /// Bends a beam of 10 m × 0.1 m with 60 × 1 cells into an arc of `angle`, rad, and returns `true` if it passes
+    /// through itself.
     fn bent(element: ElementKind, angle: f64) -> bool {
         let scene = Scene::beam(10.0, 0.1).with_cells(60, 1).with_element(element).clamp("left");
         let simulation = Simulation::new(&scene).unwrap();
@@ -118,7 +120,7 @@ mod tests {
         let simulation = Simulation::new(&scene).unwrap();
         let mesh = simulation.system().mesh();
         let outline = DisplayGeometry::new(mesh).boundary;
-        // Folded about the middle, and the fold pressed by a part of an element's height.
+        // The body is folded about its middle, and the two halves overlap by a fraction of an element's height.
         let folded = |pressed: f64| -> Vec<_> {
             let fold = |x: &Vector2<f64>| {
                 let angle = (std::f64::consts::PI * (x.x - 1.5)).clamp(0.0, std::f64::consts::PI);

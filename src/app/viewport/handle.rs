@@ -1,4 +1,4 @@
-//! What a press can take of the loads: the tip of a force's arrow, or the end of a moment's.
+//! Handles of the loads that a press can grab: the tip of a force arrow, or the end of a moment arrow.
 
 use egui::{Color32, Painter, Pos2, Vec2};
 
@@ -7,41 +7,41 @@ use crate::app::viewport::moment_arrow::{Turn, moment_range};
 use crate::app::viewport::projection::Projection;
 use crate::scene::{Load, Place};
 
-/// The end of a load's arrow.
+/// Handle at the end of a load's arrow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Handle {
     Force(Arrow),
     Moment(Turn),
 }
 
-/// What a dragged handle asks of its load.
+/// New value of a load whose handle is dragged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Pull {
     /// Magnitude, N, and direction, degrees.
     Force(f64, f64),
-    /// N m.
+    /// Moment, N m.
     Moment(f64),
 }
 
-/// How a handle has been dragged since it was taken.
+/// Displacement of a handle since it was grabbed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Drag {
-    /// Points.
+    /// Displacement, points.
     by: Vec2,
-    /// About the middle of a moment's arrow, rad, counter-clockwise.
+    /// Rotation about the centre of a moment arrow, rad, counter-clockwise.
     turned: f64,
 }
 
-/// A handle that the pointer is on, or has taken.
+/// Handle under the pointer, or grabbed by it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HotHandle {
     pub handle: Handle,
-    /// Where it has been dragged since it was taken.
+    /// Displacement since it was grabbed.
     pub dragged: Option<Drag>,
 }
 
 impl Handle {
-    /// The load's number among the scene's.
+    /// Returns the index of the load among the scene's loads.
     pub(crate) fn load(&self) -> usize {
         match self {
             Self::Force(arrow) => arrow.load,
@@ -56,7 +56,7 @@ impl Handle {
         }
     }
 
-    /// Place that the arrow begins at, or goes round.
+    /// Returns the point where a force arrow begins, or the centre of a moment arrow.
     pub(crate) fn foot(&self) -> Pos2 {
         match self {
             Self::Force(arrow) => arrow.from,
@@ -64,7 +64,7 @@ impl Handle {
         }
     }
 
-    /// What the load is to be after a drag.
+    /// Returns the new value of the load after a drag.
     fn pull(&self, drag: Drag, snap: bool) -> Pull {
         match self {
             Self::Force(arrow) => {
@@ -75,7 +75,7 @@ impl Handle {
         }
     }
 
-    /// Paints, where it was when it was taken, what the pointer has made of it.
+    /// Paints the dragged arrow at the position where it was grabbed.
     pub(crate) fn paint(&self, painter: &Painter, drag: Drag, color: Color32) {
         match self {
             Self::Force(arrow) => arrow.paint_handle(painter, drag.by, color),
@@ -84,30 +84,30 @@ impl Handle {
     }
 }
 
-/// The handle that a press here takes hold of.
+/// Returns the handle that a press at `pointer` grabs.
 pub(crate) fn at(handles: &[Handle], pointer: Pos2) -> Option<&Handle> {
     let near = handles.iter().map(|handle| (handle.tip().distance(pointer), handle)).filter(|(d, _)| *d <= NEAR);
     near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, handle)| handle)
 }
 
-/// A handle that was taken, and the pointer's way since.
+/// Grabbed handle, and the pointer's movement since then.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Grip {
     pub handle: Handle,
     pressed: Pos2,
     last: Pos2,
-    /// Way of the handle, points: shorter than that of the pointer while it is slow.
+    /// Displacement of the handle, points: smaller than the pointer's in slow mode.
     by: Vec2,
     turned: f64,
 }
 
 impl Grip {
-    /// Taken here.
+    /// Grabs `handle` with a press at `pressed`.
     pub(crate) fn new(handle: Handle, pressed: Pos2) -> Self {
         Self { handle, pressed, last: pressed, by: Vec2::ZERO, turned: 0.0 }
     }
 
-    /// Moves it with the pointer, which is here now; a tenth of the way where it is `slow`.
+    /// Moves the handle with the pointer, which is now at `at`; by a tenth of the distance if `slow`.
     pub(crate) fn follow(&mut self, at: Pos2, slow: bool) {
         const SLOW: f32 = 0.1;
         let part = if slow { SLOW } else { 1.0 };
@@ -118,22 +118,22 @@ impl Grip {
         self.last = at;
     }
 
-    /// How it has been dragged; `None` where it has not moved.
+    /// Returns the displacement of the handle; `None` if it has not moved.
     pub(crate) fn drag(&self) -> Option<Drag> {
-        /// What has moved less than this, points, has not been dragged.
+        /// Movements of less than this, points, do not count as a drag.
         const STILL: f32 = 2.0;
         let way = self.last - self.pressed;
         (way.length() >= STILL).then_some(Drag { by: self.by, turned: self.turned })
     }
 
-    /// What the load is to be, where the handle has been dragged.
+    /// Returns the new value of the load, if the handle has been dragged.
     pub(crate) fn pull(&self, snap: bool) -> Option<Pull> {
         Some(self.handle.pull(self.drag()?, snap))
     }
 }
 
 impl Forces<'_> {
-    /// The circular arrows of all moments that act at the present time.
+    /// Returns the circular arrows of all moments that act at the current time.
     pub(crate) fn turns(&self, projection: &Projection) -> Vec<Turn> {
         let mesh = self.system.mesh();
         let [usual, _] = moment_range(self.opening, &self.scene.material, self.system);
@@ -146,7 +146,7 @@ impl Forces<'_> {
         turns.collect()
     }
 
-    /// What can be taken of them.
+    /// Returns the handles of all loads that act at the current time.
     pub(crate) fn handles(&self, projection: &Projection) -> Vec<Handle> {
         let arrows = self.arrows(projection).into_iter().map(Handle::Force);
         arrows.chain(self.turns(projection).into_iter().map(Handle::Moment)).collect()

@@ -1,4 +1,4 @@
-//! The view of the body: camera, drawn mesh, handles, overlays, and the pointer.
+//! View of the body: camera, drawn mesh, load handles, overlays, and interaction with the pointer.
 
 pub(crate) mod arrow;
 pub(crate) mod body_mesh;

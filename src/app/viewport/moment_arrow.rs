@@ -1,4 +1,4 @@
-//! The circular arrow of a moment: how far it goes round, where its end is, and which moment a dragged end asks for.
+//! Circular arrow of a moment: its angle, the position of its end, and the moment that a dragged end sets.
 
 use std::f64::consts::TAU;
 
@@ -11,81 +11,84 @@ use crate::assembly::System;
 use crate::scene::Material;
 use crate::words::{engineering, round_down, three_digits};
 
-/// Radius where it begins, points; it grows by the pitch with every turn, so that no turn covers another.
+/// Radius at the start of the arrow, points; it grows by the pitch with every revolution, so that revolutions do not
+/// overlap.
 const RADIUS: f64 = 24.0;
 const PITCH: f64 = 9.0;
-/// Angle of the arrow without moment, rad.
+/// Angle of the arrow of a zero moment, rad.
 const STUB: f64 = TAU / 12.0;
-/// Angle of the arrow of the moment that the scene opens with, rad: a pixel of its arc is 1.5 %.
+/// Angle of the arrow of the moment that the scene opens with, rad. One pixel along its arc is 1.5 % of the moment.
 const OPENING: f64 = 0.375 * TAU;
-/// Angle of a tenfold moment beyond twice that, rad.
+/// Additional angle per factor of ten above twice the opening moment, rad.
 const DECADE: f64 = TAU / 4.0;
-/// Where it begins, as an angle in the plane, rad.
+/// Angle in the plane at which the arrow starts, rad.
 const START: f64 = TAU / 8.0;
-/// So near to the middle, points, a pointer says nothing of an angle.
+/// Radius around the centre, in points, inside which the pointer's angle is ignored.
 const MIDDLE: f32 = 5.0;
 
-/// What rolls the rest shape up once, 2πEI/L, N m, rounded up to a power of ten.
+/// Returns the moment that rolls the rest shape up once, 2πEI/L, N m, rounded up to a power of ten.
 fn largest_moment(material: &Material, system: &System) -> f64 {
     power_of_ten_above(rolling_moment(material, system))
 }
 
-/// Moment that rolls a straight body up once, N m.
+/// Returns the moment that rolls a straight body up once, N m.
 fn rolling_moment(material: &Material, system: &System) -> f64 {
     let [length, height] = system.strip();
     TAU * material.young * material.thickness * height.powi(3) / (12.0 * length)
 }
 
-/// Moments, N m, that arrows and sliders of a scene are scaled by: the largest it opens with, or, of a scene without moments, a
-/// tenth of what rolls the body up; and the one that sliders end at.
+/// Returns the moments, N m, that scale the arrows and sliders of a scene: the largest opening moment and the largest
+/// moment of sliders. For a scene without moments the first is about a tenth of the moment that rolls the body up once.
 pub(crate) fn moment_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
     let usual = opening.moment.unwrap_or_else(|| round_down(0.1 * rolling_moment(material, system)));
     [usual, largest_moment(material, system).max(LEAST_SPAN * usual)]
 }
 
-/// The circular arrow of a moment, in the window.
+/// Circular arrow of a moment, in window coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Turn {
-    /// The moment's number among the scene's loads.
+    /// Index of the moment among the scene's loads.
     pub load: usize,
     pub center: Pos2,
-    /// N m, counter-clockwise.
+    /// Moment, N m, counter-clockwise.
     moment: f64,
     scale: LoadScale,
 }
 
 impl Turn {
-    /// Arrow of a moment, N m, in a scene that opens with moments up to `usual`.
+    /// Creates the arrow of a moment, N m, in a scene that opens with moments up to `usual`, N m.
     pub(crate) fn new(load: usize, center: Pos2, moment: f64, usual: f64) -> Self {
         Self { load, center, moment, scale: LoadScale { usual, stub: STUB, opening: OPENING, decade: DECADE } }
     }
 
-    /// How far it goes round, rad, counter-clockwise.
+    /// Returns the angle of the arrow, rad, counter-clockwise.
     fn sweep(&self) -> f64 {
         let size = self.scale.length(self.moment.abs());
         if self.moment < 0.0 { -size } else { size }
     }
 
-    /// The moment, N m, of an arrow that goes so far round, rad.
+    /// Returns the moment, N m, of an arrow with the angle `sweep`, rad.
     fn moment_of(&self, sweep: f64) -> f64 {
         sweep.signum() * self.scale.load(sweep.abs())
     }
 
-    /// Where it is after going so far round, rad, and the direction it goes on in, for one counter-clockwise.
+    /// Returns the point of the arrow at the angle `sweep`, rad, from its start, and the counter-clockwise tangent
+    /// there.
     fn at(&self, sweep: f64) -> (Pos2, Vec2) {
         let radius = (RADIUS + PITCH * sweep.abs() / TAU) as f32;
         let (s, c) = (START + sweep).sin_cos();
-        // The window's y points down.
+        // The window's y axis points down.
         let outward = vec2(c as f32, -s as f32);
         (self.center + outward * radius, vec2(outward.y, -outward.x))
     }
 
-    /// Its end.
+    /// Returns the end of the arrow.
     pub(crate) fn tip(&self) -> Pos2 {
         self.at(self.sweep()).0
     }
 
-    /// How far a pointer turns about its middle on its way from one place to another, rad, counter-clockwise.
+    /// Returns the angle by which a pointer that moves between two points rotates about the centre, rad,
+    /// counter-clockwise.
     pub(crate) fn angle_between(&self, from: Pos2, to: Pos2) -> f64 {
         let [from, to] = [from, to].map(|p| p - self.center);
         if from.length() < MIDDLE || to.length() < MIDDLE {
@@ -94,21 +97,21 @@ impl Turn {
         f64::from(to.x * from.y - to.y * from.x).atan2(f64::from(from.dot(to)))
     }
 
-    /// The moment, N m, of this arrow with its end turned by an angle, rad, counter-clockwise. Numbers are round: a
-    /// pointer knows no more; 1, 2 or 5 times a power of ten where it snaps.
+    /// Returns the moment, N m, after the end has been rotated by `by`, rad, counter-clockwise. The number is rounded
+    /// to the pointer's accuracy, or, with `snap`, to 1, 2 or 5 times a power of ten.
     pub(crate) fn dragged(&self, by: f64, snap: bool) -> f64 {
         let moment = self.moment_of(self.sweep() + by);
         let size = moment.abs();
         if !snap || size == 0.0 {
             return three_digits(moment);
         }
-        // The series of 1, 2 and 5 is that of its reciprocals.
+        // The reciprocals of the series 1, 2, 5 are the same series.
         let (below, above) = (round_down(size), 1.0 / round_down(1.0 / size));
         let nearest = if size * size < below * above { below } else { above };
         three_digits(nearest.copysign(moment))
     }
 
-    /// Paints it with its moment under it.
+    /// Paints the arrow with its moment below it.
     pub(crate) fn paint(&self, painter: &Painter, color: Color32, visuals: &Visuals, is_hot: bool) {
         const HEAD: f32 = 11.0;
         let sweep = self.sweep();
@@ -118,7 +121,7 @@ impl Turn {
         let along = along * sweep.signum() as f32;
         let across = vec2(-along.y, along.x) * (HEAD * 0.5);
         painter.add(Shape::convex_polygon(vec![end + along * HEAD, end + across, end - across], faint, Stroke::NONE));
-        // The handle: a ring around the end says that it can be taken.
+        // A ring around the end shows that it can be grabbed.
         let grip = end + along * 3.0;
         if is_hot {
             painter.circle(grip, NEAR, color.gamma_multiply(0.25), Stroke::new(2.0, color));
@@ -130,7 +133,7 @@ impl Turn {
         boxed_text(painter, self.center + vec2(0.0, below), Align2::CENTER_TOP, &label, visuals, faint, 200.0);
     }
 
-    /// Paints, where it was when its end was taken, what the pointer has made of it.
+    /// Paints the dragged arrow at the position where its end was grabbed.
     pub(crate) fn paint_handle(&self, painter: &Painter, by: f64, color: Color32) {
         let stroke = Stroke::new(1.5, color.gamma_multiply(0.8));
         let sweep = self.sweep() + by;
@@ -140,7 +143,7 @@ impl Turn {
     }
 
     fn paint_arc(&self, painter: &Painter, sweep: f64, stroke: Stroke) {
-        /// A piece of an arc, rad, and most pieces.
+        /// Length of a segment of the arc, rad, and largest number of segments.
         const PIECE: f64 = 0.15;
         const MOST: f64 = 400.0;
         let pieces = (sweep.abs() / PIECE).ceil().clamp(1.0, MOST);
@@ -157,7 +160,7 @@ mod tests {
         Turn::new(0, egui::pos2(100.0, 100.0), moment, 1e4)
     }
 
-    /// One mapping, both ways and in both senses; twice the opening angle is twice the moment.
+    /// The mapping is its own inverse for both senses of rotation; twice the opening angle is twice the moment.
     #[test]
     fn angles_tell_moments() {
         for moment in [0.0, 1e-3, -1.0, 12.0, -500.0, 3e4, 1e5, -1e7] {
@@ -169,7 +172,7 @@ mod tests {
         assert_eq!(turn(0.0).moment_of(0.0), 0.0);
     }
 
-    /// A pixel along the arc of the moment that the scene opens with is 1 to 2 % of it.
+    /// One pixel along the arc of the opening moment is 1 to 2 % of it.
     #[test]
     fn a_pixel_is_one_or_two_percent_of_the_moment() {
         let arrow = turn(1e4);
@@ -183,7 +186,7 @@ mod tests {
         let arrow = turn(1e4);
         assert_eq!(arrow.dragged(0.0, false), 1e4);
         assert_eq!(arrow.dragged(arrow.sweep(), false), 2e4);
-        // Back through nothing to the other sense.
+        // Dragging back through zero changes the sign.
         assert_eq!(arrow.dragged(-arrow.sweep(), false), 0.0);
         assert!((arrow.dragged(-2.0 * arrow.sweep(), false) / -1e4 - 1.0).abs() < 0.01);
         for by in [-4.0, -1.0, -0.3, 0.1, 0.4, 0.8] {
@@ -194,7 +197,7 @@ mod tests {
         }
     }
 
-    /// The window's y points down: up on the right side is counter-clockwise.
+    /// The window's y axis points down: moving up on the right side is counter-clockwise.
     #[test]
     fn a_pointer_turns_about_the_middle() {
         let (right, above) = (egui::pos2(130.0, 100.0), egui::pos2(100.0, 70.0));

@@ -1,4 +1,4 @@
-//! What is painted over the body: outlines, supports, the load's arrow, legend, scale, and words.
+//! Overlays of the body: outlines, supports, load arrows, colour bar, scale bar, and text.
 
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
@@ -22,50 +22,50 @@ use crate::scene::{Analysis, Load, MethodKind, Scene};
 use crate::simulation::SupportReaction;
 use crate::words::{engineering, prefix, round_down, three_digits, ticks};
 
-/// What is painted over the body.
+/// Content of the overlays.
 pub(crate) struct Overlay<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
     pub drawing: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
     pub camera: Camera,
-    /// Where the nodes are, m.
+    /// Positions of the nodes, m.
     pub positions: &'a [Vector2<f64>],
-    /// Whether the elements are drawn elsewhere: nothing is painted where the body would be then.
+    /// `true` if the elements are drawn apart from each other: nothing is painted at the body's own place then.
     pub apart: bool,
-    /// Displacement of the linear solution, m, where its outline is wanted.
+    /// Displacement of the linear solution, m, if its outline is drawn.
     pub ghost: Option<&'a [Vector2<f64>]>,
-    /// The true outline, m: closed lines.
+    /// Outline of the reference solution, m: closed lines.
     pub exact: &'a [Vec<Vector2<f64>>],
-    /// How far off the body and the linear solution are.
+    /// Errors of the body and of the linear solution.
     pub errors: Errors,
     /// Simulated time, s.
     pub time: f64,
-    /// Direction of an arrow without force, degrees.
+    /// Direction of the arrow of a zero force, degrees.
     pub direction: f64,
     /// Loads that the scene opens with.
     pub opening: OpeningLoads,
-    /// The arrow whose tip the pointer is on, or has taken and dragged so far.
+    /// Load arrow under the pointer, or grabbed and dragged by it.
     pub hot: Option<HotHandle>,
-    /// The hand that pulls, and its force, N.
+    /// Grab of the body, and its force, N.
     pub hand: Option<(&'a Hand, Vector2<f64>)>,
-    /// The past of a motion, and the same motion under other integrators.
+    /// Recorded past of the motion, and the same motion under other integrators.
     pub playback: &'a Playback,
-    /// The reactions of the supports, where one moves.
+    /// Reactions of the supports, if one of them moves.
     pub reactions: &'a [SupportReaction],
-    /// The field's values at the two ends of the colour map.
+    /// Values of the field at both ends of the colour map.
     pub color_range: [f64; 2],
-    /// What is wrong with the state, in words.
+    /// Warning about the state.
     pub warning: Option<&'a str>,
 }
 
-/// Paints everything.
+/// Paints all overlays.
 pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
     if rect.width() < 8.0 || rect.height() < 8.0 {
         return;
     }
     let palette = Palette::new(visuals);
-    // Under the arrows: their tips can be seen and taken wherever they are dragged.
+    // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
     let names = key(painter, rect, overlay, &palette, visuals);
     let legend = legend(painter, rect, names, overlay, &palette, visuals);
     let below = legend.filter(|_| has_legend_on_top(rect.height())).map_or(0.0, |frame| frame.bottom() - rect.top());
@@ -80,19 +80,19 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     }
 }
 
-/// Paints what belongs to the body: outlines, supports, loads.
+/// Paints the overlays that belong to the body: outlines, supports, loads.
 pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
     body_below(painter, rect, overlay, visuals, 0.0);
 }
 
-/// The same under a colour bar that ends so far below the top, points: the arrow of a weight stands under that.
+/// Paints the same under a colour bar that ends `below` points from the top; the arrow of gravity is placed under it.
 fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, below: f32) {
     let palette = Palette::new(visuals);
     let Overlay { drawing, system, camera, .. } = *overlay;
     let projection = Projection { camera, rect };
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
         for line in &drawing.outline {
-            // Pieces of less than this fade in the antialiasing; they are joined to the next.
+            // Shorter pieces, points, would fade in the antialiasing; they are joined to the next one.
             const SHORTEST: f64 = 2.0;
             let mut points = line.iter().map(|&p| drawing.point(p, place));
             let Some(mut from) = points.next() else { continue };
@@ -124,7 +124,7 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
         draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
     }
     for line in overlay.exact {
-        // On a ground of its own: over the body its colour alone would be lost.
+        // A background stroke keeps the line visible over the body.
         dashed(painter, &projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
         dashed(painter, &projection, line, Stroke::new(1.7, palette.exact));
     }
@@ -149,7 +149,7 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
     }
 }
 
-/// A dashed line through some points. Dashes go on around corners.
+/// Paints a dashed line through points. The dashes continue around corners.
 fn dashed(painter: &Painter, projection: &Projection, line: &[Vector2<f64>], stroke: Stroke) {
     const DASH: f32 = 6.0;
     const PERIOD: f32 = 10.0;
@@ -170,9 +170,9 @@ fn dashed(painter: &Painter, projection: &Projection, line: &[Vector2<f64>], str
     }
 }
 
-/// Where the tip has been in the last seconds, fading.
+/// Paints the fading trail of the first probe over the last seconds.
 fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
-    /// s.
+    /// Duration of the trail, s.
     const DURATION: f64 = 2.0;
     const MOST_PIECES: usize = 400;
     let playback = overlay.playback;
@@ -193,7 +193,7 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     }
 }
 
-/// The spring from the body to the pointer, with its force.
+/// Paints the mouse spring from the body to the pointer, with its force.
 fn pull(
     painter: &Painter,
     projection: &Projection,
@@ -202,7 +202,7 @@ fn pull(
     force: Vector2<f64>,
     visuals: &Visuals,
 ) {
-    /// Points.
+    /// Half width of a coil, points.
     const COIL: f32 = 5.0;
     const PITCH: f32 = 7.0;
     let palette = Palette::new(visuals);
@@ -216,7 +216,7 @@ fn pull(
     let length = way.length();
     let stroke = Stroke::new(1.8, palette.hand);
     if length > 4.0 * PITCH {
-        // Straight ends and a zigzag between them.
+        // Straight ends with a zigzag between them.
         let along = way / length;
         let across = vec2(-along.y, along.x) * COIL;
         let turns = (((length - 2.0 * PITCH) / PITCH).floor()).min(40.0) as u32;
@@ -235,8 +235,8 @@ fn pull(
     boxed_text(painter, to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, visuals, palette.hand, 200.0);
 }
 
-/// Fixed edges: hatched where both directions are fixed, rollers where one is. Fixed nodes apart from them: a triangle, on a
-/// line where one direction is fixed.
+/// Paints the supports. Fixed edges are hatched if both directions are fixed, and have rollers if one is. Other fixed
+/// nodes have a triangle, which stands on a line if only one direction is fixed.
 fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     const HATCH: f32 = 7.0;
     const ROLLER: f32 = 3.5;
@@ -249,7 +249,8 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
             continue;
         }
         let [p, q] = side.ends().map(|n| projection.point(positions[n as usize]));
-        // The outline runs counter-clockwise in the plane, so the outside is on its right; the window's y points down.
+        // The outline runs counter-clockwise in the plane, so the outside is on its right; the window's y axis points
+        // down.
         let along = (q - p).normalized();
         let outward = vec2(-along.y, along.x);
         if !along.is_finite() || along == Vec2::ZERO {
@@ -303,9 +304,9 @@ fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
     }
 }
 
-/// The arrows of weights, in a corner under a colour bar that ends so far below the top, points.
+/// Paints the arrows of gravity in a corner, under a colour bar that ends `below` points from the top.
 fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    /// Length of the arrow, which tells its direction only, points.
+    /// Length of the arrow, which shows the direction only, points.
     const WEIGHT: f32 = 58.0;
     for load in overlay.scene.loads.iter().filter(|load| arrow::is_seen(load, overlay.time)) {
         let Load::Gravity { acceleration: [x, y], .. } = load else { continue };
@@ -313,7 +314,7 @@ fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, pal
         if direction == Vec2::ZERO || !direction.is_finite() {
             continue;
         }
-        // One that points up begins where one that points down ends.
+        // An arrow that points up begins where one that points down ends.
         let top = if below > 0.0 { below + 8.0 } else { 30.0 };
         let way = direction * WEIGHT;
         let from = rect.right_top() + vec2(-64.0, top + (-way.y).max(0.0));
@@ -323,7 +324,7 @@ fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, pal
     }
 }
 
-/// The force of every support that moves, as an arrow to where it pushes or from where it pulls.
+/// Paints the reaction of every moving support as an arrow.
 fn moved_supports(
     painter: &Painter,
     projection: &Projection,
@@ -331,7 +332,7 @@ fn moved_supports(
     palette: &Palette,
     visuals: &Visuals,
 ) {
-    /// Length of the arrow of a reaction, which tells its direction only, points.
+    /// Length of the arrow of a reaction, which shows the direction only, points.
     const REACTION: f32 = 58.0;
     for (support, reaction) in overlay.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
         let direction = vec2(reaction.force.x as f32, -reaction.force.y as f32).normalized();
@@ -339,7 +340,8 @@ fn moved_supports(
             continue;
         }
         let middle = projection.point(reaction.middle);
-        // It pushes the way it has gone: from outside. Else it holds back.
+        // A reaction along the prescribed displacement pushes, and its arrow ends at the support; otherwise it begins
+        // there.
         let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
         let from = if pushes { middle - direction * REACTION } else { middle };
         let tip = arrow::paint_arrow(painter, from, direction * REACTION, palette.support);
@@ -353,27 +355,28 @@ fn moved_supports(
     }
 }
 
-/// Room that the colour bar takes at the bottom or the top of the view, points.
+/// Height that the colour bar takes at the bottom or the top of the view, points.
 pub(crate) const LEGEND_HEIGHT: f32 = 66.0;
 
-/// Room that it takes on the right of the view, points.
+/// Width that it takes on the right of the view, points.
 pub(crate) const LEGEND_WIDTH: f32 = 300.0;
 
-/// Least size of a view with a colour bar, points.
+/// Smallest size of a view with a colour bar, points.
 const LEGEND_VIEW: Vec2 = vec2(420.0, 120.0);
 
-/// `true` if a view has a colour bar at its bottom.
+/// Returns `true` if a view of size `view`, points, has a colour bar at its bottom.
 pub(crate) fn has_legend_below(view: Vec2) -> bool {
     view.x >= LEGEND_VIEW.x && view.y >= LEGEND_VIEW.y && !has_legend_on_top(view.y)
 }
 
-/// Whether a view is so low, points, that the colour bar is at its top: at the bottom it would be in the arrows' way.
+/// Returns `true` if a view of this height, points, is so low that the colour bar is at its top; at the bottom it would
+/// cover the arrows.
 pub(crate) fn has_legend_on_top(height: f32) -> bool {
     height < 400.0
 }
 
-/// Paints the colour bar with its title and round values in a corner on the right and returns where; `names` are the
-/// solutions' names.
+/// Paints the colour bar with its title and ticks in a corner on the right, and returns its area. `names` is the area
+/// of the line key.
 fn legend(
     painter: &Painter,
     rect: Rect,
@@ -386,7 +389,7 @@ fn legend(
     if rect.width() < LEGEND_VIEW.x || rect.height() < LEGEND_VIEW.y {
         return None;
     }
-    // A low view of little width has the body beside it.
+    // In a low and narrow view the body is to the left of the colour bar.
     let is_small = has_legend_on_top(rect.height()) && rect.width() < 700.0;
     let size = vec2(if is_small { 170.0 } else { 240.0 }, 10.0);
     let field = overlay.options.field;
@@ -397,7 +400,7 @@ fn legend(
     let raw = if overlay.options.raw && !field.is_of_elements() { tr(", raw") } else { "" };
     let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
     let title = painter.layout_no_wrap(format!("{}{unit}{raw}{range}", tr(field.name())), font.clone(), palette.text);
-    // Beside the solutions' names, or under them where there is no room.
+    // To the right of the line key, or under it if there is no room.
     let left = rect.right() - (size.x + 46.0);
     let top = if names.right() > left { names.bottom() - rect.top() + 6.0 } else { 12.0 };
     let corner = if has_legend_on_top(rect.height()) {
@@ -419,7 +422,7 @@ fn legend(
     Some(frame)
 }
 
-/// The colours of a map, from the lowest to the highest.
+/// Paints the colours of a map from the lowest to the highest.
 pub(crate) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
     const STRIPS: u32 = 128;
     let mut mesh = egui::Mesh::default();
@@ -432,7 +435,7 @@ pub(crate) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
     painter.add(mesh);
 }
 
-/// Paints which line is what, and how far off each is; returns where.
+/// Paints the line key with the error of each solution, and returns its area.
 fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Rect {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
@@ -459,7 +462,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         lines.push((palette.rest, Mark::Outline, tr("rest").to_owned()));
     }
     let font = FontId::proportional(BODY);
-    // In rows: a narrow view has several.
+    // Wrapped into rows if the view is narrow.
     let most = (rect.width() - 32.0).max(1.0);
     let (mut at, mut widest) = (vec2(0.0, 0.0), 0.0_f32);
     let placed: Vec<_> = lines
@@ -491,18 +494,18 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
 /// Space between the left side of the view and the scale bar, points.
 const SCALE_BAR_LEFT: f32 = 18.0;
 
-/// Length of the scale bar, m and points.
+/// Returns the length of the scale bar in m and in points.
 fn scale(camera: &Camera) -> (f64, f32) {
     let length = round_down(110.0 / camera.scale);
     (length, (length * camera.scale) as f32)
 }
 
-/// Space that the scale bar takes on the left of the view, points.
+/// Returns the width that the scale bar takes on the left of the view, points.
 pub(crate) fn scale_bar_width(camera: &Camera) -> f32 {
     SCALE_BAR_LEFT + scale(camera).1
 }
 
-/// A bar of a round length.
+/// Paints a scale bar of a round length.
 pub(crate) fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
     if rect.width() < 220.0 || rect.height() < 80.0 {
         return;

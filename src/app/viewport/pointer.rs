@@ -1,5 +1,5 @@
-//! The pointer over the view. A press takes one thing: the tip of an arrow sets its load, the body is grabbed, empty space
-//! moves the view. The wheel zooms to the pointer.
+//! Interaction of the pointer with the view. A press on the tip of an arrow sets its load, a press on the body grabs
+//! it, and a press on empty space moves the view. The wheel zooms about the pointer.
 
 use std::ops::RangeInclusive;
 
@@ -14,42 +14,42 @@ use crate::render::Camera;
 /// Movement of the camera by the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum CameraMove {
-    /// None.
+    /// No movement.
     #[default]
     None,
-    /// To another camera.
+    /// Movement to another camera.
     To(Camera),
-    /// Back to the whole body.
+    /// Return to the camera that fits the whole body.
     Fit,
 }
 
-/// What a press has taken, until it is let go.
+/// Target of the current press.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Held {
-    /// There is no press, or it was elsewhere.
+    /// There is no press, or it is outside the view.
     #[default]
     Nothing,
     /// The tip of an arrow.
     Tip(Grip),
-    /// The body, at a point.
+    /// The body, grabbed at a point.
     Body(MaterialPoint),
-    /// The view, at a point of a body that cannot be pulled.
+    /// The view, pressed at a point of a body that cannot be grabbed.
     Point(MaterialPoint),
     /// Empty space.
     Space,
 }
 
-/// What the pointer is on, or has taken.
+/// State of the pointer: its hover target and the target of its press.
 #[derive(Debug, Default)]
 pub(crate) struct Pointer {
     held: Held,
-    /// The arrow under a pointer that is not pressed.
+    /// Load handle under a pointer that is not pressed.
     over_tip: Option<Handle>,
-    /// The material point under a pointer that is not pressed.
+    /// Material point under a pointer that is not pressed.
     over_body: Option<MaterialPoint>,
-    /// Where the pointer is.
+    /// Position of the pointer.
     at: Option<Pos2>,
-    /// `true` if the wheel was last turned over the view. Scrolling that is left from elsewhere does not zoom it.
+    /// `true` if the wheel was last turned over the view. Scrolling that began elsewhere does not zoom it.
     scrolls: bool,
 }
 
@@ -58,43 +58,43 @@ pub(crate) struct Pointer {
 pub(crate) struct Interaction {
     pub camera: CameraMove,
     pub grab: Grab,
-    /// A load by its number, and its new value.
+    /// Index of a load, and its new value.
     pub load: Option<(usize, Pull)>,
-    /// A load by its number, which gets the value of the scene's document.
+    /// Index of a load that is reset to the value in the scene's document.
     pub restore: Option<usize>,
-    /// A click on the body, or `None` in it for one beside the body.
+    /// Click in the view: on a point of the body, or `Some(None)` outside the body.
     pub clicked: Option<Option<MaterialPoint>>,
 }
 
-/// So near to a thin body, points, counts as on it.
+/// Distance within which the pointer counts as on a thin body, points.
 const NEAR: f64 = 8.0;
 
-/// The body under the pointer.
+/// Interaction that the body allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// A body that is not under the pointer's control.
+    /// None.
     None,
-    /// A body whose values are shown, and that cannot be grabbed.
+    /// Its values can be shown, but it cannot be grabbed.
     Visible,
     Grabbable,
 }
 
-/// Targets of the pointer in the view.
+/// Hit targets of the pointer in the view.
 pub(crate) struct HitTargets<'a> {
     pub camera: Camera,
-    /// The body; `None` where its elements are drawn elsewhere: there is nothing to targets then.
+    /// Mesh of the body; `None` if its elements are drawn apart: nothing can be hit then.
     pub mesh: Option<&'a Mesh>,
-    /// Where the nodes are, m.
+    /// Positions of the nodes, m.
     pub positions: &'a [Vector2<f64>],
     pub outline: &'a [Segment],
-    /// The tips of arrows.
+    /// Handles of the load arrows.
     pub handles: &'a [Handle],
-    /// Magnifications that the wheel may targets.
+    /// Magnifications that the wheel can reach.
     pub scales: RangeInclusive<f64>,
 }
 
 impl HitTargets<'_> {
-    /// The place in the plane under a place in the view, m.
+    /// Returns the position in the plane of a point of the view, m.
     fn place(&self, response: &Response, at: Pos2) -> Vector2<f64> {
         let at = at - response.rect.center();
         self.camera.to_world([f64::from(at.x), f64::from(at.y)])
@@ -106,7 +106,7 @@ impl HitTargets<'_> {
 }
 
 impl Pointer {
-    /// The arrow whose tip it is on, or has taken.
+    /// Returns the load handle that is under the pointer or grabbed.
     pub(crate) fn hot_handle(&self) -> Option<HotHandle> {
         if let Held::Tip(grip) = self.held {
             return Some(HotHandle { handle: grip.handle, dragged: grip.drag() });
@@ -114,17 +114,18 @@ impl Pointer {
         self.over_tip.map(|handle| HotHandle { handle, dragged: None })
     }
 
-    /// The material point it is over, and where it is, while nothing is pressed.
+    /// Returns the material point under the pointer and the pointer's position, while nothing is pressed.
     pub(crate) fn over_body(&self) -> Option<(MaterialPoint, Pos2)> {
         self.over_body.zip(self.at)
     }
 
-    /// Whether it has taken something of the body or its loads: a view that moved then would move the place under it.
+    /// Returns `true` if a load handle or the body is grabbed; the view must not move then, because the grabbed point
+    /// would move with it.
     pub(crate) fn holds(&self) -> bool {
         matches!(self.held, Held::Tip(..) | Held::Body(_))
     }
 
-    /// Follows the pointer over the view that `response` belongs to.
+    /// Processes the pointer over the view with this `response`.
     pub(crate) fn follow(
         &mut self,
         ui: &Ui,
@@ -146,15 +147,15 @@ impl Pointer {
         });
         self.at = at;
         let mut interaction = Interaction::default();
-        // A quick click is pressed and released within one frame. Two fingers move the view: what the first has taken is
-        // let go.
+        // A quick click is pressed and released within one frame. Two fingers move the view and release the target of
+        // the first one.
         let is_here = response.is_pointer_button_down_on() || response.clicked();
         if pressed && is_here && fingers.is_none() {
-            // Since the press the pointer may have moved on.
+            // The pointer may have moved since the press.
             let at = origin.or(at);
             self.held = at.map_or(Held::Nothing, |at| Self::take(response, targets, &mut interaction, body, at));
         }
-        // After it was let go the pointer may have moved on, too.
+        // The pointer may also have moved after the release.
         if let Some(at) = let_go_at.or(at) {
             self.drag(response, targets, body, (at, keys), &mut interaction);
         }
@@ -182,7 +183,7 @@ impl Pointer {
         interaction
     }
 
-    /// What a press here takes: a tip before the body that it may lie over.
+    /// Returns the target of a press; load handles come before the body, which they may cover.
     fn take(
         response: &Response,
         targets: &HitTargets<'_>,
@@ -202,7 +203,7 @@ impl Pointer {
         Held::Body(point)
     }
 
-    /// Moves what is held to where the pointer is.
+    /// Moves the pressed target with the pointer.
     fn drag(
         &mut self,
         response: &Response,
@@ -221,7 +222,7 @@ impl Pointer {
         }
     }
 
-    /// Finds what is under the pointer, and says so with the cursor.
+    /// Finds the target under the pointer, and sets the cursor.
     fn hover(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, body: Target, down: bool) {
         (self.over_tip, self.over_body) = (None, None);
         let cursor = match self.held {
@@ -250,7 +251,7 @@ impl Pointer {
     fn look(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, fingers: Option<Vec2>) -> CameraMove {
         let mut camera = targets.camera;
         let mut look = CameraMove::None;
-        // Two fingers move the view together, wherever they are.
+        // Two fingers move the view, whatever is under them.
         let drag = fingers.unwrap_or_else(|| response.drag_delta());
         if drag != Vec2::ZERO && !self.holds() {
             camera.pan([f64::from(drag.x), f64::from(drag.y)]);
@@ -265,7 +266,7 @@ impl Pointer {
         if let Some(pointer) = response.hover_pos().filter(|_| self.scrolls || fingers.is_some()) {
             let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
-            // A pointer that only rests over the view must not stop it from following the body.
+            // A resting pointer must not stop the view from following the body.
             if factor != 1.0 {
                 let at = pointer - response.rect.center();
                 camera.zoom(factor, [f64::from(at.x), f64::from(at.y)], targets.scales.clone());

@@ -1,4 +1,4 @@
-//! What the body is like under the pointer, and at a point that is kept.
+//! Values at the point under the pointer, and at a pinned point.
 
 use egui::{Align2, Area, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};
 use nalgebra::{Matrix2, Vector2};
@@ -9,27 +9,27 @@ use crate::mesh::{MaterialPoint, Mesh};
 use crate::simulation::{Field, PointState, PointValues};
 use crate::words::{engineering, engineering_pair, three_digits};
 
-/// From a point to its card, points.
+/// Distance from a pinned point to its card, points.
 const AWAY: f32 = 26.0;
-/// A click so near to a kept point, points, is on it.
+/// Distance within which a click hits a pinned point, points.
 const NEAR: f32 = 9.0;
 
-/// Where a material point is while the nodes are at `positions`, m.
+/// Returns the weighted sum of `positions` at a material point: its position if these are the nodes' positions, m.
 pub(crate) fn place(mesh: &Mesh, positions: &[Vector2<f64>], point: MaterialPoint) -> Option<Vector2<f64>> {
     mesh.weights(point)?.iter().map(|&(n, w)| Some(positions.get(n as usize)? * w)).sum()
 }
 
-/// Whether a click is on a kept point, for places in the window.
+/// Returns `true` if a click is on a pinned point; both positions are in the window.
 pub(crate) fn is_on(kept: Pos2, click: Pos2) -> bool {
     kept.distance(click) <= NEAR
 }
 
-/// A number of a field with its unit.
+/// Formats a value of a field with its unit.
 fn value(field: Field, value: f64) -> String {
     engineering(three_digits(value), field.unit())
 }
 
-/// Paints beside the pointer the value of the field under it and how far the body has moved there.
+/// Paints the value of the field and the displacement next to the pointer.
 pub(crate) fn paint_hover(ui: &Ui, painter: &Painter, at: Pos2, field: (Field, Option<f64>), u: Vector2<f64>) {
     let (field, of_field) = field;
     let of_field = of_field.map_or_else(|| tr("unknown").to_owned(), |v| value(field, v));
@@ -43,13 +43,13 @@ fn metres(v: Vector2<f64>) -> String {
     engineering_pair([v.x, v.y].map(three_digits), "m")
 }
 
-/// Two rows of numbers.
+/// Formats a matrix in two rows.
 fn rows(m: &Matrix2<f64>) -> String {
     let number = |v: f64| format!("{:>8}", format!("{v:.4}"));
     format!("{} {}\n{} {}", number(m.m11), number(m.m12), number(m.m21), number(m.m22))
 }
 
-/// Shows the card of a kept point, which is at `at` in the window, and says whether it was clicked away.
+/// Shows the card of a pinned point at the window position `at`, and returns `true` if the card was closed.
 pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field: Field, point: &PointState) -> bool {
     let visuals = ui.visuals();
     let color = visuals.strong_text_color();
@@ -104,7 +104,7 @@ pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field:
                     ("R", &point.rotation.matrix(), "Rotation of F = R S"),
                     ("S", &point.stretch, "Stretch of F = R S"),
                 ];
-                // Linear theory has no R and no S.
+                // Linear theory has neither R nor S.
                 let count = if point.is_linear { 1 } else { matrices.len() };
                 for (name, matrix, tip) in matrices.into_iter().take(count) {
                     ui.label(RichText::new(name).weak()).on_hover_text(tr(tip));

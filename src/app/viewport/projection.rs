@@ -1,11 +1,11 @@
-//! From the plane of the body to the window.
+//! Projection from the plane of the body to the window.
 
 use egui::{Pos2, Rect, vec2};
 use nalgebra::Vector2;
 
 use crate::render::{Camera, Viewport};
 
-/// Metres to window positions.
+/// Projection from metres to window positions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection {
     pub camera: Camera,
@@ -17,13 +17,14 @@ impl Projection {
         self.camera.to_view(p)
     }
 
-    /// The window position of a point; far outside the view, somewhere outside the view.
+    /// Returns the window position of a point; positions far outside the view are clamped.
     pub(crate) fn point(&self, p: Vector2<f64>) -> Pos2 {
         let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
         self.rect.center() + vec2(x, y)
     }
 
-    /// The part of a segment that is in or near the view: coordinates far beyond it have no digits left as f32.
+    /// Returns the part of a segment that is in or near the view. Coordinates far outside would lose their precision as
+    /// `f32`.
     pub(crate) fn segment(&self, a: Vector2<f64>, b: Vector2<f64>) -> Option<[Pos2; 2]> {
         let half = [f64::from(self.rect.width()) * 0.5 + 16.0, f64::from(self.rect.height()) * 0.5 + 16.0];
         let [from, to] = clip(self.offset(a), self.offset(b), half)?;
@@ -32,7 +33,7 @@ impl Projection {
     }
 }
 
-/// Liang and Barsky 1984: the part of a segment inside the box |x| ≤ half₀, |y| ≤ half₁.
+/// Returns the part of a segment inside the box |x| ≤ half₀, |y| ≤ half₁; Liang and Barsky 1984.
 fn clip(a: [f64; 2], b: [f64; 2], half: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let d = [b[0] - a[0], b[1] - a[1]];
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -53,7 +54,7 @@ fn clip(a: [f64; 2], b: [f64; 2], half: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     (enter <= leave).then(|| [at(enter), at(leave)])
 }
 
-/// The pixels of a place in the window, with so many of them a point.
+/// Converts an area of the window to pixels.
 pub(crate) fn viewport(place: egui::Rect, pixels_per_point: f32) -> Viewport {
     let place = place * pixels_per_point;
     let [corner, end] = [place.min, place.max].map(|p| [p.x, p.y].map(|v| v.round().max(0.0) as u32));

@@ -1,4 +1,4 @@
-//! The time line under a body in motion: a line of the last seconds with a knob on the moment that is shown.
+//! Time line under a body in motion: the recorded seconds, with a knob at the displayed moment.
 
 use egui::{Align2, CursorIcon, EventFilter, FontId, Key, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
@@ -10,10 +10,11 @@ use crate::app::widgets::palette::{Palette, SMALL};
 
 /// Shortest line, points.
 const SHORTEST: f32 = 80.0;
-/// Height above and below the line that takes the pointer, points.
+/// Distance above and below the line within which it reacts to the pointer, points.
 const REACH: f32 = 10.0;
 
-/// The place of the line in a view: between the scale bar and the colour bar, where that is at the bottom.
+/// Returns the area of the line in a view: between the scale bar and the colour bar, if that is at the bottom. `None`
+/// if the view is too narrow.
 fn place(view: Rect, scale_bar: f32, has_legend: bool) -> Option<Rect> {
     let left = view.left() + scale_bar + 24.0;
     let right = view.right() - if has_legend { LEGEND_WIDTH } else { 18.0 };
@@ -21,7 +22,7 @@ fn place(view: Rect, scale_bar: f32, has_legend: bool) -> Option<Rect> {
     (line.width() >= SHORTEST).then_some(line)
 }
 
-/// Shows the line of a motion with a past; `now` is the simulated time that is shown, s.
+/// Shows the line of a motion with a recorded past; `now` is the displayed simulated time, s.
 pub(crate) fn show(
     ui: &Ui,
     view: Rect,

@@ -21,34 +21,35 @@ use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::MethodKind;
 use crate::simulation::{Field, PointValues, Simulation, Status};
 
-/// Space kept free around the body when the camera is fitted: for the load's arrow, the key above and the legend below.
+/// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
+/// and the colour bar below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
-/// The same above a card, which leaves less of the view.
+/// Margins above a card of Learn, which leaves less of the view.
 const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
-/// The same on the left of a colour bar at the top.
+/// Margins to the left of a colour bar at the top.
 const BESIDE_MARGINS: Margins = Margins { sides: 284.0, top: 40.0, bottom: 30.0 };
-/// The same in a low view, with the status over it.
+/// Margins in a low view, with the status over it.
 const LOW_MARGINS: Margins = Margins { bottom: 84.0, ..CARD_MARGINS };
 
-/// Everything that the view shows.
+/// Content of the view.
 #[derive(Clone, Copy)]
 pub(crate) struct Content<'a> {
     pub session: &'a Session,
     pub options: &'a ViewOptions,
     /// Direction of a force of zero, degrees.
     pub direction: f64,
-    /// Body and linear solution of an animation, drawn in the place of the session's.
+    /// Body and linear solution of an animation, drawn in place of the session's.
     pub animation: Option<(&'a Simulation, Option<&'a Simulation>)>,
     /// The card of Learn below the view.
     pub card: Option<CardContent<'a>>,
 }
 
-/// Needs of a card of Learn.
+/// Content of a card of Learn.
 #[derive(Clone, Copy)]
 pub(crate) struct CardContent<'a> {
-    /// `true` if the elements are drawn apart: they cannot be grabbed then, and have no loads.
+    /// `true` if the elements are drawn apart from each other: they cannot be grabbed then, and show no loads.
     pub is_apart: bool,
-    /// The largest body that the card's slider reaches.
+    /// Largest body that the card's slider reaches.
     pub reach: Option<&'a Simulation>,
 }
 
@@ -65,12 +66,12 @@ impl<'a> Content<'a> {
         self.card.is_some_and(|card| card.is_apart)
     }
 
-    /// The largest body that the slider of a card reaches, while the card has its own mesh.
+    /// Returns the largest body that the card's slider reaches, if it has the displayed mesh.
     fn reach(&self) -> Option<&'a Simulation> {
         self.card?.reach.filter(|reach| has_mesh_of(reach.scene(), self.simulation().scene()))
     }
 
-    /// The outline of the reference solution, m, where it is known of the displayed state.
+    /// Returns the outline of the reference solution, m; empty if it is not known for the displayed state or is hidden.
     fn exact(&self) -> &'a [Vec<Vector2<f64>>] {
         let session = self.session;
         let is_shown =
@@ -78,7 +79,7 @@ impl<'a> Content<'a> {
         session.facts().reference.get().filter(|_| is_shown).map_or(&[], |reference| &reference.outline)
     }
 
-    /// Displacement of the linear solution, m, if it is to be shown.
+    /// Returns the displacement of the linear solution, m, if it is displayed.
     fn ghost(&self) -> Option<&'a [Vector2<f64>]> {
         let is_wanted = self.options.ghost && self.simulation().method() != MethodKind::Linear;
         let linear = match self.animation {
@@ -89,38 +90,38 @@ impl<'a> Content<'a> {
     }
 }
 
-/// Checks of the body's outline for crossings.
+/// State of the checks for self-intersections of the outline.
 #[derive(Debug, Default)]
 struct Crossing {
     is_reported: bool,
     /// Time of the last check, s.
     checked: f64,
-    /// Body mesh that the last check saw.
+    /// Revision number of the body mesh at the last check.
     stamp: u64,
 }
 
-/// The view of one body.
+/// View of one body.
 #[derive(Debug)]
 pub(crate) struct Viewport {
     camera: CameraController,
     margins: Margins,
-    /// `true` if the camera moves smoothly, as in a window.
+    /// `true` if camera movements are animated, as in a window.
     eases: bool,
-    /// Place in the window, points.
+    /// Area in the window, points.
     rect: Rect,
     pointer: Pointer,
-    /// The material point whose values are shown.
+    /// Pinned material point, whose values are shown.
     probe: Option<MaterialPoint>,
     body: BodyMesh,
-    /// `true` while the last equilibrium is drawn in the place of a state that diverges.
+    /// `true` while the last equilibrium is drawn in place of a state that diverges.
     shows_converged: bool,
-    /// Box of everything that a body in motion has swept, m.
+    /// Bounding box of all states of a body in motion so far, m.
     swept: Option<[Vector2<f64>; 2]>,
     crossing: Crossing,
 }
 
 impl Viewport {
-    /// A view of a body at rest.
+    /// Creates a view of a body at rest.
     pub(crate) fn new(mesh: &Mesh) -> Self {
         Self {
             camera: CameraController::new(mesh.bounds().into()),
@@ -136,7 +137,7 @@ impl Viewport {
         }
     }
 
-    /// Lets the camera move smoothly, as in a window, or at once, as in pictures.
+    /// Turns the animation of the camera on, as in a window, or off, as in images.
     pub(crate) fn set_easing(&mut self, eases: bool) {
         self.eases = eases;
     }
@@ -161,12 +162,12 @@ impl Viewport {
         &self.body
     }
 
-    /// `true` while the last equilibrium is drawn in the place of a state that diverges.
+    /// Returns `true` while the last equilibrium is drawn in place of a state that diverges.
     pub(crate) fn shows_converged(&self) -> bool {
         self.shows_converged
     }
 
-    /// The material point whose values are shown.
+    /// Returns the pinned material point, whose values are shown.
     pub(crate) fn probe(&self) -> Option<MaterialPoint> {
         self.probe
     }
@@ -175,40 +176,40 @@ impl Viewport {
         self.probe = None;
     }
 
-    /// Shows the whole body.
+    /// Fits the camera to the whole body.
     pub(crate) fn fit(&mut self) {
         self.camera.fit();
     }
 
-    /// Sets the camera, which does not follow the body then.
+    /// Sets the camera; it no longer follows the body.
     pub(crate) fn look(&mut self, camera: Camera) {
         self.camera.look(camera);
     }
 
-    /// Shows another mesh. A camera that the user has chosen is kept.
+    /// Changes to another mesh. A camera set by the user is kept.
     pub(crate) fn set_mesh(&mut self, mesh: &Mesh) {
         self.camera.set_body(mesh.bounds().into());
         self.probe = None;
     }
 
-    /// Shows the body of another document.
+    /// Changes to the body of another document.
     pub(crate) fn start(&mut self, mesh: &Mesh) {
         self.camera = CameraController::new(mesh.bounds().into());
         self.probe = None;
         self.crossing = Crossing::default();
     }
 
-    /// Forgets the places that a motion has swept.
+    /// Resets the bounding box of the motion.
     pub(crate) fn clear_swept(&mut self) {
         self.swept = None;
     }
 
-    /// The drawn body, as of the last [`Self::update`].
+    /// Returns the input of the body's render pass, as of the last [`Self::update`].
     pub(crate) fn frame<'a>(&'a self, content: &Content<'a>) -> Frame<'a> {
         self.body.frame(content.session.geometry(), content.options.wireframe)
     }
 
-    /// The drawn body with its camera and its place in pixels.
+    /// Returns the same with the camera and the area in pixels.
     pub(crate) fn view<'a>(&'a self, content: &Content<'a>, pixels_per_point: f32) -> View<'a> {
         let viewport = viewport(self.rect, pixels_per_point);
         View { viewport, frame: self.frame(content), camera: self.camera() }
@@ -218,7 +219,7 @@ impl Viewport {
         Projection { camera: self.camera(), rect: self.rect }
     }
 
-    /// Reads the pointer. A press hits the targets of the last frame, which the user has seen.
+    /// Processes the pointer. A press hits the targets of the last frame, because that is what the user sees.
     pub(crate) fn interact(&mut self, ui: &mut Ui, content: &Content<'_>) -> (Response, Interaction) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let projection = self.projection();
@@ -237,11 +238,11 @@ impl Viewport {
         (response, interaction)
     }
 
-    /// Updates the drawn mesh to the present state.
+    /// Updates the drawn mesh to the current state.
     pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
         self.shows_converged = self.hides_divergence(content);
         let simulation = content.animation.map_or_else(|| self.shown(content), |(simulation, _)| simulation);
-        // A range of colours that changed from frame to frame would hide the motion.
+        // A colour range that changed with every frame would hide the motion.
         let played = self.swept.is_some().then(|| content.session.playback().played());
         self.body.update(simulation, content.session.geometry(), content.options, played);
         self.body.color(visuals, content.options.field);
@@ -252,8 +253,8 @@ impl Viewport {
         self.body.displace(place);
     }
 
-    /// `true` where the last equilibrium is to be drawn in the place of a state that diverges. A card of Learn shows the
-    /// latter.
+    /// Returns `true` if the last equilibrium is to be drawn in place of a state that diverges. Cards of Learn show the
+    /// diverging state.
     fn hides_divergence(&self, content: &Content<'_>) -> bool {
         let simulation = content.simulation();
         if content.card.is_some() || content.session.converged().is_none() {
@@ -261,7 +262,7 @@ impl Viewport {
         }
         match simulation.status() {
             Status::Diverged(_) => true,
-            // A search under the pointer may still converge.
+            // While a handle or the body is grabbed, the iteration may still converge.
             Status::Running if !self.pointer.holds() || content.session.is_motion() => false,
             Status::Running | Status::NotConverged(_) => {
                 let projection = self.projection();
@@ -273,19 +274,19 @@ impl Viewport {
         }
     }
 
-    /// The drawn body, an animation aside.
+    /// Returns the drawn body; animations are ignored.
     fn shown<'a>(&self, content: &Content<'a>) -> &'a Simulation {
         content.session.converged().filter(|_| self.shows_converged).unwrap_or(content.simulation())
     }
 
-    /// Moves the camera by the pointer, and keeps or drops the material point that was clicked.
+    /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.
     pub(crate) fn take(&mut self, interaction: &Interaction, response: &Response, content: &Content<'_>) {
         match interaction.camera {
             CameraMove::None => {}
             CameraMove::To(camera) => self.camera.look(camera),
             CameraMove::Fit => self.camera.fit(),
         }
-        // On a card a click takes a triangle.
+        // On a card of Learn a click selects a triangle.
         let clicked = interaction.clicked.flatten().filter(|_| content.card.is_none());
         if let (Some(point), Some(click)) = (clicked, response.interact_pointer_pos()) {
             let kept = self.probe.and_then(|kept| self.in_view(content, kept));
@@ -293,7 +294,7 @@ impl Viewport {
         }
     }
 
-    /// The loads of the last frame's arrows.
+    /// Returns the loads of the last frame's arrows.
     fn forces<'a>(&'a self, content: &Content<'a>) -> Forces<'a> {
         let simulation = content.simulation();
         Forces {
@@ -310,18 +311,18 @@ impl Viewport {
         if content.is_apart() { Vec::new() } else { self.forces(content).handles(projection) }
     }
 
-    /// The arrows of the loads, as of the last frame.
+    /// Returns the load handles, as of the last frame.
     pub(crate) fn arrows(&self, content: &Content<'_>) -> Vec<Handle> {
         self.handles(content, &self.projection())
     }
 
-    /// The place of a material point in the window.
+    /// Returns the window position of a material point.
     fn in_view(&self, content: &Content<'_>, point: MaterialPoint) -> Option<Pos2> {
         let place = probe::place(content.mesh(), &self.body.nodes, point)?;
         Some(self.projection().point(place))
     }
 
-    /// The value of the displayed field at a material point.
+    /// Returns the displayed field and its value at a material point.
     fn field_at(&self, content: &Content<'_>, point: MaterialPoint) -> (Field, Option<f64>) {
         let field = content.options.field;
         let value = if content.options.raw && !field.is_of_elements() {
@@ -332,7 +333,7 @@ impl Viewport {
         (field, value)
     }
 
-    /// Shows the values under the pointer, and those at the point that is kept.
+    /// Shows the values at the pointer and at the pinned point.
     pub(crate) fn show_values(&mut self, ui: &Ui, painter: &Painter, content: &Content<'_>) {
         if content.is_apart() {
             return;
@@ -351,10 +352,10 @@ impl Viewport {
         }
     }
 
-    /// Fits the camera to the body at rest and now, unless the user has moved it. A state that has not converged may be
-    /// anywhere, and is not followed.
+    /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
+    /// converged are not followed, because they may be anywhere.
     pub(crate) fn follow(&mut self, ui: &Ui, content: &Content<'_>) {
-        // A camera that moved with the body would move the place under a pointer that holds it.
+        // Moving the camera would also move the point that the pointer has grabbed.
         if self.pointer.holds() {
             return;
         }
@@ -407,12 +408,12 @@ impl Viewport {
         self.margins = Margins { bottom: least.bottom + arrow, ..least };
     }
 
-    /// Width and height, points.
+    /// Returns width and height, points.
     fn size(&self) -> [f64; 2] {
         [self.rect.width(), self.rect.height()].map(f64::from)
     }
 
-    /// Returns the camera that shows a box, m, and the linear solution, in a view of this size, points.
+    /// Returns the camera that shows a box, m, and the linear solution, in a view of size `view`, points.
     pub(crate) fn fitted(
         &self,
         content: &Content<'_>,
@@ -421,7 +422,8 @@ impl Viewport {
         view: [f64; 2],
     ) -> Camera {
         if let Some(linear) = content.ghost() {
-            // The linear solution of a large load is absurdly long; the body must not shrink to a dot for it.
+            // Largest size that the box may grow to for the linear solution, relative to the body: under a large load
+            // that solution is far too long.
             const LARGEST: f64 = 1.5;
             let size = (high - low).norm();
             let ghost = content.mesh().nodes().iter().zip(linear).map(|(x, u)| x + u);
@@ -433,7 +435,7 @@ impl Viewport {
         Camera::fit(low, high, view, self.margins)
     }
 
-    /// Returns the margins around a box, m: the least ones, and the room that arrows need beyond them.
+    /// Returns the margins around a box: the least ones, enlarged by the room that the arrows need, points.
     fn with_room_for_arrows(
         &self,
         content: &Content<'_>,
@@ -441,7 +443,7 @@ impl Viewport {
         [low, high]: [Vector2<f64>; 2],
         view: [f64; 2],
     ) -> Margins {
-        /// Space beyond a tip for the number of its force, points.
+        /// Space beyond a tip for the label of its force, points.
         const BEYOND: f32 = 36.0;
         if content.is_apart() {
             return least;
@@ -459,7 +461,7 @@ impl Viewport {
         let on_top = overlay::has_legend_on_top(size.y);
         arrows.iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
-            // A tip stands beside the colour bar, not on it.
+            // A tip must not cover the colour bar.
             let bar = if tip.x > size.x - overlay::LEGEND_WIDTH { overlay::LEGEND_HEIGHT } else { 0.0 };
             let above = if on_top && arrow.way.y < 0.0 { bar } else { 0.0 };
             let below = if on_top { 0.0 } else { bar };
@@ -510,8 +512,8 @@ impl Viewport {
         overlay::paint(painter, self.rect, &overlay, visuals);
     }
 
-    /// Returns corner, place and largest width of a message over the view: at the lower left, beside the tips of arrows
-    /// that it would hide, or in another corner.
+    /// Returns the anchor, position and largest width of a message over the view: at the lower left, next to tips of
+    /// arrows that it would hide, or in another corner.
     pub(crate) fn message_place(
         &self,
         content: &Content<'_>,
@@ -542,9 +544,10 @@ impl Viewport {
         (Align2::LEFT_TOP, view.left_top() + egui::vec2(SIDE, 44.0), widest)
     }
 
-    /// Checks a sound state for crossings of the outline at `now`, s; returns `true` at the first one of a document.
+    /// Checks a converged state or a motion for self-intersections of the outline at `now`, s; returns `true` for the
+    /// first one of a document.
     pub(crate) fn finds_crossing(&mut self, content: &Content<'_>, now: f64) -> bool {
-        /// Time between two checks of a body that moves, s.
+        /// Time between two checks of a body in motion, s.
         const EVERY: f64 = 0.1;
         let session = content.session;
         let is_due = !session.iterates() || now - self.crossing.checked >= EVERY;
@@ -564,11 +567,11 @@ impl Viewport {
     }
 }
 
-/// Returns the margins around a box, m, whatever the loads.
+/// Returns the margins around a box, m, that do not depend on the loads.
 fn least_margins(content: &Content<'_>, [low, high]: [Vector2<f64>; 2], view: [f64; 2]) -> Margins {
     let has_legend_on_top = overlay::has_legend_on_top(view[1] as f32);
     if content.card.is_some() && has_legend_on_top {
-        // Under the colour bar or beside it, whichever shows more.
+        // Under the colour bar or to the left of it, whichever shows the body larger.
         let scale = |margins: &Margins| Camera::fit(low, high, view, *margins).scale;
         return if scale(&BESIDE_MARGINS) > scale(&CARD_MARGINS) { BESIDE_MARGINS } else { CARD_MARGINS };
     }

@@ -1,4 +1,4 @@
-//! Buttons with icons, buttons that are chosen or not, and entries of pickers.
+//! Buttons with icons, option buttons, and entries of pickers.
 
 use egui::text::LayoutJob;
 use egui::{
@@ -9,7 +9,7 @@ use egui::{
 use crate::app::language::tr;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 
-/// What is drawn on a button: the fonts have no such letters.
+/// Icon of a button, drawn with lines because the fonts have no such glyphs.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Icon {
     Play,
@@ -26,7 +26,7 @@ pub(crate) enum Icon {
     Close,
 }
 
-/// A button with an icon, before a word where there is room for one; its name is for who cannot see it.
+/// Adds a button with an icon, followed by a word if one is given. `name` is its name for screen readers.
 pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, word: Option<&str>, chosen: bool) -> Response {
     const SIDE: f32 = 28.0;
     const WIDE: f32 = 52.0;
@@ -98,7 +98,7 @@ fn paint(painter: &Painter, icon: Icon, center: Pos2, color: egui::Color32) {
     }
 }
 
-/// An entry of a picker: its name, and what it is under it.
+/// Adds an entry of a picker: its name, and a description under it.
 pub(crate) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, about: &str) -> Response {
     let (id, about) = (tr(id), tr(about));
     let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
@@ -112,7 +112,7 @@ pub(crate) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, a
     response
 }
 
-/// A button that is chosen or not: of several one, or on and off. It looks like a button also where it is not chosen.
+/// Returns a button for one of several options, or for on and off. It has a frame even if it is not selected.
 pub(crate) fn option_button<'a>(chosen: bool, words: impl IntoAtoms<'a>) -> Button<'a> {
     Button::selectable(chosen, words).frame_when_inactive(true)
 }

@@ -1,8 +1,8 @@
-//! The marks of a legend: how each line over the body is drawn.
+//! Legend marks, which show how each line over the body is drawn.
 
 use egui::{Color32, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};
 
-/// How a solution is drawn.
+/// Line style of a solution.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Mark {
     Line,
@@ -11,10 +11,10 @@ pub(crate) enum Mark {
 }
 
 impl Mark {
-    /// How wide every mark is, points.
+    /// Width of every mark, points.
     pub(crate) const WIDTH: f32 = 18.0;
 
-    /// Paints it to the right of a point.
+    /// Paints the mark to the right of the point `left`.
     pub(crate) fn paint(self, painter: &Painter, left: Pos2, color: Color32) {
         let stroke = Stroke::new(2.5, color);
         match self {

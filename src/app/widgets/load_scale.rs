@@ -1,19 +1,19 @@
-//! Scale between a load and the length of its arrow or the way of its slider: proportional around the value that the scene
-//! opens with, logarithmic far beyond it.
+//! Scale between a load and the length of its arrow or the position on its slider: proportional around the opening
+//! value, which is the value in the scene as opened, and logarithmic far beyond it.
 
 use crate::scene::{Load, Scene};
 
-/// The largest loads that a scene opens with. Its arrows have their opening length there.
+/// Largest loads of a scene as it was opened. The arrows of these loads have the opening length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct OpeningLoads {
-    /// Largest force, N; `None` where the scene has none.
+    /// Largest force, N; `None` if the scene has none.
     pub force: Option<f64>,
-    /// Largest moment, N m; `None` where the scene has none.
+    /// Largest moment, N m; `None` if the scene has none.
     pub moment: Option<f64>,
 }
 
 impl OpeningLoads {
-    /// Finds the largest loads of a scene as it was opened.
+    /// Returns the largest loads of a scene.
     pub(crate) fn of(scene: &Scene) -> Self {
         let largest = |sizes: &mut dyn Iterator<Item = f64>| {
             let largest = sizes.fold(0.0, f64::max);
@@ -32,28 +32,28 @@ impl OpeningLoads {
     }
 }
 
-/// Monotone, continuous map from the size of a load to a length, in points, radians or parts of a slider.
+/// Monotone, continuous map from the magnitude of a load to a length, in points, radians or fractions of a slider.
 ///
-/// With x the load over its opening value: from the stub at x = 0 a parabola up to the opening length at x = 1, whose tangent
-/// there goes through the origin; the tangent up to x = 2, so that an arrow of twice the length is twice the load; a
-/// logarithm beyond.
+/// Let x be the load divided by its opening value. The map is a parabola from the stub length at x = 0 to the opening
+/// length at x = 1, where its tangent passes through the origin; this tangent up to x = 2, so that an arrow of twice
+/// the length is twice the load; and a logarithm beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LoadScale {
-    /// Load that has the opening length.
+    /// Opening value: the load that has the opening length.
     pub usual: f64,
-    /// Length of no load.
+    /// Length of a zero load.
     pub stub: f64,
     /// Length of the opening value.
     pub opening: f64,
-    /// Length of a tenfold load, beyond twice the opening value.
+    /// Additional length per factor of ten above twice the opening value.
     pub decade: f64,
 }
 
-/// Load over its opening value from which on lengths are logarithmic.
+/// Ratio of a load to its opening value above which lengths are logarithmic.
 const STRAIGHT: f64 = 2.0;
 
 impl LoadScale {
-    /// Length of a load.
+    /// Returns the length of a load.
     pub(crate) fn length(self, load: f64) -> f64 {
         let x = load / self.usual;
         if x <= 1.0 {
@@ -65,12 +65,12 @@ impl LoadScale {
         }
     }
 
-    /// Load of a length.
+    /// Returns the load of a length.
     pub(crate) fn load(self, length: f64) -> f64 {
         let x = if length <= self.stub {
             0.0
         } else if length <= self.opening {
-            // The root of stub x² + b x = c that is positive, in the form without cancellation.
+            // The positive root of stub x² + b x = c, in the form without cancellation.
             let (b, c) = (self.opening - 2.0 * self.stub, length - self.stub);
             2.0 * c / (b + (b * b + 4.0 * self.stub * c).sqrt())
         } else if length <= STRAIGHT * self.opening {
@@ -81,16 +81,18 @@ impl LoadScale {
         x * self.usual
     }
 
-    /// Scale of a slider from 0 to 1 whose end is `largest`. The opening value is in the middle third.
+    /// Returns the scale of a slider from 0 to 1 whose upper end is `largest`. The opening value is in the middle
+    /// third.
     pub(crate) fn slider(usual: f64, largest: f64) -> Self {
         const OPENING: f64 = 0.4;
-        /// Least decades of the logarithmic end.
+        /// Smallest number of decades of the logarithmic part.
         const LEAST: f64 = 0.3;
         let decades = (largest / (STRAIGHT * usual)).log10().max(LEAST);
         Self { usual, stub: 0.0, opening: OPENING, decade: (1.0 - STRAIGHT * OPENING) / decades }
     }
 
-    /// Scale of a slider from −1 to 1 whose ends are ∓`largest`. The opening value is in the middle third.
+    /// Returns the scale of a slider from −1 to 1 whose ends are ∓`largest`. The opening value is in the middle third of
+    /// the whole slider.
     pub(crate) fn two_sided_slider(usual: f64, largest: f64) -> Self {
         const OPENING: f64 = 0.3;
         let one_sided = Self::slider(usual, largest);
@@ -121,7 +123,7 @@ mod tests {
                 assert!((scale.load(length) / load - 1.0).abs() < 1e-6, "{scale:?}: {load} {}", scale.load(length));
             }
             assert_eq!((scale.length(0.0), scale.load(scale.stub), scale.load(0.0)), (scale.stub, 0.0, 0.0));
-            // No jump from piece to piece.
+            // The pieces are continuous.
             for x in [1.0, STRAIGHT] {
                 let [below, above] = [1.0 - 1e-9, 1.0 + 1e-9].map(|near| scale.length(near * x * scale.usual));
                 assert!((above - below).abs() < 1e-6 * scale.opening, "{scale:?} at {x}");
@@ -134,7 +136,7 @@ mod tests {
         for scale in SCALES {
             assert!((scale.length(scale.usual) - scale.opening).abs() < 1e-12 * scale.opening);
             assert!((scale.load(2.0 * scale.opening) / scale.usual - 2.0).abs() < 1e-12);
-            // The same rate just below.
+            // The slope is the same on both sides of the opening value.
             let rate = (scale.load(scale.opening) - scale.load(0.999 * scale.opening)) / (0.001 * scale.usual);
             assert!((rate - 1.0).abs() < 0.01, "{scale:?}: {rate}");
         }

@@ -1,4 +1,4 @@
-//! Pieces of user interface that know nothing of the model: colours, number fields, buttons, text.
+//! Widgets that do not depend on the session: colours, number fields, buttons, text.
 
 pub(crate) mod buttons;
 pub(crate) mod legend;

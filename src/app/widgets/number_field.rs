@@ -1,4 +1,4 @@
-//! A row of the panel: label, slider, number. Values out of range are refused with a message under the row.
+//! Row of the panel with label, slider and number. Values out of range are refused with a message under the row.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -17,34 +17,34 @@ use crate::words::{editable, number, three_digits};
 /// Messages next to fields, by the field's label, in English.
 pub(crate) type Messages = BTreeMap<&'static str, String>;
 
-/// A number to show and edit.
+/// Number to show and edit.
 pub(crate) struct NumberField {
-    /// What it is called; unique in the panel.
+    /// Label; unique in the panel.
     pub label: &'static str,
-    /// What it does.
+    /// Description of the value.
     pub tooltip: &'static str,
-    /// What is accepted.
+    /// Accepted values.
     pub limit: Limit,
-    /// What the slider spans. Typed values may lie outside, within the limit.
+    /// Range of the slider. Typed values may lie outside it, but within the limit.
     pub slider: RangeInclusive<f64>,
-    /// Relation between its values and places on the slider.
+    /// Relation between values and positions on the slider.
     pub scale: SliderScale,
-    /// Whole numbers only.
+    /// `true` if only whole numbers are accepted.
     pub whole: bool,
 }
 
-/// Relation between the values of a slider and the places on it.
+/// Relation between the values of a slider and the positions on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SliderScale {
     /// Proportional.
     Linear,
-    /// Logarithmic from this smallest positive value on, and to the other side of zero.
+    /// Logarithmic above this smallest positive value, and symmetric about zero.
     Logarithmic(f64),
-    /// Proportional around this value, which is in the middle third, and logarithmic far beyond it: [`LoadScale`].
+    /// Proportional around this value, and logarithmic far beyond it: [`LoadScale`].
     Around(f64),
 }
 
-/// Why a typed number is refused.
+/// Reason for which a typed number is refused.
 #[derive(Debug, Error)]
 enum FieldError {
     #[error("expected a whole number, got {0}")]
@@ -58,12 +58,12 @@ enum FieldError {
 const VALUE_WIDTH: f32 = 104.0;
 
 impl NumberField {
-    /// Shows the row; returns a new value that is within the limit, once there is one.
+    /// Shows the row; returns the new value when the user has entered one within the limit.
     pub(crate) fn show(&self, ui: &mut Ui, messages: &mut Messages, value: f64) -> Option<f64> {
         self.show_beside(ui, messages, value, None)
     }
 
-    /// [`Self::show`] of a value that had an original: a double click, or Delete on the slider, brings that back.
+    /// [`Self::show`] for a value with an original: a double click, or Delete on the slider, restores the original.
     pub(crate) fn show_beside(
         &self,
         ui: &mut Ui,
@@ -76,7 +76,7 @@ impl NumberField {
         let tip = self.tip(original);
         let refused = RefCell::new(None);
         let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
-        // egui reads what was typed once more in the frame after Escape.
+        // In the frame after Escape egui reads the typed text once more.
         let escape_id = Id::unique((self.label, "escape"));
         let has_escaped = ui.data_mut(|data| data.remove_temp::<bool>(escape_id)).is_some();
         let label = ui
@@ -89,7 +89,7 @@ impl NumberField {
                         .update_while_editing(false)
                         .custom_formatter(|v, _| editable(v, unit))
                         .custom_parser(|text| {
-                            // Left as it was: all the digits that are not shown stay.
+                            // The text is unchanged, so the value keeps the digits that are not shown.
                             if has_escaped || text.trim() == shown {
                                 return Some(value);
                             }
@@ -104,12 +104,12 @@ impl NumberField {
                         ui.data_mut(|data| data.insert_temp(escape_id, true));
                         messages.remove(self.label);
                     } else if refused.borrow().is_some() && ui.input(|i| i.key_pressed(Key::Enter)) {
-                        // What was typed stays to be mended, and the next keys belong to it.
+                        // A refused text stays in the field, which keeps the focus, so that it can be corrected.
                         ui.memory_mut(|memory| memory.request_focus(response.id));
                     }
                     if response.double_clicked() && original.is_some() {
                         is_reset = true;
-                        // The first click has begun to edit the text.
+                        // The first click of the double click has started editing the text.
                         ui.memory_mut(|memory| memory.surrender_focus(response.id));
                     }
                     quiet_tip(response, &tip);
@@ -169,7 +169,7 @@ impl NumberField {
                 };
                 let mut place = scale.length(value.abs()).copysign(value);
                 let response = shown(ui, Slider::new(&mut place, start..=1.0));
-                // Readers of the window name its value, not the place.
+                // Screen readers read the value instead of the position on the slider.
                 ui.ctx().accesskit_node_builder(response.id, |node| {
                     node.set_numeric_value(value);
                     node.set_min_numeric_value(low);
@@ -184,7 +184,7 @@ impl NumberField {
         (response, slid)
     }
 
-    /// What it does, and how to have the original back.
+    /// Returns the tooltip: the description, and how to restore the original.
     fn tip(&self, original: Option<f64>) -> String {
         let tip = tr(self.tooltip);
         original.map_or_else(
@@ -197,7 +197,8 @@ impl NumberField {
         )
     }
 
-    /// What the arrow keys make of a value: one per cent of it, of a straight scale a 360th, and whole numbers one by one.
+    /// Returns the value after the arrow keys pressed in this frame. A step is 1 for whole numbers, one 360th of a
+    /// linear range, and otherwise 1 % of the value.
     fn stepped(&self, ui: &Ui, value: f64) -> Option<f64> {
         let pressed = |key| ui.input(|i| i.num_presses(key)) as f64;
         let steps = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
@@ -234,7 +235,7 @@ impl NumberField {
     }
 }
 
-/// The message of a field, if it has one.
+/// Shows the message of a field, if it has one.
 pub(crate) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
     if let Some(message) = messages.get(label) {
         let color = ui.visuals().error_fg_color;
@@ -242,24 +243,24 @@ pub(crate) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
     }
 }
 
-/// Whether a slider was clicked twice, or has the focus of a key that deletes.
+/// Returns `true` if a slider was double-clicked, or has the focus while Delete or Backspace is pressed.
 fn is_reset_by(ui: &Ui, slider: &Response) -> bool {
-    // A slider senses drags only: a click is a drag that has gone nowhere.
+    // A slider senses drags only: a click is a drag without movement.
     let clicked_twice = slider.drag_stopped() && ui.input(|i| i.pointer.button_double_clicked(PointerButton::Primary));
     let deletes = || ui.input(|i| i.key_pressed(Key::Delete) || i.key_pressed(Key::Backspace));
     clicked_twice || slider.has_focus() && deletes()
 }
 
-/// A tooltip that stays away from what is dragged: it would cover the row below.
+/// Adds a tooltip that is hidden while the widget is dragged or has the focus, because it would cover the row below.
 fn quiet_tip(response: Response, tip: &str) {
     if !response.dragged() && !response.has_focus() {
         response.on_hover_text(tip);
     }
 }
 
-/// A typed number, in this unit where it has none: `2.5`, `1e4`, `12 kN`, `30,000`, and `3k` for 3 kN.
+/// Parses a typed number; `unit` applies if it has none: `2.5`, `1e4`, `12 kN`, `30,000`, and `3k` for 3 kN.
 fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
-    // A prefix alone is that of the field's unit.
+    // A prefix without a unit belongs to the field's unit.
     units::parse(text, unit).or_else(|error| units::parse(&format!("{}{unit}", text.trim()), unit).map_err(|_| error))
 }
 

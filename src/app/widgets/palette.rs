@@ -1,4 +1,4 @@
-//! The window's colours and sizes of type, all of them, for both themes. Tests compute the contrasts that WCAG 2.1 asks for.
+//! All colours and font sizes of the window, for both themes. Tests check the contrasts that WCAG 2.1 requires.
 
 use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
@@ -8,46 +8,46 @@ use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene};
 use crate::simulation::Field;
 use crate::study::color;
 
-/// Size of text that is read, points.
+/// Size of body text, points.
 pub(crate) const BODY: f32 = 14.0;
-/// Size of the smallest text, points.
+/// Size of small text, points.
 pub(crate) const SMALL: f32 = 12.0;
-/// Size of the headline numbers, points.
+/// Size of the numbers in the status bar, points.
 pub(crate) const HEADLINE: f32 = 18.0;
 
-/// The colours of a theme.
+/// Colours of a theme.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Palette {
     dark: bool,
-    /// Behind the body.
+    /// Background of the body.
     pub canvas: Color32,
-    /// Behind panels.
+    /// Background of the panels.
     pub panel: Color32,
-    /// Of buttons, and of what is under the pointer.
+    /// Background of buttons; `hovered` is the one under the pointer.
     pub control: Color32,
     pub hovered: Color32,
-    /// Lines between things.
+    /// Separator lines.
     pub line: Color32,
     pub text: Color32,
     pub secondary: Color32,
-    /// What is chosen, and what has the keyboard's focus.
+    /// Selected controls, and the control with the keyboard focus.
     pub accent: Color32,
-    /// Behind what is chosen.
+    /// Background of selected controls.
     pub chosen: Color32,
     pub good: Color32,
     pub warning: Color32,
     pub error: Color32,
-    /// Behind words of an error.
+    /// Background of error messages.
     pub error_chip: Color32,
-    /// Outlines: of the exact solution, and of the body at rest.
+    /// Outlines of the reference solution and, `rest`, of the body at rest.
     pub exact: Color32,
     pub rest: Color32,
     pub support: Color32,
     pub load: Color32,
     pub hand: Color32,
-    /// Bodies without a value.
+    /// Bodies without values of the field.
     pub absent: Color32,
-    /// Element sides, over the colours of the body; straight alpha.
+    /// Element sides over the colours of the body, with straight (not premultiplied) alpha.
     pub wire: [u8; 4],
 }
 
@@ -104,29 +104,29 @@ const LIGHT: Palette = Palette {
 };
 
 impl Palette {
-    /// That of a theme.
+    /// Returns the palette of a theme.
     pub(crate) fn of(theme: Theme) -> Self {
         if theme == Theme::Dark { DARK } else { LIGHT }
     }
 
-    /// That of what is drawn with these visuals.
+    /// Returns the palette that matches `visuals`.
     pub(crate) fn new(visuals: &Visuals) -> Self {
         if visuals.dark_mode { DARK } else { LIGHT }
     }
 
-    /// The one colour of a method: body, legend, plots.
+    /// Returns the colour of a method, which is the same for body, legend and plots.
     pub(crate) fn method(&self, method: MethodKind) -> Color32 {
         let [r, g, b] = color(method.id(), self.dark);
         Color32::from_rgb(r, g, b)
     }
 
-    /// The one colour of an integrator.
+    /// Returns the colour of an integrator.
     pub(crate) fn integrator(&self, integrator: IntegratorKind) -> Color32 {
         let [r, g, b] = color(integrator.id(), self.dark);
         Color32::from_rgb(r, g, b)
     }
 
-    /// The colour of what solves a scene: its method, or its integrator.
+    /// Returns the colour of a scene's method, or of its integrator for a motion.
     pub(crate) fn solution(&self, scene: &Scene) -> Color32 {
         match scene.analysis {
             Analysis::Static => self.method(scene.solver.method),
@@ -134,7 +134,7 @@ impl Palette {
         }
     }
 
-    /// Colours of the kinds of energy: kinetic, elastic, potential, dissipated, lost, put in.
+    /// Returns the colours of the kinds of energy: kinetic, elastic, potential, dissipated, lost, put in.
     pub(crate) fn energies(&self) -> [Color32; 6] {
         if self.dark {
             [0x6EAAFF, 0xFFB450, 0x78D282, 0xAAAAB4, 0xFF7878, 0xC896FF].map(rgb)
@@ -143,7 +143,7 @@ impl Palette {
         }
     }
 
-    /// The map of a field's values: one with a sign has zero in the middle.
+    /// Returns the colour map of a field: diverging about zero if its sign matters.
     pub(crate) fn map(&self, field: Field) -> ColorMap {
         match (has_sign(field), self.dark) {
             (false, true) => ColorMap::SequentialOnDark,
@@ -187,12 +187,12 @@ impl Palette {
     }
 }
 
-/// Whether a field's values have a sign that matters: its colours have zero in the middle.
+/// Returns `true` if the sign of a field's values matters: zero is then in the middle of its colour map.
 pub(crate) fn has_sign(field: Field) -> bool {
     field == Field::RotationAngle
 }
 
-/// Gives egui the colours and sizes of both themes, once.
+/// Installs the colours and font sizes of both themes, once per context.
 pub(crate) fn install(ctx: &egui::Context) {
     let installed = egui::Id::unique("palette");
     if ctx.data(|data| data.get_temp::<bool>(installed)).is_some() {
@@ -217,13 +217,13 @@ pub(crate) fn install(ctx: &egui::Context) {
             style.spacing.button_padding = egui::vec2(8.0, 3.0);
             style.spacing.interact_size.y = 24.0;
             style.spacing.slider_rail_height = 5.0;
-            // A long list takes the height that it asks for.
+            // Long lists may be as high as their content.
             style.spacing.default_area_size.y = 4000.0;
         });
     }
 }
 
-/// The letters of all languages of the window that egui's own fonts do not have.
+/// Adds the font for the characters that egui's own fonts lack.
 fn add_font(ctx: &egui::Context) {
     let data = egui::FontData::from_static(crate::picture::CHINESE_FONT);
     let place = |family| InsertFontFamily { family, priority: FontPriority::Lowest };
@@ -237,7 +237,7 @@ mod tests {
     use crate::dynamics::INTEGRATORS;
     use crate::method::METHODS;
 
-    /// WCAG 2.1's relative luminance.
+    /// Returns the relative luminance of WCAG 2.1.
     fn luminance(color: Color32) -> f64 {
         let linear = [color.r(), color.g(), color.b()].map(|c| {
             let c = f64::from(c) / 255.0;
@@ -246,7 +246,7 @@ mod tests {
         0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
     }
 
-    /// WCAG 2.1's contrast ratio.
+    /// Returns the contrast ratio of WCAG 2.1.
     fn contrast(a: Color32, b: Color32) -> f64 {
         let (a, b) = (luminance(a), luminance(b));
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
@@ -258,7 +258,7 @@ mod tests {
         assert!((contrast(rgb(0x777777), Color32::WHITE) - 4.478).abs() < 1e-3);
     }
 
-    /// Text 4.5:1 on every ground it stands on.
+    /// Text has a contrast of 4.5:1 on every background that it is used on.
     #[test]
     fn text_can_be_read() {
         for p in [DARK, LIGHT] {
@@ -286,7 +286,7 @@ mod tests {
         }
     }
 
-    /// 3:1 for what is no text: every colour of every map, and every line.
+    /// Graphics have a contrast of 3:1: every colour of every map, and every line.
     #[test]
     fn the_body_and_its_lines_stand_out_from_the_canvas() {
         for p in [DARK, LIGHT] {

@@ -1,4 +1,4 @@
-//! Plots that stand still, with round ticks and values in engineering units.
+//! Plots that cannot be dragged or zoomed, with round ticks and values in engineering units.
 
 use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, MarkerShape, Plot};
 
@@ -7,32 +7,32 @@ use crate::element::ELEMENTS;
 use crate::scene::ElementKind;
 use crate::words::{engineering, three_digits, ticks};
 
-/// Room for the numbers and the title of an axis, points, before egui_plot has measured them.
+/// Space for the tick labels and the title of an axis, points, before egui_plot has measured them.
 pub(crate) const X_AXIS: f32 = 38.0;
 
 pub(crate) const Y_AXIS: f32 = 68.0;
 
-/// Grid lines nearer to each other than this, points, are not drawn.
+/// Grid lines closer together than this, points, are not drawn.
 const NEAREST: f32 = 8.0;
 
-/// Numbers so far apart, points, have room: beside each other, and over each other.
+/// Smallest distances between tick labels, points: horizontal and vertical.
 const APART: [f32; 2] = [66.0, 26.0];
 
-/// The part of an axis, from its beginning, over which its numbers would touch those of the other axis.
+/// Fraction of the x axis, from its beginning, in which a tick label would overlap the labels of the y axis.
 const CORNER: f64 = 0.02;
 
-/// A plot that stands still, with round ticks and values in engineering units.
+/// Returns a plot that cannot be dragged or zoomed, with round ticks and values in engineering units.
 pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
-    /// A value between ticks, to three digits.
+    /// Formats a value between ticks with three digits.
     fn value(value: f64, unit: &str) -> String {
         engineering(three_digits(value), unit)
     }
     let ((x_name, x_unit), (y_name, y_unit)) = (x, y);
-    // The marks are as far apart as their numbers need.
+    // The distance between ticks depends on the width of their labels.
     let near = egui::Rangef::new(0.5 * APART[0], 0.75 * APART[0]);
     let x_axis = AxisHints::new_x().label(x_name.to_owned()).label_spacing(near).min_thickness(X_AXIS).formatter(
         move |mark, range| {
-            // In the corner stands the number of the other axis.
+            // In the corner the label of the y axis has priority.
             let in_corner = mark.value - range.start() < CORNER * (range.end() - range.start());
             if in_corner { String::new() } else { engineering(mark.value, x_unit) }
         },
@@ -57,7 +57,7 @@ pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
         .allow_boxed_zoom(false)
 }
 
-/// Marks 1, 2 or 5 · 10ⁿ apart, as many as have room for their numbers.
+/// Returns ticks at multiples of 1, 2 or 5 · 10ⁿ, as many as have room for their labels.
 fn round_marks(input: GridInput, apart: f32) -> Vec<GridMark> {
     const MOST: f64 = 9.0;
     let (low, high) = input.bounds;
@@ -67,12 +67,12 @@ fn round_marks(input: GridInput, apart: f32) -> Vec<GridMark> {
     ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
-/// The pieces of a line: joints of one thick line would stick out where it turns sharply.
+/// Splits a line into its segments. As one thick line its joints would stick out at sharp corners.
 pub(crate) fn segments(line: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     line.windows(2).map(<[_]>::to_vec).collect()
 }
 
-/// The mark of an element and its name: the first for the first of the registry.
+/// Returns the marker of an element and the marker's name; markers follow the order of the element registry.
 pub(crate) fn marker(element: ElementKind) -> (MarkerShape, &'static str) {
     const SHAPES: [(MarkerShape, &str); 4] = [
         (MarkerShape::Up, "triangles"),

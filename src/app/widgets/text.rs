@@ -1,4 +1,4 @@
-//! Text on a box, semibold text, and the sign for a number that is not known.
+//! Text on a box, semibold text, and the sign for an unknown number.
 
 use std::sync::Arc;
 
@@ -6,10 +6,10 @@ use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Visuals, vec2};
 
 use crate::app::widgets::palette::BODY;
 
-/// In place of a number that is not known.
+/// Sign in place of an unknown number.
 pub(crate) const UNKNOWN: &str = "\u{2013}";
 
-/// Text on a box of the background's colour, moved into the view where it would leave it.
+/// Paints text on a box with the background's colour, moved into the view if it would leave it.
 pub(crate) fn boxed_text(
     painter: &Painter,
     at: Pos2,
@@ -28,7 +28,7 @@ pub(crate) fn boxed_text(
     painter.galley(rect.min, galley, color);
 }
 
-/// Paints text whose font has one weight as if it had another: drawn twice, a hair apart, it is semibold.
+/// Paints semibold text with a font that has only one weight: drawn twice, 0.45 points apart.
 pub(crate) fn semibold(painter: &Painter, at: Pos2, galley: &Arc<Galley>, color: Color32) {
     for shift in [0.0, 0.45] {
         painter.galley(at + vec2(shift, 0.0), galley.clone(), color);

@@ -1,10 +1,10 @@
-//! Events of one frame: at most one button of the pointer, which acts where it was pressed or let go.
+//! Events of one frame: at most one button event of the pointer, which acts at the position where it happened.
 
 use egui::Event;
 
-/// Cuts off the events that follow the first button event, and returns them for the next frame.
+/// Removes the events that follow the first button event, and returns them for the next frame.
 ///
-/// egui looks for what a button acts on where the pointer is at the end of a frame. Where frames are slow, the pointer has
+/// egui applies a button event at the position of the pointer at the end of a frame. In slow frames the pointer has
 /// moved on by then.
 pub(crate) fn after_first(events: &mut Vec<Event>) -> Vec<Event> {
     let is_button = |event: &Event| matches!(event, Event::PointerButton { .. });
@@ -55,7 +55,7 @@ mod tests {
         }
     }
 
-    /// A button of a frame clicks what is under it, although the pointer has gone on within the same frame.
+    /// A click acts on the widget where it happened, even if the pointer moves on within the same frame.
     #[test]
     fn a_click_lands_where_it_was_pressed() {
         let ctx = egui::Context::default();

@@ -1,12 +1,13 @@
-//! The system's clipboard. egui-winit's own would bring the formats of images along; text is all that is copied here.
+//! System clipboard. It replaces that of egui-winit, whose dependencies include image formats: only text is copied
+//! here.
 
 use egui::{OutputCommand, PlatformOutput};
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-/// The system's clipboard.
+/// Connection to the system clipboard.
 pub(crate) struct Clipboard {
-    /// `None` where there is none: copies stay in the window.
+    /// `None` if there is no system clipboard: copies then stay in the window.
     system: Option<arboard::Clipboard>,
     modifiers: ModifiersState,
 }
@@ -18,11 +19,11 @@ impl Clipboard {
         Self { system, modifiers: ModifiersState::empty() }
     }
 
-    /// Brings what another program has copied, before egui-winit meets the key that pastes.
+    /// Passes text copied by another program to egui-winit before it processes the key that pastes.
     pub(crate) fn before(&mut self, event: &WindowEvent, input: &mut egui_winit::State) {
         match event {
             WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),
-            // What the clipboard holds may be an image, or nothing.
+            // The clipboard may contain an image, or nothing.
             WindowEvent::KeyboardInput { event: key, .. } if !self.modifiers.is_empty() && may_paste(key) => {
                 if let Some(Ok(text)) = self.system.as_mut().map(arboard::Clipboard::get_text) {
                     input.set_clipboard_text(text);
@@ -32,7 +33,7 @@ impl Clipboard {
         }
     }
 
-    /// Hands on to other programs what has been copied in a frame.
+    /// Passes text copied in a frame to the system clipboard.
     pub(crate) fn after(&mut self, output: &PlatformOutput) {
         let Some(system) = &mut self.system else { return };
         for command in &output.commands {
@@ -45,7 +46,7 @@ impl Clipboard {
     }
 }
 
-/// Whether a key pastes where a modifier is held: V of any layout, Insert, or a key made for it.
+/// Returns `true` if a key pastes when a modifier is held: V of any layout, Insert, or a dedicated key.
 fn may_paste(key: &KeyEvent) -> bool {
     let named = matches!(key.logical_key, Key::Named(NamedKey::Insert | NamedKey::Paste));
     let letter = matches!(&key.logical_key, Key::Character(text) if text.eq_ignore_ascii_case("v"));

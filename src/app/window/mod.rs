@@ -1,4 +1,4 @@
-//! The window: winit events in, frames out. At rest nothing is drawn.
+//! Window: receives winit events and draws frames. At rest no frames are drawn.
 
 mod clicks;
 mod clipboard;
@@ -32,20 +32,20 @@ use crate::render::{Gpu, RenderError};
 use crate::scene::{Scene, Source, registry};
 use crate::simulation::Simulation;
 
-/// A connection to a display.
+/// Connection to a display.
 pub struct Display(EventLoop<()>);
 
-/// Why there is no display.
+/// Reason for which there is no display.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum NoDisplay {
-    /// No variable names one.
+    /// No environment variable names a display.
     #[error("there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)")]
     NotSet,
-    /// It does not answer.
+    /// The display refused the connection.
     #[error(transparent)]
     Refused(#[from] winit::error::EventLoopError),
-    /// A library that is loaded by name is missing.
+    /// A dynamically loaded library is missing.
     #[error("an X11 library is missing; scripts/setup installs libxkbcommon-x11-0, libxcursor1 and libxi6")]
     LibraryMissing,
 }
@@ -54,13 +54,13 @@ impl Display {
     /// Connects to the display.
     ///
     /// # Errors
-    /// Why there is none.
+    /// [`NoDisplay`].
     pub fn open() -> Result<Self, NoDisplay> {
         #[cfg(all(unix, not(target_os = "macos")))]
         if ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"].iter().all(|name| std::env::var_os(name).is_none()) {
             return Err(NoDisplay::NotSet);
         }
-        // winit panics where an X library it loads by name is missing; that is no reason to die without a word.
+        // winit panics if an X library that it loads dynamically is missing; the panic becomes an error with a message.
         let hook = std::panic::take_hook();
         std::panic::set_hook(Box::new(|_| {}));
         let opened = std::panic::catch_unwind(EventLoop::new);
@@ -72,14 +72,14 @@ impl Display {
     }
 }
 
-/// Whether a scene is so large that the window does not wait for its mesh.
+/// Returns `true` if a scene is so large that it is meshed in the background after the window has opened.
 #[must_use]
 pub fn opens_beside(scene: &Scene) -> bool {
     scene.unknowns() > MOST_UNKNOWNS
 }
 
-/// Opens the window and returns when it is closed. Without a simulation the scene is meshed beside the window, which shows
-/// another one meanwhile: see [`opens_beside`].
+/// Opens the window and returns when it is closed. Without a simulation the scene is meshed in the background while the
+/// window shows another one: see [`opens_beside`].
 ///
 /// # Errors
 /// [`AppError`]: no adapter, or no window.
@@ -127,7 +127,7 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
     };
     display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
     if let Some(words) = app.recording.as_ref().and_then(LiveRecording::wait) {
-        // The window that would show it is closed.
+        // The window that would show the message is closed.
         eprintln!("warpbeam: {words}");
     }
     app.keep_settings();
@@ -137,26 +137,26 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
 struct App {
     lab: Lab,
     ctx: egui::Context,
-    /// As they are in their file.
+    /// Settings as stored in their file.
     settings: Settings,
     settings_file: Option<PathBuf>,
-    /// Keeps a copy of unsaved edits; `None` where the system has no place for it.
+    /// Copy of unsaved edits; `None` if the system has no folder for it.
     recovery: Option<Recovery>,
     open: Option<OpenWindow>,
     /// Recording of the window.
     recording: Option<LiveRecording>,
     /// Recording of the scene from its start.
     scene_recording: Option<Recorder>,
-    /// When the window began.
+    /// Time at which the window opened.
     start: Instant,
-    /// Events that wait for the next frame.
+    /// Events that are processed in the next frame.
     later: Vec<egui::Event>,
-    /// When egui wants its next frame without an event.
+    /// Time of the next frame that egui has requested without an event.
     wake: Option<Instant>,
     error: Option<AppError>,
 }
 
-/// A window with what draws into it. Dropped in this order: the surface before its window.
+/// Window with its graphics resources. The order of the fields matters: the surface must be dropped before its window.
 struct OpenWindow {
     surface: wgpu::Surface<'static>,
     configuration: wgpu::SurfaceConfiguration,
@@ -167,11 +167,11 @@ struct OpenWindow {
     instance: wgpu::Instance,
     window: Arc<Window>,
     hidden: bool,
-    /// Frames in a row for which the surface gave no texture.
+    /// Number of consecutive frames for which the surface returned no texture.
     failures: u32,
 }
 
-/// Frames without a texture after which the window is given up.
+/// Number of frames without a texture after which the window closes with an error.
 const MAX_FAILURES: u32 = 10;
 
 impl OpenWindow {
@@ -216,7 +216,7 @@ impl OpenWindow {
     }
 
     fn resize(&mut self, width: u32, height: u32) {
-        // A minimised window has no size on some systems; there is nothing to configure then.
+        // On some systems a minimised window has size zero, with which a surface cannot be configured.
         self.hidden = width == 0 || height == 0;
         if !self.hidden {
             self.configuration.width = width.min(self.gpu.max_side());
@@ -225,7 +225,7 @@ impl OpenWindow {
         }
     }
 
-    /// The texture of the next frame; `None` where there is none this time.
+    /// Returns the texture of the next frame; `None` if there is none this time.
     fn acquire(&mut self) -> Result<Option<wgpu::SurfaceTexture>, AppError> {
         use wgpu::CurrentSurfaceTexture as Current;
         let reason = match self.surface.get_current_texture() {
@@ -262,10 +262,10 @@ impl OpenWindow {
     }
 }
 
-/// The smallest window, points: everything in it can still be reached.
+/// Smallest size of the window, points: all controls can still be reached.
 const SMALLEST: LogicalSize<f64> = LogicalSize::new(480.0, 360.0);
 
-/// The size of a new window: as wanted, points, and never more than nine tenths of the screen.
+/// Returns the size of a new window, points: the wanted size, but at most nine tenths of the screen.
 fn first_size(event_loop: &ActiveEventLoop, wanted: [f32; 2]) -> LogicalSize<f64> {
     const SHARE: f64 = 0.9;
     let wanted = LogicalSize::new(f64::from(wanted[0]), f64::from(wanted[1]));
@@ -277,7 +277,7 @@ fn first_size(event_loop: &ActiveEventLoop, wanted: [f32; 2]) -> LogicalSize<f64
 }
 
 impl App {
-    /// One frame: an iteration, the panel, the picture. Returns when egui wants the next without being asked.
+    /// Makes the iterations and draws one frame. Returns the delay after which egui requests the next frame.
     fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<(), AppError> {
         let Some(open) = &mut self.open else {
             return Ok(());
@@ -363,7 +363,7 @@ impl App {
         Ok(())
     }
 
-    /// Keeps a copy of unsaved edits; returns when to ask again.
+    /// Stores a copy of unsaved edits; returns the delay until the next attempt.
     fn keep_unsaved(&mut self) -> Duration {
         let Some(recovery) = &mut self.recovery else { return Duration::MAX };
         match recovery.keep(self.lab.unsaved()) {
@@ -375,7 +375,7 @@ impl App {
         }
     }
 
-    /// Closes the window. Edits that are not saved by now are not wanted.
+    /// Closes the window. The user has decided to discard edits that are still unsaved.
     fn close(&mut self, event_loop: &ActiveEventLoop) {
         if let Some(recovery) = &mut self.recovery
             && let Err(error) = recovery.keep(None)
@@ -385,7 +385,7 @@ impl App {
         self.quit(event_loop, None);
     }
 
-    /// Starts to record the window, or ends the recording.
+    /// Starts recording the window, or ends the recording.
     fn record(&mut self, now: f64) {
         let Some(open) = &self.open else { return };
         if let Some(recording) = &mut self.recording {
@@ -406,7 +406,7 @@ impl App {
         }
     }
 
-    /// Starts to record the scene from its start, or ends that recording.
+    /// Starts recording the scene from its start, or ends that recording.
     fn record_scene(&mut self) {
         if let Some(recorder) = &self.scene_recording {
             return recorder.stop();
@@ -447,7 +447,7 @@ impl App {
                 open.window.request_redraw();
             }
         } else {
-            // Very long delays overflow, and mean never.
+            // A delay that overflows means never.
             self.wake = Instant::now().checked_add(delay);
         }
     }
@@ -484,13 +484,13 @@ impl App {
         if let (Some(recording), Some(open)) = (&mut self.recording, &self.open) {
             recording.stop(&open.gpu, self.start.elapsed().as_secs_f64());
         }
-        // The surface goes while the display connection still stands.
+        // The surface must be dropped before the display connection closes.
         self.open = None;
         event_loop.exit();
     }
 }
 
-/// Why there is no screenshot.
+/// Reason for which there is no screenshot.
 #[derive(Debug, Error)]
 enum ScreenshotError {
     #[error(transparent)]
@@ -530,7 +530,7 @@ impl ApplicationHandler for App {
                 if self.lab.request_close(&self.ctx) {
                     return self.close(event_loop);
                 }
-                // The question is to be seen.
+                // The question about unsaved edits must be visible.
                 open.window.set_minimized(false);
                 open.window.request_redraw();
             }

@@ -1,4 +1,4 @@
-//! Measurements of a study, of a body at rest or in motion, as Budget shows them.
+//! Measurements of a study, of a body at rest or in motion, for the mode Budget.
 
 use crate::app::action::Action;
 use egui::Color32;
@@ -11,21 +11,21 @@ use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
 use crate::study::{Demand, Measurement, MotionStudy, Study};
 
-/// A study.
+/// Study of a body at rest or of a motion.
 #[derive(Clone, Debug)]
 pub(crate) enum Measured {
     Rest(Study),
     Motion(MotionStudy),
 }
 
-/// A measured setting.
+/// Measured setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Choice {
     Rest(Measurement),
     Motion(MotionMeasurement),
 }
 
-/// Group of settings that is drawn in one colour and shape.
+/// Group of settings drawn with the same colour and shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Group {
     Method(MethodKind, ElementKind),
@@ -33,7 +33,7 @@ pub(crate) enum Group {
 }
 
 impl Measured {
-    /// Every setting that has an error.
+    /// Returns every setting that has an error.
     pub(crate) fn choices(&self) -> Vec<Choice> {
         match self {
             Self::Rest(study) => study.measurements.iter().copied().map(Choice::Rest).collect(),
@@ -44,7 +44,7 @@ impl Measured {
         }
     }
 
-    /// Settings that no other beats, fastest first.
+    /// Returns the Pareto-optimal settings, fastest first.
     pub(crate) fn front(&self) -> Vec<Choice> {
         match self {
             Self::Rest(study) => study.front().into_iter().copied().map(Choice::Rest).collect(),
@@ -52,7 +52,7 @@ impl Measured {
         }
     }
 
-    /// Settings that meet a demand, fastest first. The time of a motion is that of a frame.
+    /// Returns the settings that meet a demand, fastest first. For a motion, the time is that of a frame.
     pub(crate) fn meeting(&self, demand: Demand) -> Vec<Choice> {
         match self {
             Self::Rest(study) => study.meeting(demand).into_iter().copied().map(Choice::Rest).collect(),
@@ -67,7 +67,7 @@ impl Measured {
         }
     }
 
-    /// Bound of the reference's own error, percent, if it is too large to judge whether a demand is met.
+    /// Returns the error bound of the reference solution, percent, if it is too large to judge whether a demand is met.
     pub(crate) fn too_coarse_for(&self, demand: Demand) -> Option<f64> {
         match self {
             Self::Rest(study) => (!study.can_judge(demand)).then_some(study.against.own_error_percent),
@@ -78,7 +78,7 @@ impl Measured {
         }
     }
 
-    /// Name of the reference solution.
+    /// Returns the name of the reference solution.
     pub(crate) fn reference_words(&self) -> String {
         match self {
             Self::Rest(study) => translated(&study.reference.to_string()),
@@ -91,7 +91,8 @@ impl Measured {
         }
     }
 
-    /// Error of a setting as it is drawn, percent: a motion's not below the reference's own.
+    /// Returns the error of a setting in the plot, percent; for a motion it is not below the error of the reference
+    /// solution.
     pub(crate) fn drawn_error(&self, choice: &Choice) -> f64 {
         match (self, choice) {
             (_, Choice::Rest(m)) => drawn_error(m),
@@ -102,7 +103,7 @@ impl Measured {
 }
 
 impl Choice {
-    /// Time of a solve, or of a frame at 60 Hz of a motion, ms.
+    /// Returns the time of a solve, or of one frame at 60 Hz of a motion, ms.
     pub(crate) fn milliseconds(&self) -> f64 {
         match self {
             Self::Rest(m) => m.milliseconds(),
@@ -110,7 +111,7 @@ impl Choice {
         }
     }
 
-    /// Bound of the error, percent.
+    /// Returns the error bound, percent.
     pub(crate) fn error_percent(&self) -> f64 {
         match self {
             Self::Rest(m) => m.error.bound(),
@@ -118,7 +119,7 @@ impl Choice {
         }
     }
 
-    /// The setting in words.
+    /// Returns the name of the setting.
     pub(crate) fn words(&self) -> String {
         match self {
             Self::Rest(m) => translated(&m.setting.to_string()),
@@ -126,7 +127,7 @@ impl Choice {
         }
     }
 
-    /// Unknowns and parts of the error, in words.
+    /// Returns the description of the unknowns and of the parts of the error.
     pub(crate) fn parts(&self) -> String {
         match self {
             Self::Rest(m) => fill!(
@@ -150,7 +151,7 @@ impl Choice {
         }
     }
 
-    /// Gives a scene this setting. A motion takes one step at a time.
+    /// Returns the action that applies this setting to a scene. A motion makes one step at a time.
     pub(crate) fn action(&self, scene: &Scene) -> Action {
         match self {
             Self::Rest(m) => Action::Apply(Box::new(m.apply(scene)), m.setting.iterations),
@@ -158,7 +159,7 @@ impl Choice {
         }
     }
 
-    /// `true` if a scene has this setting.
+    /// Returns `true` if a scene has this setting.
     pub(crate) fn is_applied_to(&self, scene: &Scene) -> bool {
         match self {
             Self::Rest(m) => m.is_applied_to(scene),

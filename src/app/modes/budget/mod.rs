@@ -1,4 +1,4 @@
-//! The budget: error against time of everything measured on this machine, and what of it is within limits.
+//! Mode Budget: error against time of all settings measured on this machine, and the settings within given limits.
 
 pub(crate) mod measured;
 mod study_task;
@@ -22,21 +22,21 @@ use crate::scene::{Analysis, Scene, limits};
 use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
 use crate::words::{engineering, number, three_digits};
 
-/// The study of the lab's scene, and the limits within which its settings are looked for.
+/// Study of the lab's scene, and the limits for its settings.
 #[derive(Debug, Default)]
 pub(crate) struct Budget {
     background: Option<Background>,
-    /// Whether the last study was cancelled.
+    /// `true` if the last study was cancelled.
     is_partial: bool,
     study: Option<Measured>,
-    /// What was measured, but for what is varied.
+    /// Measured scene without the settings that the study varies.
     of: Option<Scene>,
     error: Option<BackgroundError>,
     limits: Limits,
     messages: Messages,
 }
 
-/// What is asked of a solve.
+/// Limits for a solve.
 #[derive(Clone, Copy, Debug)]
 struct Limits {
     error_percent: f64,
@@ -45,7 +45,7 @@ struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        // A frame at 60 Hz, roughly.
+        // About the time of one frame at 60 Hz, ms.
         Self { error_percent: 1.0, time_ms: 16.0 }
     }
 }
@@ -57,7 +57,7 @@ impl From<Limits> for Demand {
 }
 
 impl Budget {
-    /// Starts to measure a scene; what was measured before goes.
+    /// Starts a study of a scene; the previous study is dropped.
     pub(crate) fn measure(&mut self, scene: &Scene, extent: Extent) {
         *self = Self { of: Some(without_settings(scene)), limits: self.limits, ..Self::default() };
         match Background::start(scene.clone(), extent) {
@@ -66,28 +66,28 @@ impl Budget {
         }
     }
 
-    /// Calls the study off; what has been measured stays.
+    /// Cancels the study; measurements made so far are kept.
     pub(crate) fn cancel(&mut self) {
         let Some(background) = self.background.take() else { return };
         self.is_partial = true;
-        // A motion's measurements come at its end.
+        // The measurements of a motion are reported when the study ends.
         if self.of.as_ref().is_some_and(|scene| scene.analysis == Analysis::Dynamic) {
             background.call_off();
             self.background = Some(background);
         }
     }
 
-    /// Fraction that is done and what is measured now, while a study runs.
+    /// Returns the fraction done and the current measurement, while a study is in progress.
     pub(crate) fn progress(&self) -> Option<(f32, &str)> {
         self.background.as_ref().map(Background::progress)
     }
 
-    /// Whether a study runs.
+    /// Returns `true` while a study is in progress.
     pub(crate) fn runs(&self) -> bool {
         self.background.is_some()
     }
 
-    /// The study of a body at rest.
+    /// Returns the study of a body at rest.
     pub(crate) fn study(&self) -> Option<&Study> {
         match &self.study {
             Some(Measured::Rest(study)) => Some(study),
@@ -95,7 +95,7 @@ impl Budget {
         }
     }
 
-    /// The study of a motion.
+    /// Returns the study of a motion.
     pub(crate) fn motion_study(&self) -> Option<&MotionStudy> {
         match &self.study {
             Some(Measured::Motion(study)) => Some(study),
@@ -103,12 +103,12 @@ impl Budget {
         }
     }
 
-    /// The fastest setting of a body at rest that meets the limits, where one has been measured.
+    /// Returns the fastest measured setting of a body at rest that meets the limits.
     pub(crate) fn chosen(&self) -> Option<Setting> {
         self.study()?.meeting(self.limits.into()).first().map(|m| m.setting)
     }
 
-    /// Takes a study made elsewhere.
+    /// Sets a study made elsewhere.
     pub(crate) fn set(&mut self, scene: &Scene, study: Study) {
         *self = Self {
             of: Some(without_settings(scene)),
@@ -118,7 +118,7 @@ impl Budget {
         };
     }
 
-    /// Hears how far the study is.
+    /// Polls the study in progress.
     pub(crate) fn listen(&mut self, ctx: &Context) {
         let Some(background) = &mut self.background else { return };
         match background.listen(&mut self.study) {
@@ -161,26 +161,26 @@ impl Budget {
     }
 }
 
-/// What is shown of the budget.
+/// Content of the mode.
 struct BudgetView<'a> {
     scene: &'a Scene,
     study: Option<&'a Measured>,
-    /// Every setting that was measured.
+    /// All measured settings.
     choices: Vec<Choice>,
     demand: Demand,
     /// Settings that meet the demand, fastest first.
     meeting: Vec<Choice>,
-    /// Whether the study is of the body and loads that the lab shows.
+    /// `true` if the study belongs to the lab's current body and loads.
     current: bool,
-    /// Whether the study was cancelled.
+    /// `true` if the study was cancelled.
     is_partial: bool,
-    /// Fraction that is done and what is measured now, while a study runs.
+    /// Fraction done and current measurement, while a study is in progress.
     progress: Option<(f32, &'a str)>,
-    /// Why there is no study.
+    /// Reason for which there is no study.
     error: Option<String>,
 }
 
-/// Width of the list, points, and the largest part of the width that it takes from the plot.
+/// Width of the list, points, and its largest fraction of the width shared with the plot.
 const LIST_WIDTH: f32 = 384.0;
 const LIST_SHARE: f32 = 0.5;
 
@@ -264,7 +264,7 @@ fn settings(
     list(ui, budget, actions);
 }
 
-/// The settings that meet the demand, fastest first; a click applies one.
+/// Shows the settings that meet the demand, fastest first; a click applies one.
 fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let meeting = &budget.meeting;
     let row_height = ui.spacing().interact_size.y;
@@ -282,17 +282,17 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     });
 }
 
-/// A measured setting in words.
+/// Returns the name of a measured setting.
 pub(crate) fn setting_words(setting: &Setting) -> String {
     translated(&setting.to_string())
 }
 
-/// Time of a solve or of a frame, three digits.
+/// Formats the time of a solve or of a frame with three digits.
 fn milliseconds(m: &Choice) -> String {
     engineering(three_digits(1e-3 * m.milliseconds()), "s")
 }
 
-/// A mark at every decade.
+/// Returns a tick at every power of ten.
 fn decades(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     (low.ceil() as i64..=high.floor() as i64).map(|e| GridMark { value: e as f64, step_size: 1.0 }).collect()
@@ -302,12 +302,12 @@ fn decade_words(mark: GridMark) -> String {
     number(10f64.powf(mark.value.round()))
 }
 
-/// Place of a setting in the plot: both logarithms.
+/// Returns the position of a setting in the plot: the logarithms of time and error.
 fn place(study: &Measured, m: &Choice) -> [f64; 2] {
     [m.milliseconds().max(f64::MIN_POSITIVE).log10(), study.drawn_error(m).max(f64::MIN_POSITIVE).log10()]
 }
 
-/// What colours and shapes mean, in one line: the plot has no room for a list.
+/// Shows the key of colours and shapes in one line, because the plot has no room for a legend.
 fn legend(ui: &mut Ui, moves: bool) {
     let palette = Palette::new(ui.visuals());
     ui.horizontal(|ui| {
@@ -326,7 +326,7 @@ fn legend(ui: &mut Ui, moves: bool) {
 }
 
 fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
-    /// Room for the numbers and the title of the axis, points.
+    /// Space for the tick labels and the title of the axis, points.
     const BUDGET_Y_AXIS: f32 = 62.0;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
@@ -345,7 +345,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
                 .label(tr(time))
                 .min_thickness(X_AXIS)
                 .formatter(|mark, _| decade_words(mark))
-                // Powers of ten are short: a narrow plot has room for them.
+                // Labels of powers of ten are short, so even a narrow plot has room for them.
                 .label_spacing(egui::Rangef::new(36.0, 60.0)),
         ])
         .y_axis_label(tr("error, %"))

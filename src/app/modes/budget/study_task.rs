@@ -1,4 +1,4 @@
-//! The study that runs beside the window.
+//! Study in the background.
 
 use thiserror::Error;
 
@@ -7,7 +7,7 @@ use crate::app::task::thread::{Reporter, Task, Update};
 use crate::scene::{Analysis, Scene};
 use crate::study::{Extent, MotionStudy, Progress, Study, StudyError};
 
-/// Why a study gave no result.
+/// Reason for which a study has no result.
 #[derive(Debug, Error)]
 pub(crate) enum BackgroundError {
     #[error("no thread for the study: {0}")]
@@ -18,7 +18,7 @@ pub(crate) enum BackgroundError {
     Died,
 }
 
-/// What the study says while it runs.
+/// Progress report of a study.
 #[derive(Debug)]
 enum Said {
     Now(f32, String),
@@ -27,26 +27,26 @@ enum Said {
 
 type Done = Result<Measured, StudyError>;
 
-/// How far a study is, as last heard.
+/// State of a study after a poll.
 #[derive(Debug)]
 pub(crate) enum News {
-    /// It goes on.
+    /// The study is in progress.
     Running,
-    /// It has ended, or was called off; or why it could not.
+    /// The study has ended or was cancelled; the error tells why it failed.
     Ended(Result<(), BackgroundError>),
 }
 
-/// A study in a thread of its own. Dropped, it is called off.
+/// Study in a background thread. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct Background {
     task: Task<Said, Done>,
-    /// Fraction that is done, and what is measured now.
+    /// Fraction done, and (`now`) the current measurement.
     fraction: f32,
     now: String,
 }
 
 impl Background {
-    /// Starts to measure the scene.
+    /// Starts a study of the scene.
     ///
     /// # Errors
     /// [`BackgroundError::NoThread`].
@@ -55,7 +55,7 @@ impl Background {
         Ok(Self { task, fraction: 0.0, now: String::new() })
     }
 
-    /// Fraction that is done, and what is measured now.
+    /// Returns the fraction done, and the current measurement.
     pub(crate) fn progress(&self) -> (f32, &str) {
         (self.fraction, &self.now)
     }
@@ -65,7 +65,7 @@ impl Background {
         self.task.cancel();
     }
 
-    /// Takes what has been heard since; measurements go to `study`.
+    /// Processes the updates since the last call; measurements are stored in `study`.
     pub(crate) fn listen(&mut self, study: &mut Option<Measured>) -> News {
         loop {
             match self.task.poll() {

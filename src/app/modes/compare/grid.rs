@@ -1,4 +1,4 @@
-//! Parts that the panes of equilibria and the panes of motions have in common: presets, places, headers, bodies and the key.
+//! Common parts of the panes of equilibria and the panes of motions: presets, layout, headers, bodies and the key.
 
 use egui::emath::GuiRounding;
 use egui::{Align, Align2, FontId, Layout, Rect, RichText, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
@@ -24,38 +24,38 @@ use crate::render::{Camera, View};
 use crate::scene::Scene;
 use crate::words::{engineering, prefix, three_digits};
 
-/// Points between panes.
+/// Space between panes, points.
 const GAP: f32 = 6.0;
-/// Height of what a pane says over its body, points.
+/// Height of a pane's header, points.
 const HEADER: f32 = 60.0;
 /// Height of the key under the panes, points.
 const KEY: f32 = 26.0;
-/// A pane is no narrower than this, points, where there is another row for it.
+/// Smallest width of a pane in a row of three, points.
 const NARROWEST: f32 = 290.0;
 
-/// Input of every comparison from the lab.
+/// Common input of the comparisons of equilibria and of motions.
 pub(crate) struct PaneInput<'a> {
     pub scene: &'a Scene,
     pub view: &'a ViewOptions,
-    /// Direction of a force's arrow without force, degrees.
+    /// Direction of the arrow of a zero force, degrees.
     pub direction: f64,
     /// Loads that the scene opens with.
     pub opening: OpeningLoads,
-    /// `true` if the view takes its time on the way to where it looks.
+    /// `true` if camera movements are animated.
     pub eases: bool,
 }
 
-/// Settings of all panes under one name.
+/// Named settings of all panes.
 pub(super) struct Preset<S> {
     pub name: String,
     pub settings: Vec<S>,
     pub enabled: bool,
     pub tip: &'static str,
-    /// Reason for which it is not enabled.
+    /// Reason for which the preset is disabled.
     pub unless: &'static str,
 }
 
-/// Shows a button for every preset; returns the settings of the one that was pressed.
+/// Shows a button for every preset; returns the settings of the preset that was pressed.
 pub(super) fn preset_buttons<S: PartialEq>(
     ui: &mut Ui,
     present: &[S],
@@ -71,7 +71,7 @@ pub(super) fn preset_buttons<S: PartialEq>(
     picked
 }
 
-/// Shows the button that adds a pane to so many; returns `true` if it was pressed.
+/// Shows the button that adds a pane to `panes` existing ones; returns `true` if it was pressed.
 pub(super) fn add_button(ui: &mut Ui, panes: usize) -> bool {
     let button = ui.add_enabled(panes < *PANES.end(), egui::Button::new(tr("+ Pane")));
     button.on_hover_text(tr("Another pane")).on_disabled_hover_text(tr("Four are the most")).clicked()
@@ -89,29 +89,29 @@ pub(super) fn close_button(ui: &mut Ui, number: usize) -> bool {
     ui.with_layout(Layout::right_to_left(Align::Center), close).inner
 }
 
-/// Places of panes.
+/// Areas of the panes and of the key.
 pub(super) struct Grid {
     pub cells: Vec<Rect>,
-    /// Place of the key under them.
+    /// Area of the key under the panes.
     pub key: Rect,
 }
 
 impl Grid {
-    /// Divides a rectangle among so many panes: beside each other, or in two rows.
+    /// Divides a rectangle among `panes` panes, side by side or in two rows.
     pub(super) fn new(whole: Rect, panes: usize) -> Self {
         let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
         Self { cells: cells(Rect::from_min_max(whole.min, key.right_top()), panes), key }
     }
 }
 
-/// Place of the body in a cell, under the header.
+/// Returns the area of the body in a cell, under the header.
 pub(super) fn body_place(cell: Rect) -> Rect {
     let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + HEADER).min(cell.bottom())), cell.max);
-    // As pixels are cut: the body's pass and the painter have the same middle.
+    // Rounded to pixels, so that the render pass and the painter have the same centre.
     place.round_ui()
 }
 
-/// Shows the header of a pane, over the place of its body.
+/// Shows the header of a pane, above the area of its body.
 pub(super) fn header(ui: &mut Ui, number: usize, [cell, place]: [Rect; 2], contents: impl FnOnce(&mut Ui)) {
     let header = Rect::from_min_max(cell.min, place.right_top());
     let inner = header.shrink2(vec2(8.0, 3.0));
@@ -121,23 +121,23 @@ pub(super) fn header(ui: &mut Ui, number: usize, [cell, place]: [Rect; 2], conte
     });
 }
 
-/// Width and height, points, that all of these places have.
+/// Returns the width and height, points, that all of these areas have in common.
 pub(super) fn common_size(places: impl Iterator<Item = Rect>) -> Option<[f64; 2]> {
     let sizes = places.map(|place| [place.width(), place.height()].map(f64::from));
     sizes.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])])
 }
 
-/// Smallest box around a box and a point.
+/// Returns the smallest box that contains a box and a point.
 pub(super) fn grow([low, high]: [Vector2<f64>; 2], point: &Vector2<f64>) -> [Vector2<f64>; 2] {
     [low.inf(point), high.sup(point)]
 }
 
-/// Smallest range around ranges of colours.
+/// Returns the smallest range that contains all colour ranges.
 pub(super) fn common_range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default()
 }
 
-/// Turns the camera towards a box, m.
+/// Animates the camera towards the box that it fits.
 pub(super) fn aim(ui: &Ui, eye: &mut CameraController, fit: impl FnOnce([Vector2<f64>; 2]) -> Camera, eases: bool) {
     let dt = f64::from(ui.input(|i| i.stable_dt));
     if eye.aim(fit(eye.whole()), eases.then_some(dt)) {
@@ -145,7 +145,7 @@ pub(super) fn aim(ui: &Ui, eye: &mut CameraController, fit: impl FnOnce([Vector2
     }
 }
 
-/// Part of the picture that a pane draws.
+/// Returns the area of a pane's body for the render pass.
 pub(super) fn view<'a>(
     place: Option<Rect>,
     (shape, drawing): (&'a BodyMesh, &'a DisplayGeometry),
@@ -156,7 +156,7 @@ pub(super) fn view<'a>(
     Some(View { viewport: viewport(place?, pixels_per_point), frame: shape.frame(drawing, wireframe), camera })
 }
 
-/// Follows the pointer over a pane; a view that it moves is that of all panes.
+/// Processes the pointer over a pane; moving the view moves it in all panes.
 pub(super) fn follow(
     ui: &Ui,
     (number, place): (usize, Rect),
@@ -183,9 +183,9 @@ pub(super) struct PaneBody<'a> {
     pub system: &'a System,
     pub drawing: &'a DisplayGeometry,
     pub shape: &'a BodyMesh,
-    /// Outline of the exact solution, m.
+    /// Outline of the reference solution, m.
     pub exact: &'a [Vec<Vector2<f64>>],
-    /// s.
+    /// Simulated time, s.
     pub time: f64,
     pub hot: Option<HotHandle>,
 }
@@ -218,7 +218,8 @@ impl PaneBody<'_> {
     }
 }
 
-/// Paints the colour bar of all panes at the right end of the key; its title where there is room for it right of `left`.
+/// Paints the common colour bar at the right end of the key, with its title if there is room for it to the right of
+/// `left`.
 pub(super) fn color_key(ui: &Ui, rect: Rect, left: f32, view: &ViewOptions, range: [f64; 2]) {
     let palette = Palette::new(ui.visuals());
     let painter = ui.painter_at(rect);
@@ -240,13 +241,13 @@ pub(super) fn color_key(ui: &Ui, rect: Rect, left: f32, view: &ViewOptions, rang
     }
 }
 
-/// Number of panes in the first row, of so many, in a view of this width, points.
+/// Returns the number of panes in the first row in a view of this width, points.
 pub(super) fn first_row(panes: usize, width: f32) -> usize {
     let one_row = panes <= 2 || panes == 3 && (width - 2.0 * GAP) / 3.0 >= NARROWEST;
     if one_row { panes } else { panes.div_ceil(2) }
 }
 
-/// Places of so many panes: beside each other, or in two rows.
+/// Returns the areas of `panes` panes, side by side or in two rows.
 fn cells(rect: Rect, panes: usize) -> Vec<Rect> {
     let first = first_row(panes, rect.width());
     let rows = [first, panes - first];

@@ -1,4 +1,5 @@
-//! Two to four settings beside each other: one load, one camera, one range of colours, and the load curve under them.
+//! Comparison of two to four settings side by side: one load, one camera, one colour range, and the load curve under
+//! them.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -48,18 +49,18 @@ pub use setting::{PaneSetting, PaneSettingError, parse_panes};
 
 /// Time for the iterations of all panes between two frames.
 const WORK: Duration = Duration::from_millis(12);
-/// Height of the load curve, points; at most a part of the window's.
+/// Height of the load curve, points, and its largest fraction of the window's height.
 const TRACE_HEIGHT: f32 = 190.0;
 const TRACE_SHARE: f32 = 0.28;
-/// In a window lower than this, points, the load curve is only shown where it is asked for.
+/// In a window lower than this, points, the load curve is hidden unless the user opens it.
 const LOW: f32 = 560.0;
-/// In one lower than this, too, where the panes have two rows.
+/// The same limit if the panes have two rows, points.
 const LOW_FOR_TWO_ROWS: f32 = 680.0;
 
-/// Input of the comparison of equilibria from the lab.
+/// Input of the comparison of equilibria.
 pub(crate) struct CompareInput<'a> {
     pub common: PaneInput<'a>,
-    /// The scene that these equations are of.
+    /// Scene that the existing equations belong to.
     pub shown: &'a Scene,
     pub system: &'a Arc<System>,
     pub truth: Option<&'a Reference>,
@@ -68,16 +69,16 @@ pub(crate) struct CompareInput<'a> {
     pub chosen: Option<Setting>,
 }
 
-/// The panes, and what they have in common.
+/// Panes, and their common state.
 #[derive(Debug)]
 pub(crate) struct Compare {
     panes: Vec<Pane>,
     trace: Trace,
-    /// Whether the load curve is shown; `None`: where there is room.
+    /// `true` if the load curve is shown; `None` means if there is room.
     shows_trace: Option<bool>,
-    /// Where all panes look; `None` before the first look.
+    /// Camera of all panes; `None` before the first frame.
     eye: Option<CameraController>,
-    /// Nothing has moved: bodies at rest have no past.
+    /// Empty playback, because bodies at rest have no past.
     still: Playback,
 }
 
@@ -106,7 +107,7 @@ impl Compare {
         self.trace.dots()
     }
 
-    /// Compares these: at most four.
+    /// Compares these settings, at most four.
     pub(crate) fn set(&mut self, settings: &[PaneSetting]) {
         self.panes = settings.iter().take(*PANES.end()).map(|&setting| Pane::new(setting)).collect();
         self.fit();
@@ -116,22 +117,22 @@ impl Compare {
         self.panes.iter().map(|pane| pane.setting).collect()
     }
 
-    /// The camera of all panes.
+    /// Returns the camera of all panes.
     pub(crate) fn camera(&self) -> Camera {
         self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
     }
 
-    /// Shows all bodies again.
+    /// Fits the camera to all bodies.
     pub(crate) fn fit(&mut self) {
         self.eye.iter_mut().for_each(CameraController::fit);
     }
 
-    /// All start over at rest.
+    /// Restarts all panes from rest.
     pub(crate) fn reset(&mut self) {
         self.panes.iter_mut().for_each(Pane::reset);
     }
 
-    /// One iteration of those that have not ended; from rest where all have.
+    /// Makes one iteration in all panes that have not ended; if all have, restarts them from rest.
     pub(crate) fn step(&mut self) {
         if !self.is_iterating() {
             self.reset();
@@ -139,12 +140,12 @@ impl Compare {
         self.panes.iter_mut().for_each(Pane::step);
     }
 
-    /// Whether a pane has not come to its end.
+    /// Returns `true` if a pane is still iterating.
     pub(crate) fn is_iterating(&self) -> bool {
         self.panes.iter().any(|pane| !pane.is_settled())
     }
 
-    /// What others may use of the equations there are.
+    /// Returns the existing equations that the panes can share.
     fn equations(&self, scene: &Scene, system: &Arc<System>) -> Vec<Equations> {
         let own = std::iter::once(Equations::new(scene, system));
         let panes = self.panes.iter().filter_map(|pane| {
@@ -154,7 +155,7 @@ impl Compare {
         own.chain(panes).collect()
     }
 
-    /// Solves everything, however long it takes.
+    /// Solves all panes, and waits for them.
     pub(crate) fn settle(&mut self, scene: &Scene, system: &Arc<System>) {
         self.trace.follow(scene);
         for i in 0..self.panes.len() {
@@ -165,7 +166,7 @@ impl Compare {
         self.trace.settle(scene);
     }
 
-    /// The bodies, with so many pixels a point.
+    /// Returns the bodies of the panes for the render pass.
     pub(crate) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
         let camera = self.camera();
         let seen = self.panes.iter().filter_map(|pane| {
@@ -199,12 +200,12 @@ impl Compare {
         }
     }
 
-    /// Whether a pane is going to need equations.
+    /// Returns `true` if a pane has a new scene or has not ended.
     fn is_changed(&self, scene: &Scene) -> bool {
         self.panes.iter().any(|pane| pane.scene() != Some(&pane.setting.apply(scene)) || !pane.is_settled())
     }
 
-    /// The presets over the panes, and the load curve under them.
+    /// Shows the presets above the panes, and the load curve under them.
     pub(crate) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>, actions: &mut Vec<Action>) {
         let height = ui.ctx().content_rect().height();
         let panel = if input.common.view.bars && input.common.view.panel && !input.common.view.narrow {
@@ -281,7 +282,7 @@ impl Compare {
         });
     }
 
-    /// The panes; returns what is asked for of their load.
+    /// Shows the panes; returns the pointer's interaction with their load.
     pub(crate) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) -> Interaction {
         self.advance(ui.ctx(), input);
         for pane in &mut self.panes {
@@ -323,7 +324,7 @@ impl Compare {
         wish
     }
 
-    /// Shows the values under the pointer, in every pane at the same point of the body.
+    /// Shows the values at the point of the body under the pointer, in every pane.
     fn show_values(&self, ui: &Ui, view: &ViewOptions) {
         let under = self.panes.iter().enumerate().find_map(|(number, pane)| Some((number, pane.under_pointer()?)));
         let Some((number, (rest, at))) = under else { return };
@@ -332,7 +333,7 @@ impl Compare {
         }
     }
 
-    /// One range of colours for all: that of the equilibria.
+    /// Gives all panes the same colour range: that of the equilibria.
     fn share_colors(&mut self, view: &ViewOptions) {
         let any = self.panes.iter().any(|pane| pane.range.is_some() && !pane.has_failed());
         let counted = self.panes.iter().filter(|pane| !any || !pane.has_failed()).filter_map(|pane| pane.range);
@@ -340,7 +341,8 @@ impl Compare {
         self.panes.iter_mut().for_each(|pane| pane.shape.range = range);
     }
 
-    /// Looks at all bodies and the exact one, while nobody has moved the view; never after what has not converged.
+    /// Fits the camera to all bodies and the reference solution, unless the user has moved it. Panes that have not
+    /// converged are ignored.
     fn look(&mut self, ui: &Ui, input: &CompareInput<'_>) {
         let Some(size) = grid::common_size(self.panes.iter().filter_map(Pane::place)) else { return };
         let (low, high) = input.system.mesh().bounds();
@@ -355,7 +357,7 @@ impl Compare {
             let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
                 self.panes.iter().filter(|pane| pane.is_sound()).partition(|pane| is_linear(pane));
             bounds = others.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
-            // Linear theory may be far off: it must not shrink the others to dots.
+            // The solution of linear theory may be so large that the other bodies would be shown too small.
             const LARGEST: f64 = 1.5;
             let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
             let with = linear.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
@@ -371,7 +373,8 @@ impl Compare {
         grid::aim(ui, eye, |[low, high]| Camera::fit(low, high, size, margins), input.common.eases);
     }
 
-    /// Points kept free around the bodies when the view is fitted: room for supports, the loads' arrows and their words.
+    /// Returns the margins around the bodies when the camera is fitted, points: room for supports, load arrows and
+    /// their labels.
     fn margins(&self, input: &CompareInput<'_>, [width, height]: [f64; 2]) -> Margins {
         let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
         let forces = self.panes.first().and_then(|pane| pane.forces(input.common.direction, input.common.opening));
@@ -383,7 +386,7 @@ impl Compare {
         Margins { sides: 40.0, top: top + longest(|way| -way.y), bottom: bottom + longest(|way| way.y) }
     }
 
-    /// The pickers of a pane, and what it has found.
+    /// Shows the pickers of a pane, and its result.
     fn header(
         &self,
         ui: &mut Ui,
@@ -421,7 +424,7 @@ impl Compare {
         self.result(ui, &name, pane, input);
     }
 
-    /// Error, time and iterations; or why there are none.
+    /// Shows error, time and iterations, or the reason for which there are none.
     fn result(&self, ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         let palette = Palette::new(ui.visuals());
         let setting = pane.setting.of(input.common.scene);
@@ -432,7 +435,7 @@ impl Compare {
                 None => {
                     let stopped = if end.status.is_success() { "" } else { tr(", stopped") };
                     let time = engineering(two_digits(end.seconds), "s");
-                    // Pictures without bars have nothing that differs from run to run.
+                    // Images without bars omit the time, which differs from run to run.
                     let time = if input.common.view.bars { format!("{time} · ") } else { String::new() };
                     (false, format!("{time}{}{stopped}", count(end.iterations, "iteration")))
                 }
@@ -475,11 +478,11 @@ impl Compare {
         response.on_hover_text(format!("{words}\n{tip}"));
     }
 
-    /// The body of a pane, over what its pass has drawn.
+    /// Shows the overlays of a pane's body.
     fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) -> Interaction {
         let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Interaction::default() };
         let Some(pane) = self.panes.get_mut(number) else { return Interaction::default() };
-        // What is no answer has no values.
+        // States that are no result show no values.
         let system = pane.system().filter(|_| pane.is_sound() && !pane.is_outdated()).cloned();
         let forces = pane.forces(input.common.direction, input.common.opening);
         let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&Projection { camera, rect: place }));
@@ -514,13 +517,13 @@ impl Compare {
                 palette.text,
             );
         } else if pane.has_failed() {
-            // What is no equilibrium is no result.
+            // A state that is not an equilibrium is dimmed, because it is no result.
             painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(0.55));
         }
         wish
     }
 
-    /// What lines and colours mean, for all panes.
+    /// Paints the key of lines and colours for all panes.
     fn key(&self, ui: &Ui, rect: Rect, view: &ViewOptions) {
         let palette = Palette::new(ui.visuals());
         let painter = ui.painter_at(rect);
@@ -544,7 +547,7 @@ impl Compare {
     }
 }
 
-/// A picker of a pane: an own value, or that of the panel.
+/// Shows a picker of a pane: a value of its own, or that of the panel.
 fn pick<T: Copy + PartialEq>(
     ui: &mut Ui,
     palette: &Palette,
@@ -580,9 +583,9 @@ fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut
     });
 }
 
-/// Finer and coarser meshes than the panel's.
+/// Shows a picker of meshes that are finer or coarser than the panel's.
 fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &mut Option<[u32; 2]>, scene: &Scene) {
-    /// Most cells that are offered.
+    /// Largest number of cells offered.
     const MOST: u64 = 40_000;
     let words = |[along, across]: [u32; 2]| format!("{along}×{across}");
     let Some(beam) = &scene.beam else {

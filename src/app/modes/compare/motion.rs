@@ -1,5 +1,5 @@
-//! Two to four integrators, elements or meshes beside each other in motion: one load, one clock, one camera, one range of
-//! colours.
+//! Comparison of two to four integrators, elements or meshes in motion side by side: one load, one clock, one camera,
+//! one colour range.
 
 use std::time::Instant;
 
@@ -26,7 +26,7 @@ use crate::scene::{ElementKind, IntegratorKind, Scene};
 use crate::simulation::{Motion, Simulation, Status, probe_results};
 use crate::words::{engineering, three_digits, two_digits};
 
-/// Choices of a pane in the place of those of its scene; `None`: as the scene.
+/// Settings of a pane; `None` means the setting of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotionPaneSetting {
     /// Integrator.
@@ -46,7 +46,7 @@ impl MotionPaneSetting {
         Self { element: Some(element), ..Self::default() }
     }
 
-    /// The scene with the choices.
+    /// Returns the scene with these settings.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
@@ -59,20 +59,20 @@ impl MotionPaneSetting {
     }
 }
 
-/// A motion with choices of its own.
+/// Motion with settings of its own.
 #[derive(Debug)]
 pub struct MotionPane {
     setting: MotionPaneSetting,
-    /// The scene with the setting, as the simulation was given it.
+    /// Scene with the settings, as set in the simulation.
     scene: Option<Scene>,
     simulation: Option<Box<Simulation>>,
     /// Reason for which there is no simulation.
     refused: Option<String>,
-    /// Time of computing a step, s: a mean in which old steps fade.
+    /// Computing time of a step, s: an exponentially weighted mean.
     seconds: Option<f64>,
     drawing: DisplayGeometry,
     shape: BodyMesh,
-    /// Range of its own colours; all panes are drawn in one that has room for each.
+    /// Colour range of this pane alone; all panes are drawn with a common range that contains it.
     range: [f64; 2],
     place: Option<Rect>,
     pointer: Pointer,
@@ -94,25 +94,26 @@ impl MotionPane {
         }
     }
 
-    /// Choices of its own.
+    /// Returns the settings of the pane.
     #[must_use]
     pub fn setting(&self) -> &MotionPaneSetting {
         &self.setting
     }
 
-    /// Its simulation; `None` where the scene cannot be set up so.
+    /// Returns the simulation; `None` if the scene cannot be set up with these settings.
     #[must_use]
     pub fn simulation(&self) -> Option<&Simulation> {
         self.simulation.as_deref()
     }
 
-    /// Place of its body in the window, points.
+    /// Returns the area of the body in the window, points.
     #[must_use]
     pub fn place(&self) -> Option<Rect> {
         self.place
     }
 
-    /// Takes the scene on. Returns `true` if the motion has to start over: integrator, element or mesh are others.
+    /// Applies a changed scene. Returns `true` if the motion has to restart, because integrator, element or mesh have
+    /// changed.
     fn follow(&mut self, scene: &Scene) -> bool {
         let wanted = self.setting.apply(scene);
         if self.scene.as_ref() == Some(&wanted) {
@@ -137,7 +138,7 @@ impl MotionPane {
         !goes_on
     }
 
-    /// `true` if it has a motion that has not become unstable.
+    /// Returns `true` if the pane has a motion that has not become unstable.
     fn is_sound(&self) -> bool {
         self.simulation.as_ref().is_some_and(|simulation| !matches!(simulation.status(), Status::Stopped(_)))
     }
@@ -156,22 +157,22 @@ impl MotionPane {
         self.seconds = Some(self.seconds.map_or(seconds, |mean| FADING * mean + (1.0 - FADING) * seconds));
     }
 
-    /// Displacement of the first probe, m.
+    /// Returns the displacement of the first probe, m.
     fn tip(&self) -> Option<Vector2<f64>> {
         let simulation = self.simulation.as_ref()?;
         Some(probe_results(simulation.problem(), simulation.state()).first()?.u)
     }
 }
 
-/// The panes, their clock and their camera.
+/// Panes of motions, their clock and their camera.
 #[derive(Debug)]
 pub(crate) struct MotionCompare {
     panes: Vec<MotionPane>,
     pub pace: RealTimeClock,
     eye: Option<CameraController>,
-    /// Box of everything that the bodies have swept, m.
+    /// Bounding box of all states of the bodies so far, m.
     swept: Option<[Vector2<f64>; 2]>,
-    /// Time of play, s: longer than simulated time in slow motion.
+    /// Playing time, s: longer than the simulated time in slow motion.
     played: f64,
     still: Playback,
 }
@@ -191,7 +192,7 @@ impl Default for MotionCompare {
     }
 }
 
-/// The first three integrators of the registry.
+/// Returns settings with the first three implicit integrators of the registry.
 fn integrators() -> Vec<MotionPaneSetting> {
     INTEGRATORS.iter().filter(|i| !i.is_explicit()).take(3).map(|i| MotionPaneSetting::of_integrator(i.kind)).collect()
 }
@@ -201,38 +202,38 @@ impl MotionCompare {
         &self.panes
     }
 
-    /// Compares these: at most four.
+    /// Compares these settings, at most four.
     fn set(&mut self, settings: &[MotionPaneSetting]) {
         self.panes = settings.iter().take(*PANES.end()).map(|&setting| MotionPane::new(setting)).collect();
         (self.eye, self.swept) = (None, None);
     }
 
-    /// `true` while a body moves.
+    /// Returns `true` while a body moves.
     pub(crate) fn moves(&self) -> bool {
         self.panes.iter().any(MotionPane::moves)
     }
 
-    /// All start over.
+    /// Restarts all motions.
     pub(crate) fn reset(&mut self) {
         self.panes.iter_mut().filter_map(|pane| pane.simulation.as_mut()).for_each(|simulation| simulation.reset());
         self.swept = None;
         self.pace.rest();
     }
 
-    /// Shows all bodies again.
+    /// Fits the camera to all bodies.
     pub(crate) fn fit(&mut self) {
         self.eye.iter_mut().for_each(CameraController::fit);
     }
 
-    /// One time step of everything.
+    /// Makes one time step in all panes.
     pub(crate) fn step(&mut self) {
         let time_step = |pane: &MotionPane| pane.scene.as_ref().map(|scene| scene.dynamics.time_step);
         self.played += self.panes.iter().find_map(time_step).unwrap_or_default() / self.pace.speed();
         self.panes.iter_mut().for_each(MotionPane::step);
     }
 
-    /// Takes the scene on, and makes the time steps that are due at `now`, s. All panes are at the same time: what a slow one
-    /// cannot keep up with slows all down.
+    /// Applies the scene, and makes the time steps that are due at `now`, s. All panes are at the same time: a slow one
+    /// slows all of them down.
     pub(crate) fn advance(&mut self, scene: &Scene, now: f64, running: bool) {
         let mut starts_over = false;
         for pane in &mut self.panes {
@@ -256,7 +257,7 @@ impl MotionCompare {
         self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
     }
 
-    /// The bodies, with so many pixels a point.
+    /// Returns the bodies of the panes for the render pass.
     pub(crate) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
         let camera = self.camera();
         let seen = self.panes.iter().filter_map(|pane| {
@@ -265,7 +266,7 @@ impl MotionCompare {
         seen.collect()
     }
 
-    /// The presets over the panes.
+    /// Shows the presets above the panes.
     pub(crate) fn bars(&mut self, ui: &mut Ui, input: &PaneInput<'_>) {
         if !input.view.bars {
             return;
@@ -306,7 +307,7 @@ impl MotionCompare {
         });
     }
 
-    /// The panes; returns the wish for their load.
+    /// Shows the panes; returns the pointer's interaction with their load.
     pub(crate) fn show(&mut self, ui: &mut Ui, input: &PaneInput<'_>) -> Interaction {
         for pane in &mut self.panes {
             if let Some(simulation) = &pane.simulation {
@@ -349,7 +350,7 @@ impl MotionCompare {
         wish
     }
 
-    /// Turns the camera to everything that the bodies have swept, while nobody has moved the view.
+    /// Fits the camera to all states of the bodies so far, unless the user has moved it.
     fn look(&mut self, ui: &Ui, input: &PaneInput<'_>) {
         let Some(size) = grid::common_size(self.panes.iter().filter_map(MotionPane::place)) else { return };
         let Some(first) = self.panes.iter().find_map(MotionPane::simulation) else { return };
@@ -365,7 +366,7 @@ impl MotionCompare {
         grid::aim(ui, eye, |[low, high]| Camera::fit(low, high, size, margins), input.eases);
     }
 
-    /// The pickers of a pane, and its numbers.
+    /// Shows the pickers of a pane, and its result.
     fn header(
         &self,
         ui: &mut Ui,
@@ -402,7 +403,8 @@ impl MotionCompare {
         self.result(ui, &name, number, pane);
     }
 
-    /// Time of a frame, drift, and distance of the tip from that of the first pane; or the reason for which there are none.
+    /// Shows the computing time of a frame, the energy drift, and the distance of the first probe from that of the
+    /// first pane; or the reason for which there are none.
     fn result(&self, ui: &mut Ui, name: &str, number: usize, pane: &MotionPane) {
         let palette = Palette::new(ui.visuals());
         let failure = pane.refused.as_deref().map(translated).or_else(|| match pane.simulation()?.status() {
@@ -438,7 +440,7 @@ impl MotionCompare {
         joined(cost.into_iter().chain(drift).chain(apart))
     }
 
-    /// The body of a pane, over what its pass has drawn.
+    /// Shows the overlays of a pane's body.
     fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &PaneInput<'_>) -> Interaction {
         let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Interaction::default() };
         let Some(pane) = self.panes.get_mut(number) else { return Interaction::default() };

@@ -1,5 +1,5 @@
-//! A pane: a simulation of its own on the scene with a setting of its own. Small ones iterate between two frames, large
-//! ones beside the window.
+//! Pane of a comparison: a simulation of the scene with settings of its own. Small models iterate between two frames,
+//! large ones are solved in the background.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -25,69 +25,69 @@ use crate::scene::{Beam, MeshFile, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status, probe_results};
 use crate::study::Reference;
 
-/// A solve of a load that is no longer wanted may take so long.
+/// A background solve of an outdated load is cancelled after this time.
 const LONGEST_OUTDATED: Duration = Duration::from_millis(300);
 
-/// A scene with a setting of its own, beside others.
+/// Scene with settings of its own, compared with others.
 #[derive(Debug, Default)]
 pub struct Pane {
     pub(super) setting: PaneSetting,
-    /// The scene with the setting.
+    /// Scene with the settings.
     wanted: Option<Scene>,
-    /// The scene that the body has, was sent away with, or was refused for.
+    /// Scene that the simulation has, is being solved for in the background, or was refused for.
     given: Option<Scene>,
-    /// Whether that is too large to be solved between two frames.
+    /// `true` if `given` is too large to be solved between two frames.
     is_large: bool,
     body: Body,
-    /// Whether the solve began at rest: what it takes depends on nothing that was before.
+    /// `true` if the solve started from rest, so that its cost does not depend on earlier states.
     from_rest: bool,
-    /// Whether it is solved anew only to be measured: what is seen is the equilibrium that was found before.
+    /// `true` while a solve from rest only measures the cost; the equilibrium found before stays on display.
     measures: bool,
     end: Option<PaneEnd>,
     system: Option<Arc<System>>,
     pub(super) drawing: DisplayGeometry,
     pub(super) shape: BodyMesh,
-    /// The range of the field over the body.
+    /// Range of the field over the body.
     pub(super) range: Option<[f64; 2]>,
-    /// Where the body is drawn.
+    /// Area in which the body is drawn.
     pub(super) place: Option<Rect>,
     pub(super) error: Option<f64>,
     pub(super) pointer: Pointer,
 }
 
-/// How a solve of a pane from rest has ended.
+/// Result of a pane's solve from rest.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PaneEnd {
-    /// How; [`Status::Running`] where it was stopped after the iterations that the setting has.
+    /// Final status; [`Status::Running`] if it was stopped after the setting's number of iterations.
     pub status: Status,
     /// Iterations from rest.
     pub iterations: u32,
-    /// The time they took, s.
+    /// Computing time, s.
     pub seconds: f64,
-    /// What the probes see.
+    /// Results at the probes.
     pub probes: Vec<ProbeResult>,
 }
 
 #[derive(Debug, Default)]
 enum Body {
-    /// Nothing yet.
+    /// No body yet.
     #[default]
     None,
     Here(Box<Simulation>),
     Away(Box<PaneSolve>),
-    /// What is wrong with the scene.
+    /// Error of the scene.
     Refused(String),
 }
 
-/// A background solve of a pane.
+/// Background solve of a pane.
 #[derive(Debug)]
 struct PaneSolve {
     solve: BackgroundSolve,
     since: Instant,
 }
 
-/// The model of a pane before its first iteration.
+/// Model of a pane before its first iteration.
 struct PaneModel {
     simulation: Option<Box<Simulation>>,
     /// Existing equations of the scene's mesh.
@@ -95,7 +95,7 @@ struct PaneModel {
 }
 
 impl PaneModel {
-    /// Sets the simulation up here.
+    /// Sets up the simulation on the current thread.
     fn set_up(self, scene: &Scene) -> Result<Box<Simulation>, SimulationError> {
         Ok(match (self.simulation, self.system) {
             (Some(mut simulation), _) => {
@@ -122,26 +122,26 @@ fn has_ended(simulation: &Simulation, most_iterations: Option<u32>) -> bool {
     *simulation.status() != Status::Running || most_iterations.is_some_and(|most| simulation.iterations() >= most)
 }
 
-/// What a frame gives to a pane.
+/// Conditions of a pane in one frame.
 #[derive(Clone, Copy)]
 pub(super) struct Turn {
-    /// Whether the pointer moves: what is dragged has one iteration a frame.
+    /// `true` while the pointer moves: a dragged load gets one iteration per frame.
     pub moves: bool,
-    /// Whether it is pressed: what is dragged is going to be followed from where it is.
+    /// `true` while the pointer is pressed: the solve continues from the current state of a dragged load.
     pub holds: bool,
-    /// Whether anything iterates at all.
+    /// `true` if iterations are made at all.
     pub runs: bool,
-    /// When the time for iterations is over.
+    /// End of the time for iterations.
     pub until: Instant,
 }
 
-/// What a pane is doing.
+/// Current activity of a pane.
 pub(super) enum Doing<'a> {
-    /// It has ended.
+    /// The solve has ended.
     Rests(&'a PaneEnd),
-    /// It iterates, or will.
+    /// Iterating, with the number of iterations.
     Iterates(u32),
-    /// Beside the window.
+    /// Solving in the background, with the number of iterations.
     Works(u32),
     Refused(&'a str),
 }
@@ -151,37 +151,38 @@ impl Pane {
         Self { setting, ..Self::default() }
     }
 
-    /// What it has of its own.
+    /// Returns the settings of the pane.
     #[must_use]
     pub fn setting(&self) -> &PaneSetting {
         &self.setting
     }
 
-    /// The scene with that, once it was shown.
+    /// Returns the scene with these settings, after the pane was first shown.
     #[must_use]
     pub fn scene(&self) -> Option<&Scene> {
         self.wanted.as_ref()
     }
 
-    /// How its solve from rest has ended, once it has.
+    /// Returns the result of the solve from rest; `None` until it has ended.
     #[must_use]
     pub fn end(&self) -> Option<&PaneEnd> {
         self.end.as_ref()
     }
 
-    /// The error of that at the first probe, percent of the true displacement, as of the last [`crate::app::Lab::ui`].
+    /// Returns the error of the result at the first probe, percent of the reference displacement, as of the last
+    /// [`crate::app::Lab::ui`].
     #[must_use]
     pub fn error_percent(&self) -> Option<f64> {
         self.error
     }
 
-    /// Where its body is drawn in the window, points, as of the last [`crate::app::Lab::ui`].
+    /// Returns the area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
     #[must_use]
     pub fn place(&self) -> Option<Rect> {
         self.place
     }
 
-    /// Its simulation, while it is not solved beside the window.
+    /// Returns the simulation; `None` while it is solved in the background.
     #[must_use]
     pub fn simulation(&self) -> Option<&Simulation> {
         match &self.body {
@@ -190,7 +191,7 @@ impl Pane {
         }
     }
 
-    /// The equations of what is drawn.
+    /// Returns the equations of the displayed body.
     pub(super) fn system(&self) -> Option<&Arc<System>> {
         self.system.as_ref()
     }
@@ -208,40 +209,41 @@ impl Pane {
         }
     }
 
-    /// Whether it has nothing to do.
+    /// Returns `true` if the pane has no work left.
     pub(super) fn is_settled(&self) -> bool {
         self.wanted == self.given && (self.end.is_some() || matches!(self.body, Body::Refused(_)))
     }
 
-    /// Whether it is solved beside the window.
+    /// Returns `true` if the pane is solved in the background.
     pub(super) fn is_away(&self) -> bool {
         matches!(self.body, Body::Away(_))
     }
 
-    /// Whether its solve from rest has found no equilibrium.
+    /// Returns `true` if the solve from rest found no equilibrium.
     pub(super) fn has_failed(&self) -> bool {
         self.end.as_ref().is_some_and(|end| end.status.failure().is_some())
     }
 
-    /// Whether what is drawn of it is an answer to its load.
+    /// Returns `true` if the displayed state is a result for its load.
     pub(super) fn is_sound(&self) -> bool {
         self.end.as_ref().map_or_else(|| self.answer().is_some_and(|(_, good)| good), |_| !self.has_failed())
     }
 
-    /// Its loads, as last drawn.
+    /// Returns the loads, as last drawn.
     pub(super) fn forces(&self, direction: f64, opening: OpeningLoads) -> Option<Forces<'_>> {
         let (scene, system) = (self.wanted.as_ref()?, self.system.as_ref()?);
         Some(Forces { scene, system, positions: &self.shape.nodes, time: 0.0, direction, opening })
     }
 
-    /// Where at rest, m, the point of the body under the pointer is, and where the pointer is.
+    /// Returns the rest position, m, of the material point under the pointer, and the pointer's position.
     pub(super) fn under_pointer(&self) -> Option<(Vector2<f64>, Pos2)> {
         let (point, at) = self.pointer.over_body()?;
         let mesh = self.system.as_ref()?.mesh();
         Some((probe::place(mesh, mesh.nodes(), point)?, at))
     }
 
-    /// Shows the value at the point that is here at rest, m: beside the pointer, or beside the point.
+    /// Shows the value at the material point with the rest position `rest`, m: next to the pointer at `at`, or else
+    /// next to the point.
     pub(super) fn show_value(&self, ui: &Ui, view: &ViewOptions, rest: Vector2<f64>, camera: Camera, at: Option<Pos2>) {
         let (Some(system), Some(place)) = (&self.system, self.place) else { return };
         let mesh = system.mesh();
@@ -257,17 +259,18 @@ impl Pane {
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
-    /// Whether it waits for the pointer to let go.
+    /// Returns `true` if the pane waits for the pointer to be released.
     pub(super) fn waits(&self) -> bool {
         self.end.is_none() && !self.from_rest && self.answer().is_some()
     }
 
-    /// Whether its picture is of a load that was.
+    /// Returns `true` if the displayed state belongs to an earlier load.
     pub(super) fn is_outdated(&self) -> bool {
         self.is_away() && !self.measures
     }
 
-    /// What the first probe sees where the load has been answered, and whether the answer is an equilibrium.
+    /// Returns the result at the first probe, and `true` if it is an equilibrium; `None` while the load is being
+    /// solved.
     pub(super) fn answer(&self) -> Option<(ProbeResult, bool)> {
         let Body::Here(simulation) = &self.body else { return None };
         let ended = self.given == self.wanted && has_ended(simulation, self.setting.iterations);
@@ -276,11 +279,11 @@ impl Pane {
         }
         let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
         let good = !matches!(simulation.status(), Status::NotConverged(_) | Status::Diverged(_));
-        // What comes from elsewhere may fail where a solve from rest does not.
+        // A solve that starts from another state may fail where one from rest does not.
         (good || self.end.is_some()).then_some((probe, good))
     }
 
-    /// Has another setting.
+    /// Changes the settings.
     pub(super) fn set(&mut self, setting: PaneSetting) {
         self.setting = setting;
         if self.is_away() {
@@ -289,7 +292,7 @@ impl Pane {
         self.reset();
     }
 
-    /// Starts over at rest.
+    /// Restarts from rest.
     pub(super) fn reset(&mut self) {
         match &mut self.body {
             Body::Here(simulation) => {
@@ -301,7 +304,7 @@ impl Pane {
         }
     }
 
-    /// One iteration.
+    /// Makes one iteration.
     pub(super) fn step(&mut self) {
         let most = self.setting.iterations;
         if let Body::Here(simulation) = &mut self.body
@@ -312,7 +315,7 @@ impl Pane {
         }
     }
 
-    /// Goes on with the scene, where that is another one now from its load, and iterates.
+    /// Applies a changed scene, starting from the current state, and iterates.
     pub(super) fn advance(&mut self, scene: &Scene, equations: &[Equations], turn: Turn) {
         let wanted = self.setting.apply(scene);
         if self.wanted.as_ref() != Some(&wanted) {
@@ -328,7 +331,7 @@ impl Pane {
         self.iterate(turn);
     }
 
-    /// Takes the simulation that comes back; says whether it is not away.
+    /// Takes back a simulation that was solved in the background; returns `false` while it is still being solved.
     fn hear(&mut self) -> bool {
         let Body::Away(away) = &mut self.body else { return true };
         if self.given != self.wanted && away.since.elapsed() > LONGEST_OUTDATED {
@@ -349,7 +352,7 @@ impl Pane {
         true
     }
 
-    /// Gives the scene to the simulation, or makes one.
+    /// Sets the scene of the simulation, or creates one.
     fn take_on(&mut self, equations: &[Equations]) {
         let Some(scene) = self.wanted.clone() else { return };
         self.given = Some(scene.clone());
@@ -358,7 +361,7 @@ impl Pane {
             Body::Here(simulation) => Some(simulation),
             _ => None,
         };
-        // Another mesh has nothing of the state.
+        // A state cannot be transferred to another mesh.
         let simulation = simulation.filter(|s| s.scene().beam == scene.beam && s.scene().mesh == scene.mesh);
         self.from_rest = simulation.is_none();
         let system = Equations::of(equations, &scene);
@@ -401,7 +404,7 @@ impl Pane {
         if ended && turn.holds || !ended && !self.is_large {
             return;
         }
-        // Its numbers are those of a solve from rest: where it came from elsewhere it is solved once more.
+        // The result reports the cost of a solve from rest, so a solve from another state is repeated from rest.
         if ended {
             (self.from_rest, self.measures) = (true, true);
         }
@@ -414,7 +417,7 @@ impl Pane {
         }
     }
 
-    /// Notes how a solve from rest has ended.
+    /// Records the result of a solve from rest.
     fn conclude(&mut self) {
         let Body::Here(simulation) = &self.body else { return };
         if !self.from_rest || !has_ended(simulation, self.setting.iterations) {
@@ -430,7 +433,7 @@ impl Pane {
         });
     }
 
-    /// Solves to the end, however long it takes.
+    /// Solves to the end, and waits for it.
     pub(super) fn settle(&mut self, scene: &Scene, equations: &[Equations]) {
         let wanted = self.setting.apply(scene);
         let system = Equations::of(equations, &wanted);
@@ -447,7 +450,7 @@ impl Pane {
         self.conclude();
     }
 
-    /// Updates what is drawn.
+    /// Updates the displayed mesh.
     pub(super) fn update_shape(&mut self, view: &ViewOptions, visuals: &egui::Visuals) {
         if let (Body::Here(simulation), false) = (&self.body, self.measures) {
             let system = simulation.system();
@@ -461,14 +464,14 @@ impl Pane {
         self.shape.color(visuals, view.field);
     }
 
-    /// How far off it is, once that is known.
+    /// Computes the error of the result, if the reference solution is known.
     pub(super) fn judge(&mut self, truth: Option<&Reference>) {
         let probe = self.answer().filter(|(_, good)| *good);
         self.error = truth.zip(probe).and_then(|(truth, (probe, _))| truth.first()?.error_percent(&probe));
     }
 }
 
-/// Equations that others may share.
+/// Equations that several panes may share.
 #[derive(Clone, Debug)]
 pub(super) struct Equations {
     beam: Option<Beam>,
@@ -477,12 +480,12 @@ pub(super) struct Equations {
 }
 
 impl Equations {
-    /// Those of a scene.
+    /// Creates the entry for the equations of a scene.
     pub(super) fn new(scene: &Scene, system: &Arc<System>) -> Self {
         Self { beam: scene.beam.clone(), mesh: scene.mesh.clone(), system: system.clone() }
     }
 
-    /// Those among them that are of a scene's mesh.
+    /// Returns the equations for a scene's mesh, if they are among `all`.
     fn of(all: &[Self], scene: &Scene) -> Option<Arc<System>> {
         let own = all.iter().find(|own| own.beam == scene.beam && own.mesh == scene.mesh);
         own.map(|own| own.system.clone())

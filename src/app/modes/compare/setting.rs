@@ -1,4 +1,4 @@
-//! What a pane has of its own: method, element, mesh, iterations; and how that is written.
+//! Settings of a pane: method, element, mesh, iterations; and their text form.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,10 +12,10 @@ use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::Setting;
 use crate::words::count;
 
-/// Fewest and most panes.
+/// Smallest and largest number of panes.
 pub(super) const PANES: std::ops::RangeInclusive<usize> = 2..=4;
 
-/// What a pane has in the place of what its scene has; `None`: as the scene.
+/// Settings of a pane; `None` means the setting of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PaneSetting {
     /// Method.
@@ -24,15 +24,15 @@ pub struct PaneSetting {
     pub element: Option<ElementKind>,
     /// Cells along and across.
     pub cells: Option<[u32; 2]>,
-    /// Iterations after which a solve is stopped.
+    /// Number of iterations after which a solve is stopped.
     pub iterations: Option<u32>,
 }
 
-/// Why panes are not understood.
+/// Error in the text form of panes.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum PaneSettingError {
-    /// A part that is nothing known.
+    /// A part is not recognized.
     #[error(
         "expected a method ({}), an element ({}), cells as in 10x2 or a number of iterations, got \u{201c}{part}\u{201d}",
         METHODS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "),
@@ -42,32 +42,32 @@ pub enum PaneSettingError {
         /// The part.
         part: String,
     },
-    /// A part of a kind that was there before.
+    /// A part repeats a kind of setting.
     #[error("expected one method, element, mesh and number of iterations, got another one: \u{201c}{part}\u{201d}")]
     Twice {
         /// The part.
         part: String,
     },
-    /// Too few panes, or too many.
+    /// There are too few or too many panes.
     #[error("expected {} to {} panes, as in linear,warped,newton, got {got}", PANES.start(), PANES.end())]
     Count {
-        /// How many there are.
+        /// Number of panes.
         got: usize,
     },
 }
 
 impl PaneSetting {
-    /// One that differs in its method only.
+    /// Returns settings that change the method only.
     pub(super) fn of_method(method: MethodKind) -> Self {
         Self { method: Some(method), ..Self::default() }
     }
 
-    /// One that differs in its element only.
+    /// Returns settings that change the element only.
     pub(super) fn of_element(element: ElementKind) -> Self {
         Self { element: Some(element), ..Self::default() }
     }
 
-    /// The same with what it has of the scene written out.
+    /// Returns the settings with the scene's own values filled in.
     #[must_use]
     pub fn of(&self, scene: &Scene) -> Self {
         Self {
@@ -78,7 +78,7 @@ impl PaneSetting {
         }
     }
 
-    /// The scene with it.
+    /// Returns the scene with these settings.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         Setting {
@@ -103,7 +103,7 @@ impl From<Setting> for PaneSetting {
 }
 
 impl PaneSetting {
-    /// What it is called in the window.
+    /// Returns the name of the settings in the window.
     pub(super) fn words(&self) -> String {
         let method = self.method.map(|method| tr(method.id()).to_owned());
         let element = self.element.map(|element| element.id().to_owned());
@@ -126,7 +126,8 @@ impl fmt::Display for PaneSetting {
     }
 }
 
-/// Parts in any order, between colons: `warped:t6:10x2`, `t3`, `newton`, `warped:4`. `scene` is the scene as it is.
+/// Parses parts in any order, separated by colons: `warped:t6:10x2`, `t3`, `newton`, `warped:4`. `scene` stands for the
+/// scene's own settings.
 impl FromStr for PaneSetting {
     type Err = PaneSettingError;
 
@@ -161,7 +162,7 @@ impl FromStr for PaneSetting {
     }
 }
 
-/// Two to four settings between commas.
+/// Parses two to four settings, separated by commas.
 ///
 /// # Errors
 /// [`PaneSettingError`].

@@ -1,4 +1,4 @@
-//! The load curve, traced while the load is dragged: what every pane has answered to the loads so far.
+//! Load curve of a comparison, traced while the load is dragged: the results of every pane for all loads so far.
 
 use egui::{Pos2, Ui, WidgetInfo, pos2};
 use egui_plot::PlotResponse;
@@ -21,25 +21,25 @@ use crate::study::{LoadCurve, Reference};
 use crate::truth::error_percent;
 use crate::words::{engineering, three_digits};
 
-/// Dots of a setting that are kept.
+/// Largest number of dots per setting.
 const MOST_DOTS: usize = 500;
-/// Dots nearer to each other than this, parts of their load, are one.
+/// Relative difference of loads below which two dots are the same.
 const SAME_LOAD: f64 = 2e-3;
 
-/// So many times smaller than what the plot reaches, a load would not be seen.
+/// The plot is rescaled if the load is smaller than its range by more than this factor.
 const TINY: f64 = 50.0;
 
-/// The load that is traced: the first force, else the first moment, else the weight.
+/// Load that is traced: the first force, else the first moment, else gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Axis {
     name: &'static str,
-    /// Of the edits of it.
+    /// Label of its edits.
     label: &'static str,
     limit: Limit,
-    /// Its number among the scene's loads.
+    /// Index among the scene's loads.
     load: usize,
     magnitude: f64,
-    /// Of unit length; absent without load.
+    /// Unit vector of the load; `None` for a zero load.
     direction: Option<[f64; 2]>,
 }
 
@@ -61,7 +61,7 @@ impl Axis {
         Some(Self { name, label, limit, load, magnitude, direction })
     }
 
-    /// Makes it another magnitude.
+    /// Sets the magnitude of the load.
     fn set(&self, scene: &mut Scene, direction: [f64; 2], magnitude: f64) {
         let vector = direction.map(|v| v * magnitude);
         match scene.loads.get_mut(self.load) {
@@ -72,7 +72,8 @@ impl Axis {
         }
     }
 
-    /// What scenes that differ in the magnitude only have in common.
+    /// Returns the scene without the load's magnitude and the panes' settings: scenes with the same family share a
+    /// curve.
     fn family(&self, scene: &Scene) -> Scene {
         let mut family = without_settings(scene);
         self.set(&mut family, [0.0; 2], 0.0);
@@ -80,17 +81,17 @@ impl Axis {
     }
 }
 
-/// An answer to a load.
+/// Result for one load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Dot {
     load: f64,
     /// Displacement of the first probe, m.
     u: Vector2<f64>,
-    /// Whether it is an equilibrium.
+    /// `true` if the result is an equilibrium.
     good: bool,
 }
 
-/// What has been answered so far.
+/// Results so far.
 #[derive(Debug)]
 pub(super) struct Trace {
     axis: Option<Axis>,
@@ -98,17 +99,18 @@ pub(super) struct Trace {
     direction: Option<[f64; 2]>,
     series: Vec<(PaneSetting, Vec<Dot>)>,
     exact: Lazy<Vec<Exact>>,
-    /// The exact curve that was found last.
+    /// Last exact curve.
     line: Vec<Exact>,
-    /// What is true of the loads that were there: plane elasticity may differ from the exact beam.
+    /// Reference solutions for the loads so far; they may differ from the exact beam, because they solve plane
+    /// elasticity.
     truths: Vec<Exact>,
-    /// The load at the right edge.
+    /// Load at the right edge of the plot.
     reach: f64,
-    /// Quantities that show most of this curve, once some of it is known.
+    /// Most informative quantities of this curve; `None` until a part of it is known.
     usual: Option<CurvePlot>,
 }
 
-/// A load and the exact displacement of the first probe under it, m.
+/// Load, and displacement of the first probe in the exact solution under it, m.
 type Exact = (f64, Vector2<f64>);
 
 impl Default for Trace {
@@ -127,10 +129,10 @@ impl Default for Trace {
     }
 }
 
-/// The exact displacement of the first probe over the load that is traced.
+/// Returns the displacement of the first probe of the exact beam over the traced load.
 fn exact_line(scene: &Scene) -> Option<Vec<Exact>> {
     let axis = Axis::of(scene).filter(|axis| axis.magnitude > 0.0)?;
-    // Along the curve of several loads all of them would grow.
+    // The load curve scales all loads together, so it applies to a single load only.
     if has_several_loads(scene) || scene.probes.first()?.place != Place::from("right") {
         return None;
     }
@@ -147,15 +149,15 @@ fn has_several_loads(scene: &Scene) -> bool {
 }
 
 impl Trace {
-    /// Goes on with the scene; another scene, or another direction of its load, begins a new curve.
+    /// Updates the trace to a scene; another scene or another direction of its load starts a new curve.
     pub(super) fn follow(&mut self, scene: &Scene) {
-        /// Directions that differ by less, as parts of a unit vector, are the same.
+        /// Largest difference between two unit vectors that count as the same direction.
         const SAME_DIRECTION: f64 = 1e-6;
         self.axis = Axis::of(scene);
         let family = self.axis.map(|axis| axis.family(scene));
         let direction = self.axis.and_then(|axis| axis.direction);
         let turned = self.direction.zip(direction).is_some_and(|(a, b)| {
-            // Along it or against it is the same curve no more.
+            // The curve of the opposite direction is another one, too.
             (a[0] - b[0]).hypot(a[1] - b[1]) > SAME_DIRECTION
         });
         if family != self.family || turned {
@@ -164,7 +166,7 @@ impl Trace {
         self.direction = direction.or(self.direction);
     }
 
-    /// Looks for the exact curve, where that is not known far enough.
+    /// Requests the exact curve, unless it is known up to the current load.
     pub(super) fn ask(&mut self, scene: &Scene, ctx: &egui::Context) {
         if self.needs_exact() {
             self.exact.invalidate();
@@ -175,7 +177,7 @@ impl Trace {
         self.take_exact();
     }
 
-    /// Finds the exact curve, however long it takes.
+    /// Computes the exact curve, and waits for it.
     pub(super) fn settle(&mut self, scene: &Scene) {
         if self.needs_exact() {
             self.exact.invalidate();
@@ -192,13 +194,13 @@ impl Trace {
         }
     }
 
-    /// Whether the exact curve that is known ends before the load, or is too coarse for it.
+    /// Returns `true` if the known exact curve ends before the current load, or is too coarse for it.
     fn needs_exact(&self) -> bool {
         let (Some(end), Some(axis)) = (self.exact.get().and_then(|line| line.last()), self.axis) else { return false };
         axis.magnitude > end.0 || axis.magnitude > 0.0 && TINY * axis.magnitude < end.0
     }
 
-    /// Notes what is true of the present load.
+    /// Records the reference solution for the current load.
     pub(super) fn record_truth(&mut self, truth: Option<&Reference>) {
         let (Some(axis), Some(truth)) = (self.axis, truth.and_then(Reference::first)) else { return };
         let dot = (axis.magnitude, truth.displacement);
@@ -209,7 +211,7 @@ impl Trace {
         }
     }
 
-    /// The true displacement under a load, where that is known; else that of the exact beam.
+    /// Returns the displacement of the reference solution under a load if it is known, else that of the exact beam.
     fn exact_at(&self, load: f64) -> Option<Vector2<f64>> {
         let truth = self.truths.iter().find(|dot| dot.0 == load).map(|dot| dot.1);
         let piece = || self.line.windows(2).find(|w| (w[0].0..=w[1].0).contains(&load));
@@ -217,7 +219,7 @@ impl Trace {
         truth.or_else(|| piece().map(between))
     }
 
-    /// Notes what a pane has answered to the present load. Says whether that is new.
+    /// Records a pane's result for the current load. Returns `true` if it is new.
     pub(super) fn record(&mut self, scene: &Scene, pane: &Pane) -> bool {
         let (Some(axis), Some((probe, good))) = (self.axis, pane.answer()) else { return false };
         let dot = Dot { load: axis.magnitude, u: probe.u, good };
@@ -239,7 +241,7 @@ impl Trace {
         true
     }
 
-    /// Every dot that is an equilibrium: setting, load, and both components of the displacement.
+    /// Returns every dot that is an equilibrium: setting, load, and both components of the displacement.
     pub(super) fn dots(&self) -> Vec<(PaneSetting, [f64; 3])> {
         let dots = self.series.iter().flat_map(|(setting, dots)| dots.iter().map(move |dot| (*setting, *dot)));
         dots.filter(|(_, dot)| dot.good).map(|(setting, dot)| (setting, [dot.load, dot.u.x, dot.u.y])).collect()
@@ -263,7 +265,7 @@ impl Trace {
             ui.centered_and_justified(|ui| ui.weak(tr("The scene has no load whose curve could be traced.")));
             return;
         };
-        // A picture whose edge moved under a pointer that scrubs in it would run away.
+        // The axis does not change during a press: the load under the pointer would otherwise run away.
         let pressed = ui.input(|i| i.pointer.any_down());
         let settled = axis.magnitude > 0.9 * self.reach || TINY * axis.magnitude < self.reach;
         if axis.magnitude > self.reach || settled && !pressed && axis.magnitude > 0.0 {
@@ -282,7 +284,7 @@ impl Trace {
         });
     }
 
-    /// Quantities that show most of the curve: decided once, where the load reaches first.
+    /// Returns the most informative quantities of the curve, chosen once, when the first results are known.
     fn usual(&mut self, axis: Axis) -> CurvePlot {
         let known: Vec<Vector2<f64>> = self.exact_at(axis.magnitude).into_iter().collect();
         let curved = |s: &&(PaneSetting, Vec<Dot>)| s.0.method != Some(MethodKind::Linear);
@@ -295,7 +297,7 @@ impl Trace {
         self.usual.unwrap_or(CurvePlot::Y)
     }
 
-    /// The curve of the panes, and their answers to the present load.
+    /// Returns the figure of the panes' curves, and their results for the current load.
     fn figure(&self, axis: Axis, scene: &Scene, panes: &[Pane], shown: CurvePlot) -> Figure {
         let reach = if self.reach > 0.0 { self.reach } else { 1.0 };
         let exact = |all: &[Exact]| -> Vec<FigurePoint> {
@@ -326,7 +328,7 @@ impl Trace {
             let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
             let (name, ink, is_linear) = (setting.words(), Ink::Method(method), method == MethodKind::Linear);
             let dots: Vec<&Dot> = self.dots_of(setting).iter().filter(|dot| dot.load <= reach).collect();
-            // Linear theory is in proportion to its one load.
+            // The solution of linear theory is proportional to a single load.
             if let Some(dot) = dots.iter().rfind(|dot| dot.good && dot.load > 0.0)
                 && is_linear
                 && !has_several_loads(scene)
@@ -361,7 +363,7 @@ impl Trace {
         }
     }
 
-    /// A dot of the curve; one that is no equilibrium has no displacement.
+    /// Returns a dot of the curve; a dot that is not an equilibrium has no displacement.
     fn point(&self, dot: &Dot, present: f64) -> FigurePoint {
         let u = dot.good.then_some(dot.u);
         let exact = self.exact_at(dot.load);
@@ -373,7 +375,7 @@ impl Trace {
         }
     }
 
-    /// Corners of the plot: loads up to the reach, whatever has been answered.
+    /// Returns the corners of the plot: its loads range up to `reach`, whatever the results.
     fn bounds(&self, series: &[FigureSeries], reach: f64, axes: [usize; 2]) -> Option<[[f64; 2]; 2]> {
         if axes[0] != 0 {
             return None;
@@ -383,7 +385,7 @@ impl Trace {
         Some([[0.0, low[1]], [reach, high[1]]])
     }
 
-    /// Sets the load where the plot is pressed: in the path, that of the nearest point.
+    /// Sets the load to the pressed position of the plot; in the path plot, to that of the nearest point.
     fn set_load(
         &self,
         response: PlotResponse<()>,
@@ -392,7 +394,7 @@ impl Trace {
         drawn: &Figure,
         actions: &mut Vec<Action>,
     ) {
-        /// A dot so near, points, is meant.
+        /// Distance within which a dot is hit, points.
         const NEAR: f32 = 5.0;
         let transform = response.transform;
         let area = response.response;
@@ -434,5 +436,5 @@ impl Trace {
     }
 }
 
-/// The measure of errors, in symbols.
+/// Symbol of the relative error of the displacement.
 const ERROR: &str = "|Δu|/|u|";

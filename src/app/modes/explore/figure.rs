@@ -1,4 +1,4 @@
-//! Figures in the window: the plot, the table beside it, the choice of quantities, and files of it.
+//! Figures in the window: the plot, the table next to it, the choice of quantities, and export to files.
 
 use crate::app::action::{Action, FigureFile};
 use crate::app::view_options::CurvePlot;
@@ -17,7 +17,7 @@ use crate::export::{ExportError, write_text};
 use crate::picture::PictureError;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 
-/// Reason why a figure is not saved.
+/// Reason for which a figure is not saved.
 #[derive(Debug, Error)]
 pub(crate) enum SaveError {
     #[error(transparent)]
@@ -28,7 +28,7 @@ pub(crate) enum SaveError {
     Picture(#[from] PictureError),
 }
 
-/// Saves a figure here under the first free name, which it returns.
+/// Saves a figure in the current folder under the first free name, and returns its path.
 pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveError> {
     let path = free_name(file.extension())?;
     match file {
@@ -39,7 +39,7 @@ pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveErr
     Ok(path)
 }
 
-/// Parts of the window that a figure is shown in: the plot, and the table on its right.
+/// Parts of a figure in the window: the plot, and the table to its right.
 pub(crate) struct Parts {
     pub plot: Rect,
     pub table: Rect,
@@ -55,7 +55,7 @@ impl Parts {
     }
 }
 
-/// Draws the plot; a line marks the present load where the load is the horizontal axis.
+/// Draws the plot. If the horizontal axis is the load, a line marks the current load.
 pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>) -> PlotResponse<()> {
     let palette = Palette::new(ui.visuals());
     let corners = figure.corners();
@@ -89,7 +89,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>)
                     Mark::Dots => LineStyle::dotted_dense(),
                     _ => LineStyle::Solid,
                 };
-                // A dashed line of many pieces would have no gaps.
+                // A dashed line must be one line: split into many segments it would have no gaps.
                 let lines = match series.mark {
                     Mark::Line => segments(&places(None)),
                     _ => vec![places(None)],
@@ -105,7 +105,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>)
                 own.retain(is_inside);
                 let (shape, filled) = look(series.mark);
                 let points = Points::new(series.name.clone(), own).color(color).shape(shape).filled(filled);
-                // Marks in the same place lie in each other.
+                // Marks at the same position get different sizes, so that all are visible.
                 plot.points(points.radius((radius - step * smaller as f32).max(2.4)));
             }
             if matches!(series.mark, Mark::Element(_) | Mark::Disc) {
@@ -113,7 +113,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>)
             }
         }
     });
-    // The room for the numbers of an axis is known one frame late.
+    // The space for tick labels is known one frame late, so changed limits need another frame.
     let id = ui.scope_id().with(("corners", id));
     if ui.data_mut(|data| data.get_temp(id).replace(corners).is_none_or(|before: [[f64; 2]; 2]| before != corners)) {
         ui.data_mut(|data| data.insert_temp(id, corners));
@@ -122,13 +122,13 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>)
     response
 }
 
-/// The parts of a line between the corners, from its first point inside; `None` where nothing of it is.
+/// Returns the part of a line inside the corners, from its first point inside; `None` if the line is outside.
 fn clipped(line: &[[f64; 2]], [low, high]: [[f64; 2]; 2]) -> Option<Vec<[f64; 2]>> {
     let inside = |p: &[f64; 2]| (0..2).all(|i| p[i] >= low[i] && p[i] <= high[i]);
     let mut kept = Vec::new();
     for pair in line.windows(2) {
         let [a, b] = [pair[0], pair[1]];
-        // Liang and Barsky's parameters of the part inside.
+        // Parameters of the part inside; Liang and Barsky 1984.
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for i in 0..2 {
             let d = b[i] - a[i];
@@ -175,7 +175,7 @@ fn look(mark: Mark) -> (MarkerShape, bool) {
     }
 }
 
-/// Shows the choice of quantities and the menu of files.
+/// Shows the choice of quantities and the export menu.
 pub(crate) fn controls(
     ui: &mut Ui,
     figure: &Figure,
@@ -201,7 +201,7 @@ pub(crate) fn controls(
     });
 }
 
-/// Shows the table: marks, names, present values and errors.
+/// Shows the table: marks, names, current values and errors.
 pub(crate) fn table(ui: &mut Ui, figure: &Figure) {
     ui.spacing_mut().item_spacing.y = 2.0;
     ScrollArea::vertical().id_salt("table").auto_shrink([false, false]).show(ui, |ui| {
@@ -224,7 +224,7 @@ struct Columns {
 
 impl Columns {
     fn new(ui: &Ui, errors: bool) -> Self {
-        /// A narrower table has no column of errors: the panes tell them too.
+        /// In a table narrower than this, points, the column of errors is omitted; the panes show the errors, too.
         const NARROW: f32 = 250.0;
         Self { mark: 22.0, error: if errors && ui.available_width() >= NARROW { 54.0 } else { 0.0 } }
     }
@@ -320,7 +320,7 @@ fn paint_mark(ui: &Ui, center: egui::Pos2, mark: Mark, color: Color32) {
     }
 }
 
-/// A point of a load and the displacement under it.
+/// Returns the point of a figure for a load and the displacement under it.
 pub(crate) fn point(load: f64, u: nalgebra::Vector2<f64>) -> FigurePoint {
     FigurePoint::new([load, u.x, u.y])
 }

@@ -1,5 +1,5 @@
-//! The load curve. Of a cantilever: linear theory, the exact beam, every method's point, and where linear theory leaves. Of any
-//! other scene: its load path, what is unstable dashed.
+//! Load curve. For a cantilever it shows linear theory, the exact beam, the result of every method, and the loads at
+//! which linear theory departs. For any other scene it shows the load path, with unstable parts dashed.
 
 use crate::app::session::facts::Curve;
 use egui::{Align2, Ui, UiBuilder};
@@ -19,8 +19,8 @@ use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
 use crate::words::{engineering, engineering_pair, three_digits};
 
-/// Shows the plot, that of the scene before while a new one is looked for; or says why there is none: not yet, or not at
-/// all.
+/// Shows the plot, or the previous scene's while a new one is being computed. Without a plot it shows the reason: it is
+/// being computed, or the scene has none.
 pub(crate) fn show(
     ui: &mut Ui,
     curve: Option<&Curve>,
@@ -58,7 +58,7 @@ pub(crate) fn show(
 }
 
 impl Curve {
-    /// Quantities that can be shown.
+    /// Returns the quantities that can be shown.
     fn offered(&self) -> &'static [CurvePlot] {
         match self {
             Self::Path(of) if of.0.driven.is_some() => {
@@ -68,7 +68,8 @@ impl Curve {
         }
     }
 
-    /// Quantities that show most: where linear theory leaves the exact beam, or where a path turns back.
+    /// Returns the most informative quantities: where linear theory departs from the exact beam, or where a path turns
+    /// back.
     fn usual(&self) -> CurvePlot {
         match self {
             Self::Beam(of) => usual(of.0.samples.iter().map(|s| s.truth)),
@@ -88,7 +89,7 @@ impl Curve {
     }
 }
 
-/// The path of a displacement that leaves the axes, else its larger component: there one sees most of an error.
+/// Returns the path of a displacement that leaves the axes, else its larger component, which shows an error best.
 pub(crate) fn usual(displacements: impl Iterator<Item = Vector2<f64>> + Clone) -> CurvePlot {
     if leaves_the_axes(displacements.clone()) {
         CurvePlot::Path
@@ -97,20 +98,20 @@ pub(crate) fn usual(displacements: impl Iterator<Item = Vector2<f64>> + Clone) -
     }
 }
 
-/// The load and both components of the displacement of the first probe.
+/// Returns the load and both components of the displacement of the first probe.
 pub(crate) fn quantities(load: Quantity, scene: &Scene) -> Vec<Quantity> {
     let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
     let component = |axis: &str| Quantity::new(translated(&format!("u_{axis} of {probe}")), "m");
     vec![Quantity::new(translated(&load.name), load.unit), component("x"), component("y")]
 }
 
-/// Head of a column of displacements.
+/// Returns the heading of a column of displacements.
 pub(crate) fn displacement_words(scene: &Scene) -> String {
     let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
     fill!("(u_x, u_y) of %{probe}", probe = tr(probe))
 }
 
-/// The axes of a plot, among the load and both components.
+/// Returns the axes of a plot, as indices of load, u_x and u_y.
 pub(crate) fn axes(shown: CurvePlot) -> [usize; 2] {
     match shown {
         CurvePlot::Path => [1, 2],
@@ -119,7 +120,7 @@ pub(crate) fn axes(shown: CurvePlot) -> [usize; 2] {
     }
 }
 
-/// A displacement in a table, m.
+/// Formats a displacement for a table, m.
 pub(crate) fn pair(u: Vector2<f64>) -> String {
     engineering_pair([u.x, u.y].map(three_digits), "m")
 }
@@ -196,7 +197,8 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     }
 }
 
-/// Name and place of the loads at which linear theory leaves the exact beam: by so much, after these rotations.
+/// Returns the name and the position of the loads at which linear theory departs from the exact beam: errors in
+/// percent, and rotations.
 fn departure_words(departures: &[Departure]) -> Option<(String, String)> {
     let each = |value: &dyn Fn(&Departure) -> String| departures.iter().map(value).collect::<Vec<_>>().join(", ");
     let percent = each(&|departure| departure.percent.to_string());

@@ -1,4 +1,4 @@
-//! The mode Explore: plots under the body.
+//! Mode Explore: plots under the body.
 
 pub(crate) mod figure;
 pub(crate) mod load_curve;

@@ -1,4 +1,4 @@
-//! The plots of a motion: energy by kind, the tip over time and its phase, and the spectrum of its motion.
+//! Plots of a motion: energy by kind, displacement of the first probe over time, its phase diagram, and its spectrum.
 
 use crate::app::view_options::MotionPlot;
 use egui::{Color32, Ui};
@@ -21,18 +21,18 @@ const PLOTS: [(MotionPlot, &str, &str); 4] = [
     (MotionPlot::Spectrum, "Spectrum", "Amplitudes of the frequencies in the motion of the first probe"),
 ];
 
-/// The last so many seconds are shown.
+/// Duration that is shown, s.
 const SHOWN: f64 = 12.0;
-/// Room for the legend on the right of what is shown, in parts of it.
+/// Space for the legend to the right of the data, as a fraction of the data's width.
 const LEGEND_ROOM: f64 = 0.22;
-/// More points than this on one line are thinned out.
+/// Largest number of points of a line; longer lines are thinned.
 const MOST_POINTS: usize = 1000;
-/// The spectrum is of the last so many samples at most; a power of two.
+/// Largest number of samples of the spectrum; a power of two.
 const LONGEST_SPECTRUM: usize = 4096;
-/// With fewer samples there is none.
+/// Smallest number of samples of a spectrum.
 const SHORTEST_SPECTRUM: usize = 64;
 
-/// Shows the plot that is chosen; `frequency` is the lowest natural one, Hz.
+/// Shows the chosen plot; `frequency` is the lowest natural frequency, Hz.
 pub(crate) fn show(
     ui: &mut Ui,
     chosen: &mut MotionPlot,
@@ -52,11 +52,11 @@ pub(crate) fn show(
         return;
     }
     let palette = Palette::new(ui.visuals());
-    // One line for every motion that is shown.
+    // One line per motion.
     let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
     let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
     let axis = playback.history.axis();
-    // The time of an earlier moment, while one is shown.
+    // Displayed moment, if it is not the latest.
     let cursor = playback.shown_time();
     let name = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
     match chosen {
@@ -97,14 +97,14 @@ fn thinned(history: &History, point: impl Fn(&Sample) -> [f64; 2]) -> Vec<PlotPo
     kept.map(|s| PlotPoint::from(point(s))).collect()
 }
 
-/// Leaves room for the legend beside what has been.
+/// Adds space for the legend to the right of the data.
 fn over_time<'a>(plot: Plot<'a>, history: &History) -> Plot<'a> {
     let first = history.last(SHOWN).next().map_or(0.0, |s| s.time);
     let last = history.samples().back().map_or(0.0, |s| s.time);
     plot.include_x(last + LEGEND_ROOM * (last - first).max(1e-9))
 }
 
-/// Marks the moment that is shown.
+/// Marks the displayed moment.
 fn time_cursor(plot: &mut PlotUi<'_>, time: Option<f64>, palette: &Palette) {
     if let Some(time) = time {
         plot.vline(VLine::new("", time).color(palette.text).width(1.0));
@@ -118,7 +118,7 @@ fn curves(plot: &mut PlotUi<'_>, lines: impl Iterator<Item = (IntegratorKind, Ve
     }
 }
 
-/// What it is called, its colour, and its value, J.
+/// Name of a kind of energy, its colour, and the function that returns its value, J.
 type EnergyKind = (&'static str, Color32, fn(&Sample) -> f64);
 
 fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)], cursor: Option<f64>) {
@@ -134,10 +134,10 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         ("put in", put_in, |s| s.ledger.pulses + s.ledger.hands + s.ledger.edits),
     ];
     over_time(plot(&palette, "energy", (tr("time"), "s"), (tr("energy"), "J")), history).show(ui, |plot| {
-        // Beside others only the sums: these are what is compared.
+        // With several motions only the sums are shown, for comparison.
         let shown = if motions.len() == 1 { &kinds[..] } else { &[] };
         for (name, color, value) in shown {
-            // What is never there needs no line.
+            // Energies that are always zero have no line.
             if history.samples().iter().any(|s| value(s) != 0.0) {
                 let points = thinned(history, |s| [s.time, value(s)]);
                 plot.line(Line::new(tr(name), PlotPoints::Owned(points)).color(*color).width(1.5));
@@ -156,9 +156,10 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
     });
 }
 
-/// The amplitude, m, of every frequency, Hz, in the probe's motion along an axis; empty for too few samples.
+/// Returns the amplitude, m, of every frequency, Hz, of the probe's displacement along an axis; empty if there are too
+/// few samples.
 ///
-/// Hann's window, scaled so that a sine of amplitude one between two bins has about one.
+/// Uses a Hann window, scaled so that a sine of amplitude 1 between two bins has an amplitude of about 1.
 fn spectrum(history: &History, axis: usize) -> Vec<[f64; 2]> {
     let samples = history.samples();
     let count = samples.len().min(LONGEST_SPECTRUM);
@@ -193,7 +194,7 @@ fn spectra(
     frequency: Option<f64>,
     palette: &Palette,
 ) {
-    /// Frequencies with less than this part of the largest amplitude are off the picture on the right.
+    /// The plot ends at the highest frequency whose amplitude exceeds this fraction of the largest one.
     const SEEN: f64 = 1e-3;
     let all: Vec<_> = motions.iter().map(|(kind, history)| (*kind, spectrum(history, axis))).collect();
     if all.iter().all(|(_, s)| s.is_empty()) {

@@ -1,4 +1,4 @@
-//! How much the area has grown.
+//! Card of the growth of the body's area.
 
 use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 use nalgebra::Vector2;
@@ -14,7 +14,7 @@ use crate::scene::{Load, MethodKind};
 /// Largest force of the slider, N.
 pub(super) const LARGEST_FORCE: f64 = 4e4;
 
-/// The force on the tip, and the area of the body beside that of the exact solution.
+/// Shows the slider of the force, and the growth of the body's area compared with the reference solution.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     force(ui, shown, learn, actions);
     ui.add_space(4.0);
@@ -37,14 +37,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     ui.add(egui::Label::new(spaced(sources, SMALL)).wrap());
 }
 
-/// The article, and the paper that it explains.
+/// Sources of the mode: the article, and the paper that it explains.
 const SOURCES: &str = "The article: \u{201c}\u{5b9e}\u{65f6}\u{7269}\u{7406}\u{6a21}\u{62df}\u{4e4b} Warped Stiffness \
                        \u{65b9}\u{6cd5}\u{201d} (the warped stiffness method in real-time physical simulation), study \
                        notes in Chinese in the style of Zhihu, without the author\u{2019}s name. The method: Matthias \
                        M\u{fc}ller and Markus Gross, \u{201c}Interactive Virtual Materials\u{201d}, Graphics Interface \
                        2004.";
 
-/// The size of the first force, which keeps its direction.
+/// Shows the slider for the magnitude of the first force, which keeps its direction.
 fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let scene = shown.input.scene;
     let first = scene.loads.iter().enumerate().find_map(|(i, load)| match load {
@@ -72,15 +72,15 @@ fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Ac
     }
 }
 
-/// The area inside a closed line, m², positive counter-clockwise.
+/// Returns the area inside a closed line, m², positive for a counter-clockwise line.
 fn enclosed(line: &[Vector2<f64>]) -> f64 {
     let next = line.iter().cycle().skip(1);
     0.5 * line.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>()
 }
 
-/// A growth with its sign, in words.
+/// Formats a growth, percent, with its sign.
 pub(super) fn growth_words(growth: f64) -> String {
-    /// Below this, percent, an area is what it was.
+    /// Smaller values, percent, are shown as zero.
     const NOTHING: f64 = 5e-3;
     if growth.abs() < NOTHING {
         return "0 %".to_owned();
@@ -89,7 +89,7 @@ pub(super) fn growth_words(growth: f64) -> String {
 }
 
 fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: egui::Color32) {
-    /// Percent, at the end of the bar.
+    /// Growth at the end of the bar, percent.
     const FULL: f64 = 110.0;
     const NAME: f32 = 84.0;
     const NUMBER: f32 = 78.0;

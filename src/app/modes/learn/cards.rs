@@ -1,4 +1,4 @@
-//! The cards: a new one is an entry here, and a file for what it draws.
+//! Cards of the mode Learn. A new card is an entry here, and a module for its drawing.
 
 use egui::{Painter, Ui};
 
@@ -7,56 +7,57 @@ use crate::app::action::Action;
 use crate::scene::{Load, MethodKind, Scene};
 use crate::simulation::Field;
 
-/// A step of the way through the article.
+/// Card that explains one step of the article.
 pub(crate) struct Card {
     pub title: &'static str,
-    /// Two or three sentences.
+    /// Text of two or three sentences.
     pub words: &'static str,
-    /// One or several, in the markup of [`super::formula`].
+    /// Formulas in the markup of [`super::formula`].
     pub formula: &'static [&'static str],
-    /// Defines the letters that appear for the first time.
+    /// Definitions of the symbols that appear for the first time.
     pub symbols: &'static str,
-    /// One thing to do.
+    /// Task for the reader.
     pub task: &'static str,
     pub setup: Setup,
-    /// What takes a while to find out, and is asked for.
+    /// Expensive results that the card shows.
     pub needs: Needs,
-    /// Shows numbers and controls beside the words.
+    /// Shows numbers and controls next to the text.
     pub show: fn(&mut Ui, &Shown<'_>, &mut Learn, &mut Vec<Action>),
     /// Paints over the body.
     pub paint: fn(&Painter, &View<'_>, &Learn),
-    /// Whether the elements are drawn apart.
+    /// `true` if the elements are drawn apart from each other.
     pub apart: bool,
-    /// `true` where a step goes to the next line of the pseudocode.
+    /// `true` if a step goes to the next line of the pseudocode.
     pub lines: bool,
 }
 
-/// What a card makes of scene and view.
+/// Scene and view of a card.
 #[derive(Clone, Copy)]
 pub(crate) struct Setup {
-    /// Changes the article's scene.
+    /// Edits the article's scene.
     pub edit: fn(&mut Scene),
     pub field: Field,
-    /// Outlines: of the exact solution, at rest.
+    /// `true` if the outline of the reference solution is shown, and (`rest`) the outline at rest.
     pub exact: bool,
     pub rest: bool,
     pub start: Start,
-    /// Makes the scene with the largest body that the card's slider reaches: the view has room for it from the beginning.
+    /// Edits the scene so that it has the largest body that the card's slider reaches: the view leaves room for it from
+    /// the beginning.
     pub reach: Option<fn(&mut Scene)>,
 }
 
-/// How the body gets to its equilibrium.
+/// Start of the iteration to the equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
-    /// From where it is.
+    /// From the current state.
     Now,
     /// From rest.
     Rest,
-    /// From rest, when told.
+    /// From rest, when the user starts it.
     Waiting,
 }
 
-/// Where the warped iteration converges, and where it does not: the force on the article's beam, N.
+/// Forces on the article's beam, N: with the first the warped iteration converges, with the second it does not.
 const NEAR: f64 = 30e3;
 const FAR: f64 = 60e3;
 
@@ -71,7 +72,7 @@ fn with(scene: &mut Scene, method: MethodKind, force: f64) {
 
 fn nothing(_: &Painter, _: &View<'_>, _: &Learn) {}
 
-/// Every card, in the order of the article.
+/// All cards, in the order of the article.
 pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "Linear theory makes it grow",

@@ -1,4 +1,4 @@
-//! The method in ten lines of pseudocode. One line is highlighted; a step goes to the next.
+//! Card of the method as ten lines of pseudocode. One line is highlighted; a step goes to the next one.
 
 use egui::{Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
@@ -13,12 +13,12 @@ use crate::scene::{ElementKind, MethodKind};
 use crate::simulation::{Simulation, Status};
 use crate::words::{engineering, three_digits};
 
-/// A line of the pseudocode.
+/// Line of the pseudocode.
 struct Line {
     indent: u8,
-    /// In the markup of [`formula`].
+    /// Text in the markup of [`formula`].
     code: &'static str,
-    /// Numbers of the line, from the simulation and the picked triangle; `None` for a line that a step passes over.
+    /// Returns the numbers of the line for a simulation and the selected triangle; `None` if a step skips the line.
     numbers: Option<fn(&Simulation, usize) -> String>,
 }
 
@@ -35,18 +35,18 @@ const LINES: [Line; 10] = [
     Line { indent: 0, code: "`until` r `is within the tolerance`", numbers: Some(verdict) },
 ];
 
-/// Numbers of lines that a step treats differently, from 0.
+/// Indices of the lines that a step treats differently, from 0.
 pub(crate) const AT_REST: usize = 1;
 const FIRST_OF_LOOP: usize = 4;
 pub(crate) const SOLVE: usize = 7;
 pub(crate) const UNTIL: usize = 9;
 
-/// `true` where the lines are those of the simulation.
+/// Returns `true` if the lines describe the method of the simulation.
 pub(super) fn describes(simulation: &Simulation) -> bool {
     simulation.method() == MethodKind::Warped && simulation.system().mesh().element() == ElementKind::T3
 }
 
-/// The line after this one; `ended` says that the iteration is over.
+/// Returns the line after `line`; `ended` is `true` if the iteration has ended.
 pub(super) fn after(line: usize, ended: bool) -> usize {
     if line >= UNTIL {
         return if ended { AT_REST } else { FIRST_OF_LOOP };
@@ -97,7 +97,7 @@ fn verdict(simulation: &Simulation, _: usize) -> String {
     }
 }
 
-/// Buttons that step, and the lines.
+/// Shows the buttons that step, and the lines.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let simulation = shown.input.simulation;
     if !describes(simulation) {
@@ -123,7 +123,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         ui.add(egui::Label::new(fill!("%{iterations} so far", iterations = iterations)).extend());
     });
     let has_moved = std::mem::replace(&mut learn.shown_line, learn.line) != learn.line;
-    // The buttons stay where they are.
+    // The buttons do not scroll with the lines.
     ScrollArea::vertical().id_salt("code").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (number, line) in LINES.iter().enumerate() {
@@ -137,7 +137,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     });
 }
 
-/// Paints a line; the one that is lit has numbers.
+/// Paints a line; the highlighted line has numbers.
 fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
     const HEIGHT: f32 = 17.5;
     const GUTTER: f32 = 30.0;
@@ -150,7 +150,7 @@ fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
     let small = egui::FontId::proportional(SMALL);
     let beside = numbers.map(|words| painter.layout_no_wrap(words.to_owned(), small.clone(), palette.accent));
     let width = ui.available_width();
-    // Numbers that have no room beside the code stand under it.
+    // Numbers that do not fit to the right of the code are placed under it.
     let is_under = beside.as_ref().is_some_and(|beside| left + galley.size().x + 16.0 + beside.size().x > width);
     let height = if is_under { HEIGHT + 16.0 } else { HEIGHT };
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());

@@ -1,4 +1,4 @@
-//! The triangles apart, each turned back by its Rᵀ onto its shape at rest.
+//! Exploded view: the elements are drawn apart from each other, each rotated back by its Rᵀ onto its shape at rest.
 
 use egui::{Painter, RichText, Shape, Slider, Stroke, Ui};
 use nalgebra::Vector2;
@@ -12,11 +12,11 @@ use crate::app::widgets::palette::{Palette, SMALL};
 use crate::rotation::Rotation;
 use crate::simulation::Simulation;
 
-/// How far the middles of the triangles are apart, over those at rest.
+/// Distances of the element centres from the body's centre in the exploded view, relative to those at rest.
 const APART: f64 = 1.5;
 
-/// Moves the drawn points of every element a part of the way to its shape at rest: turned back, and apart from the others.
-/// `rest` are the points at rest.
+/// Moves the drawn points of every element towards the exploded view; the fraction `turned` is 0 for the body itself
+/// and 1 for the exploded view. `rest` are the points at rest.
 pub(super) fn place(simulation: &Simulation, turned: f64, rest: &[Vector2<f64>], points: &mut [Vector2<f64>]) {
     let count = simulation.system().mesh().element_count().max(1);
     let each = (points.len() / count).max(1);
@@ -34,7 +34,7 @@ fn mean(points: &[Vector2<f64>]) -> Vector2<f64> {
     points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64
 }
 
-/// Paints the shape at rest of every element where it is turned back to.
+/// Paints the rest shape of every element at its position in the exploded view.
 pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
     let mesh = view.simulation.system().mesh();
     let strength = learn.turned as f32;
@@ -52,7 +52,7 @@ pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
     paint_picked(painter, view, learn);
 }
 
-/// The slider between the two views, and what is left of the clicked triangle.
+/// Shows the slider between the two views, and the strain of the selected triangle.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     let small = |text: &str| RichText::new(text).size(SMALL).color(palette.secondary);
@@ -82,7 +82,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     ui.label(small(tr("Line: the shape at rest. Colour: the largest strain; K turns strain into force.")));
 }
 
-/// A strain, percent.
+/// Formats a strain as a signed percentage.
 fn signed_percent(strain: f64) -> String {
     let sign = if strain < 0.0 { "\u{2212}" } else { "+" };
     format!("{sign}{}", percent(100.0 * strain.abs()))

@@ -1,4 +1,4 @@
-//! Formulas set over egui's text: letters slanted, `^{…}` raised, `_{…}` lowered, `` `…` `` upright words.
+//! Formulas as egui text: italic letters, `^{…}` for superscripts, `_{…}` for subscripts, `` `…` `` for upright words.
 
 use std::sync::Arc;
 
@@ -7,16 +7,16 @@ use egui::{Align, Color32, FontId, Galley, Painter, TextFormat};
 
 use crate::app::language::tr;
 
-/// Size of a formula, points.
+/// Font size of a formula, points.
 pub(super) const SIZE: f32 = 19.0;
-/// The same where there is little room.
+/// Font size of a formula in a low window, points.
 pub(super) const LOW_SIZE: f32 = 16.0;
-/// Size of what is raised or lowered, over that of the line.
+/// Font size of superscripts and subscripts, relative to that of the line.
 const SCRIPT: f32 = 0.66;
-/// Largest distance by which a slanted letter leans over its right edge, over its size.
+/// Overhang of an italic letter over its right edge, relative to the font size.
 const LEAN: f32 = 0.13;
 
-/// Where letters stand.
+/// Vertical position of letters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Level {
     Line,
@@ -24,12 +24,12 @@ enum Level {
     Lowered,
 }
 
-/// Sets a formula.
+/// Lays out a formula.
 pub(super) fn set(markup: &str, color: Color32) -> LayoutJob {
     sized(markup, SIZE, color)
 }
 
-/// Sets a formula whose letters have this size, points.
+/// Lays out a formula with a font size, points.
 pub(super) fn sized(markup: &str, size: f32, color: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     let mut leans = false;
@@ -39,7 +39,7 @@ pub(super) fn sized(markup: &str, size: f32, color: Color32) -> LayoutJob {
             Level::Raised => (SCRIPT * size, Align::TOP),
             Level::Lowered => (SCRIPT * size, Align::BOTTOM),
         };
-        // egui slants letters without making them wider: what follows would touch them.
+        // egui slants letters without making them wider, so that they would touch what follows.
         let lead = if leans && level != Level::Lowered { LEAN * size } else { 0.0 };
         let font_id = FontId::proportional(script);
         job.append(&text, lead, TextFormat { font_id, color, italics: slanted, valign, ..Default::default() });
@@ -48,7 +48,7 @@ pub(super) fn sized(markup: &str, size: f32, color: Color32) -> LayoutJob {
     job
 }
 
-/// Sets a formula in letters of this size, or smaller ones where it is wider than `width`, points.
+/// Lays out a formula with this font size, or a smaller one if it is wider than `width`, points.
 pub(super) fn fitted(painter: &Painter, markup: &str, size: f32, color: Color32, width: f32) -> Arc<Galley> {
     const SMALLEST: f32 = 11.0;
     let galley = painter.layout_job(sized(markup, size, color));
@@ -60,19 +60,19 @@ pub(super) fn fitted(painter: &Painter, markup: &str, size: f32, color: Color32,
     painter.layout_job(job)
 }
 
-/// The formula as a line of plain text, for who cannot see it.
+/// Returns the formula as plain text, for screen readers.
 pub(super) fn plain(markup: &str) -> String {
     pieces(markup).into_iter().map(|(text, _, _)| text).collect()
 }
 
-/// The letters of a formula that stand for something, without indices.
+/// Returns the variables of a formula, without subscripts and superscripts.
 #[cfg(test)]
 pub(super) fn variables(markup: &str) -> Vec<char> {
     let on_the_line = pieces(markup).into_iter().filter(|(_, level, slanted)| *level == Level::Line && *slanted);
     on_the_line.flat_map(|(text, _, _)| text.chars().collect::<Vec<_>>()).filter(|c| c.is_alphabetic()).collect()
 }
 
-/// Runs of letters that are set alike: text, level, whether slanted.
+/// Splits markup into pieces with the same style: text, level, and `true` for italic.
 fn pieces(markup: &str) -> Vec<(String, Level, bool)> {
     let mut pieces: Vec<(String, Level, bool)> = Vec::new();
     let mut level = Level::Line;
@@ -93,7 +93,7 @@ fn pieces(markup: &str) -> Vec<(String, Level, bool)> {
                 push(tr(&word), level, false);
             }
             _ => {
-                // A transposed T is no variable.
+                // A transposition sign is not a variable.
                 let slanted = letter.is_alphabetic() && !(letter == 'T' && level == Level::Raised);
                 push(letter.encode_utf8(&mut [0; 4]), level, slanted);
             }
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(plain("R K R^{T} x = f"), "R K RT x = f");
     }
 
-    /// A raised letter keeps off the slanted one before it; a lowered one need not.
+    /// A superscript keeps its distance from an italic letter before it; a subscript need not.
     #[test]
     fn slanted_letters_do_not_touch_what_is_raised_beside_them() {
         let lead = |markup: &str, section: usize| set(markup, Color32::WHITE).sections[section].leading_space;

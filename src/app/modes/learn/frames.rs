@@ -1,4 +1,4 @@
-//! The frame R in every triangle, and F = R S of one.
+//! Card of the rotated frame R of every triangle, and of F = R S of one triangle.
 
 use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::{Matrix2, Vector2};
@@ -10,7 +10,7 @@ use crate::app::language::{fill, tr};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::rotation::Rotation;
 
-/// A shorter axis than this, points, is not drawn: the mesh is too fine for it.
+/// Smallest length of a drawn axis, points; finer meshes have none.
 const SHORTEST: f32 = 5.0;
 
 /// Paints the axes of every element's frame.
@@ -35,7 +35,7 @@ pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
     paint_picked(painter, view, learn);
 }
 
-/// Paints the outline of the clicked element.
+/// Paints the outline of the selected element.
 pub(super) fn paint_picked(painter: &Painter, view: &View<'_>, learn: &Learn) {
     let corners = view.corners(learn.picked);
     if corners.len() >= 3 {
@@ -60,7 +60,7 @@ fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
     }
 }
 
-/// F = R S with the numbers of the clicked triangle.
+/// Shows F = R S with the numbers of the selected triangle.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
@@ -86,12 +86,12 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     );
 }
 
-/// An angle with its sense.
+/// Formats a rotation angle with its sign.
 pub(super) fn angle_words(rotation: Rotation) -> String {
     format!("{:.1}\u{b0}", rotation.angle().to_degrees()).replace('-', "\u{2212}")
 }
 
-/// The numbers of a 2×2 matrix in brackets, after a sign, with the name below.
+/// Shows a 2 × 2 matrix in brackets, after an operator, with its name below.
 fn show_matrix(ui: &mut Ui, (name, before): (&str, &str), m: &Matrix2<f64>, palette: &Palette) {
     const CELL: egui::Vec2 = vec2(54.0, 22.0);
     const BRACKET: f32 = 5.0;

@@ -1,4 +1,4 @@
-//! The same beam with every element: a button each, with its error.
+//! Card of locking: the same beam with every element, one button each with its error.
 
 use egui::{Button, RichText, Ui};
 
@@ -10,17 +10,17 @@ use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, Status, probe_results};
 use crate::study::Reference;
 
-/// How far an element is off on the scene's cells.
+/// Error of an element on the scene's cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ElementError {
     pub element: ElementKind,
-    /// Free unknowns.
+    /// Number of free unknowns.
     pub unknowns: usize,
-    /// Percent of the true displacement of the first probe.
+    /// Error, percent of the reference displacement of the first probe.
     pub percent: f64,
 }
 
-/// The errors of every element that the scene's cells can be, each at its own equilibrium.
+/// Returns the errors of all elements that the scene's cells can have, each at its own equilibrium.
 pub(super) fn errors(scene: &Scene) -> Option<Vec<ElementError>> {
     let truth = Reference::of(scene).ok()?.first()?;
     let error = |element: ElementKind| {
@@ -37,7 +37,7 @@ pub(super) fn errors(scene: &Scene) -> Option<Vec<ElementError>> {
     scene.elements().map(error).collect()
 }
 
-/// A button an element.
+/// Shows one button per element.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     let scene = shown.input.scene;

@@ -1,4 +1,4 @@
-//! Ke and R Ke Rᵀ of the clicked triangle in colours, and where its blocks go.
+//! Card of the matrices: Ke and R Ke Rᵀ of the selected triangle as coloured cells, and the assembled matrix.
 
 use egui::{Color32, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::DMatrix;
@@ -12,11 +12,11 @@ use crate::render::colormap;
 use crate::simulation::Field;
 use crate::words::{engineering, three_digits};
 
-/// Side of a small matrix, and of the large one, points.
+/// Sides of a small matrix and of the large one, points.
 const SMALL_SIDE: f32 = 120.0;
 const LARGE_SIDE: f32 = 146.0;
 const GAP: f32 = 18.0;
-/// A body of more unknowns is not drawn as a matrix.
+/// Largest number of unknowns of a body whose matrix is drawn.
 const MOST_UNKNOWNS: usize = 96;
 
 /// Shows the matrices.
@@ -58,7 +58,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     ui.add(egui::Label::new(spaced(RichText::new(note), SMALL).size(SMALL).color(palette.secondary)).wrap());
 }
 
-/// The matrix of the body before clamping, and what clamping takes from it.
+/// Shows the matrix of the body before the supports are applied, and the rows and columns that they remove.
 fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle: &Triangle) {
     let simulation = shown.input.simulation;
     let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
@@ -100,12 +100,12 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle:
     }
 }
 
-/// An unknown, in words.
+/// Returns the name of an unknown.
 fn name_of(unknown: usize) -> String {
     fill!("node %{n} %{axis}", n = unknown / 2 + 1, axis = if unknown.is_multiple_of(2) { "x" } else { "y" })
 }
 
-/// A square of coloured cells, zero in the middle of the map; pointing at one says its value.
+/// Shows a matrix as a square of coloured cells with a diverging map about zero; hovering over a cell shows its value.
 fn cells(
     ui: &mut Ui,
     palette: &Palette,
@@ -145,13 +145,13 @@ fn cells(
 }
 
 fn color_of(map: &colormap::ColorMap, value: f64, largest: f64) -> Color32 {
-    // Of the root: small entries are seen too.
+    // The square root makes small entries visible, too.
     let part = if largest > 0.0 { (value.abs() / largest).sqrt().copysign(value) } else { 0.0 };
     let [r, g, b] = map.color(colormap::position(part, [-1.0, 1.0]));
     Color32::from_rgb(r, g, b)
 }
 
-/// Row and column of the cell at a place.
+/// Returns row and column of the cell at a position.
 fn index(rect: Rect, cell: f32, count: usize, at: Pos2) -> Option<(usize, usize)> {
     let at = at - rect.min;
     let at = pos2(at.x / cell, at.y / cell);

@@ -1,5 +1,5 @@
-//! The mode Learn: the article, walked through on a row of cards. Each sets the scene up, and everything can be touched at
-//! any time; the lab that was is put aside, and comes back at the end.
+//! Mode Learn: the article on a row of cards. Each card sets up its scene, and the user can change everything at any
+//! time. The user's own desk is put aside, and restored when the mode ends.
 
 use egui::{Context, FontId, Key, Painter, Panel, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use nalgebra::Vector2;
@@ -35,38 +35,38 @@ pub(crate) use code::{AT_REST, SOLVE, UNTIL};
 
 use locking::ElementError;
 
-/// Height of the row of cards, points; at most a part of the window's.
+/// Height of the row of cards, points, and its largest fraction of the window's height.
 const HEIGHT: f32 = 258.0;
 const SHARE: f32 = 0.42;
-/// The same in a low window, which has no status bar here.
+/// Largest fraction in a low window, which has no status bar in this mode.
 const LOW_SHARE: f32 = 0.46;
-/// A row of less height, points, has no room for most cards.
+/// In a row lower than this, points, most cards need to scroll.
 const LOW: f32 = 240.0;
 
-/// Below this width, points, what is beside the words is under them.
+/// In a row narrower than this, points, numbers and controls are placed under the text.
 const TWO_COLUMNS: f32 = 560.0;
 
-/// A window below this height, points, has no room for a status bar beside the cards.
+/// A window lower than this, points, has no room for a status bar.
 const LOW_WINDOW: f32 = 560.0;
 
-/// More elements than this are not painted over one by one.
+/// Largest number of elements that are painted one by one.
 const MOST_ELEMENTS: usize = 3000;
 
-/// What takes a while to find out of a scene.
+/// Expensive results of a scene that a card shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Needs {
     Nothing,
-    /// ρ of the warped iteration at the equilibrium.
+    /// Spectral radius ρ of the warped iteration at the equilibrium.
     Rho,
-    /// The errors of all elements.
+    /// Errors of all elements.
     Errors,
 }
 
-/// Something found beside the window, of a part of the scene.
+/// Result of a scene, computed in the background.
 #[derive(Debug)]
 struct Known<T> {
     lazy: Lazy<T>,
-    /// What it depends on.
+    /// Returns the part of the scene that the result depends on.
     key: fn(&Scene) -> Scene,
     of: Option<Scene>,
 }
@@ -85,41 +85,41 @@ impl<T: Send + 'static> Known<T> {
     }
 }
 
-/// What is remembered while the article is walked through.
+/// State of the mode.
 #[derive(Debug)]
 pub(crate) struct Learn {
     card: usize,
-    /// The number of the element that was clicked last.
+    /// Index of the element that was selected last.
     picked: usize,
-    /// How far the elements are turned back, where they are apart: 0 to 1.
+    /// Fraction of the exploded view: 0 for the body itself, 1 for separate, rotated-back elements.
     turned: f64,
-    /// The error that the trade is for, percent.
+    /// Largest error in the table of the trade-off, percent.
     asked: f64,
     rho: Known<f64>,
     errors: Known<Vec<ElementError>>,
     messages: Messages,
     /// Highlighted line of the pseudocode, from 0.
     pub line: usize,
-    /// The same in the last frame.
+    /// Highlighted line in the last frame.
     shown_line: usize,
-    /// The largest body that the card's slider reaches.
+    /// Largest body that the card's slider reaches.
     pub reach: Option<Simulation>,
 }
 
-/// What a card shows numbers of.
+/// Content of a card.
 pub(crate) struct Shown<'a> {
     pub input: Readout<'a>,
-    /// What has been measured.
+    /// Speed–accuracy study, if there is one.
     pub study: Option<&'a Study>,
-    /// Fraction that is done and what is measured now, while a study runs.
+    /// Fraction done and current measurement, while a study is in progress.
     pub progress: Option<(f32, &'a str)>,
 }
 
-/// The view that a card paints over.
+/// View that a card paints over.
 pub(crate) struct View<'a> {
     pub simulation: &'a Simulation,
     pub drawing: &'a DisplayGeometry,
-    /// Where the drawn points are, m.
+    /// Positions of the drawn points, m.
     pub points: &'a [Vector2<f64>],
     pub camera: Camera,
     pub rect: Rect,
@@ -127,30 +127,30 @@ pub(crate) struct View<'a> {
 }
 
 impl View<'_> {
-    /// The window position of a point of the plane.
+    /// Returns the window position of a point of the plane.
     fn place(&self, p: Vector2<f64>) -> Pos2 {
         let [x, y] = self.camera.to_view(p).map(|v| v.clamp(-1e5, 1e5) as f32);
         self.rect.center() + vec2(x, y)
     }
 
-    /// Whether there are too many elements to paint each.
+    /// Returns `true` if there are too many elements to paint each of them.
     fn is_fine(&self) -> bool {
         self.simulation.system().mesh().element_count() > MOST_ELEMENTS
     }
 
-    /// The drawn points of an element.
+    /// Returns the drawn points of an element.
     fn points_of(&self, element: usize) -> &[Vector2<f64>] {
         let each = self.points.len() / self.simulation.system().mesh().element_count().max(1);
         self.points.get(element * each..(element + 1) * each).unwrap_or_default()
     }
 
-    /// The middle of an element as it is drawn, m.
+    /// Returns the centre of an element as drawn, m.
     fn middle(&self, element: usize) -> Vector2<f64> {
         let points = self.points_of(element);
         points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64
     }
 
-    /// The line around an element as it is drawn.
+    /// Returns the outline of an element as drawn.
     fn corners(&self, element: usize) -> Vec<Pos2> {
         let entry = self.simulation.system().mesh().element().entry();
         let points = self.points_of(element);
@@ -161,7 +161,7 @@ impl View<'_> {
 }
 
 impl Learn {
-    /// At the card of this number, from 0.
+    /// Creates the mode at card number `card`, from 0.
     pub(crate) fn new(card: usize) -> Self {
         Self {
             card: card.min(CARDS.len() - 1),
@@ -192,23 +192,23 @@ impl Learn {
         &CARDS[self.card.min(CARDS.len() - 1)]
     }
 
-    /// Goes to the card of this number, from 0.
+    /// Goes to card number `card`, from 0.
     pub(crate) fn go_to(&mut self, card: usize) {
         self.card = card.min(CARDS.len() - 1);
         self.messages.clear();
     }
 
-    /// Whether the elements are drawn apart.
+    /// Returns `true` if the elements are drawn apart from each other.
     pub(crate) fn is_apart(&self) -> bool {
         self.card().apart && self.turned > 0.0
     }
 
-    /// The line of the pseudocode that a step goes to; `None` on other cards.
+    /// Returns the line of the pseudocode that a step goes to; `None` on other cards.
     pub(crate) fn next_line(&self, simulation: &Simulation, ended: bool) -> Option<usize> {
         (self.card().lines && code::describes(simulation)).then(|| code::after(self.line, ended))
     }
 
-    /// ρ at the equilibrium, once it is known.
+    /// Returns ρ at the equilibrium; `None` until it has been computed.
     pub(crate) fn rho(&self) -> Option<f64> {
         self.rho.lazy.get().copied()
     }
@@ -217,7 +217,7 @@ impl Learn {
         self.errors.lazy.get().map(Vec::as_slice)
     }
 
-    /// Whether what the card needs is still being looked for.
+    /// Returns `true` while a result that the card shows is being computed.
     pub(crate) fn is_looking(&self) -> bool {
         match self.card().needs {
             Needs::Nothing => false,
@@ -226,7 +226,7 @@ impl Learn {
         }
     }
 
-    /// Looks for what the card needs.
+    /// Requests the results that the card shows.
     fn find_out(&mut self, scene: &Scene, ctx: &Context) {
         self.follow(scene);
         let is_pending = match self.card().needs {
@@ -244,7 +244,7 @@ impl Learn {
         self.errors.follow(scene);
     }
 
-    /// Finds out what the card needs, however long it takes.
+    /// Computes the results that the card shows, and waits for them.
     pub(crate) fn settle(&mut self, scene: &Scene) {
         self.follow(scene);
         match self.card().needs {
@@ -254,7 +254,7 @@ impl Learn {
         }
     }
 
-    /// Moves the drawn points to where a card that draws the elements apart has them.
+    /// Moves the drawn points to their positions in the exploded view.
     pub(crate) fn place(&self, simulation: &Simulation, drawing: &DisplayGeometry, points: &mut [Vector2<f64>]) {
         let mesh = simulation.system().mesh();
         let mut rest = Vec::new();
@@ -262,7 +262,7 @@ impl Learn {
         exploded::place(simulation, self.turned, &rest, points);
     }
 
-    /// Takes the element that is drawn at a place in the window.
+    /// Selects the element that is drawn at a position in the window.
     pub(crate) fn pick(&mut self, view: &View<'_>, at: Pos2) {
         let place = |p: u32| view.points.get(p as usize).map(|&p| view.place(p));
         let side = |a: Pos2, b: Pos2| (b - a).x * (at - a).y - (b - a).y * (at - a).x;
@@ -300,7 +300,8 @@ impl Learn {
             ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
             let number = self.card;
             let scroll = |ui: &mut Ui, part: &str, show: &mut dyn FnMut(&mut Ui)| {
-                // A bar that came would wrap the words anew, and might go again for that: in a low row its room is free.
+                // A scroll bar that appears would wrap the text differently, which might hide the bar again. In a low
+                // row its space is therefore always reserved.
                 let room = ui.available_width() - ui.spacing().scroll.allocated_width();
                 let area = ScrollArea::vertical().id_salt((part, number)).auto_shrink([false, false]);
                 area.scroll_bar_visibility(bars).show(ui, |ui| {
@@ -330,7 +331,7 @@ impl Learn {
         });
     }
 
-    /// Title, and the way to the other cards.
+    /// Shows the title, and the navigation to the other cards.
     fn header(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let palette = Palette::new(ui.visuals());
         let (card, count) = (self.card, CARDS.len());
@@ -372,7 +373,8 @@ impl Learn {
         });
     }
 
-    /// What the keys of this frame ask for, while nothing has the focus.
+    /// Returns the action of the keys pressed in this frame. Except for Escape, keys work only if no control has the
+    /// focus.
     fn keys(&self, ctx: &Context) -> Option<Action> {
         let escape = ctx.input(|i| i.key_pressed(Key::Escape));
         if escape && !ctx.text_edit_focused() {
@@ -394,14 +396,14 @@ impl Learn {
     }
 }
 
-/// `true` in a window that has no room for a status bar beside the cards.
+/// Returns `true` if the window has no room for a status bar.
 pub(crate) fn is_low(ctx: &Context) -> bool {
     ctx.content_rect().height() < LOW_WINDOW
 }
 
-/// The places of the words, and of what is beside them.
+/// Returns the areas of the text, and of the numbers and controls next to it.
 fn split(rect: Rect) -> (Rect, Rect) {
-    /// Lines of more letters than fit in this are hard to read.
+    /// Largest width of the text, points: longer lines are hard to read.
     const WIDEST: f32 = 470.0;
     const GUTTER: f32 = 24.0;
     const WIDEST_DRAWING: f32 = 620.0;
@@ -410,9 +412,9 @@ fn split(rect: Rect) -> (Rect, Rect) {
     (rect.with_max_x(rect.left() + words), drawing.with_max_x(drawing.right().min(drawing.left() + WIDEST_DRAWING)))
 }
 
-/// A dot a card; a click goes there.
+/// Shows one dot per card; a click goes to the card.
 fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) {
-    // From the right.
+    // The layout runs from right to left.
     ui.spacing_mut().item_spacing.x = 0.0;
     for i in (0..CARDS.len()).rev() {
         let (rect, response) = ui.allocate_exact_size(vec2(15.0, 20.0), Sense::click());
@@ -432,7 +434,7 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
     ui.add_space(6.0);
 }
 
-/// Sentences, formula, its symbols, and what to do.
+/// Shows sentences, formulas, definitions of symbols, and the task.
 fn text(ui: &mut Ui, card: &Card) {
     let palette = Palette::new(ui.visuals());
     let is_low = is_low(ui.ctx());
@@ -446,7 +448,7 @@ fn text(ui: &mut Ui, card: &Card) {
             let size = if is_low { formula::LOW_SIZE } else { formula::SIZE };
             let set = |part: &&str| formula::fitted(ui.painter(), part, size, palette.text, width);
             let galleys: Vec<_> = card.formula.iter().map(set).collect();
-            // Closer together where they would not be in one row.
+            // The formulas move closer together if that fits them into one row.
             let gaps = width - galleys.iter().map(|galley| galley.size().x).sum::<f32>();
             let gap = gaps / card.formula.len().saturating_sub(1).max(1) as f32;
             ui.spacing_mut().item_spacing.x = gap.floor().clamp(14.0, 36.0);
@@ -471,7 +473,7 @@ fn text(ui: &mut Ui, card: &Card) {
         ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
         ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
     });
-    // In a low row that scrolls, the task comes first.
+    // In a low row, which scrolls, the task comes before the symbols.
     if is_low {
         symbols(ui);
     }
@@ -479,7 +481,7 @@ fn text(ui: &mut Ui, card: &Card) {
 
 const NOT_TRIANGLES: &str = "These numbers are of three-node triangles.";
 
-/// Says why a card has nothing to show of the scene, with a button that sets the card up again.
+/// Shows the reason for which a card cannot show the scene, with a button that sets up the card again.
 fn not_triangles(ui: &mut Ui, words: &str, learn: &Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         ui.label(tr(words));
@@ -495,14 +497,15 @@ pub fn card_count() -> usize {
     CARDS.len()
 }
 
-/// The article's scene.
+/// Returns the article's scene and its source.
 pub(crate) fn article() -> Option<(Source, Scene)> {
     let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
     let scene = scene::open(&source).ok()?;
     Some((source, scene))
 }
 
-/// ρ of the warped iteration at a scene's equilibrium, which newton finds where that cannot.
+/// Returns ρ of the warped iteration at a scene's equilibrium, which is computed with Newton's method because the
+/// warped iteration may diverge.
 fn fixed_point_rho(scene: &Scene) -> Option<f64> {
     if scene.analysis != Analysis::Static {
         return None;
@@ -518,7 +521,7 @@ fn fixed_point_rho(scene: &Scene) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Every letter of every card, and of what is written beside, is in the fonts.
+    /// The fonts have all characters of the cards and of the texts around them.
     #[test]
     fn the_fonts_have_every_letter_of_the_cards() {
         let ctx = Context::default();
@@ -549,7 +552,7 @@ mod tests {
             assert!(!card.formula.is_empty() && !card.symbols.is_empty() && !card.task.is_empty());
         }
     }
-    /// Every variable is defined on the card where it first appears, or before.
+    /// Every variable is defined on the card where it first appears, or on an earlier one.
     #[test]
     fn every_letter_of_the_formulas_is_defined() {
         let mut defined = String::new();

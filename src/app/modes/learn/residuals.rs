@@ -1,4 +1,5 @@
-//! The residual, iteration by iteration, on a logarithmic scale, beside a line that falls by ρ each time.
+//! Card of the residual of every iteration on a logarithmic scale, compared with a line that falls by the factor ρ per
+//! iteration.
 
 use egui::{Align2, FontId, Painter, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
@@ -12,7 +13,7 @@ use crate::method::METHODS;
 use crate::scene::MethodKind;
 use crate::simulation::Status;
 
-/// Buttons that iterate, and the residuals.
+/// Shows the buttons that iterate, and the residuals.
 pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let ended = *shown.input.simulation.status() != Status::Running;
@@ -33,7 +34,7 @@ pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: 
     plot(ui, shown, learn);
 }
 
-/// Buttons that choose a method, and the residuals.
+/// Shows the buttons that choose a method, and the residuals.
 pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
@@ -57,7 +58,7 @@ pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions
     plot(ui, shown, learn);
 }
 
-/// By how much the last iteration has shrunk the residual.
+/// Returns the ratio of the last two residuals.
 fn last_ratio(residuals: &[f64]) -> Option<f64> {
     let [.., before, last] = residuals else { return None };
     let ratio = last / before;
@@ -65,7 +66,7 @@ fn last_ratio(residuals: &[f64]) -> Option<f64> {
 }
 
 fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
-    /// Iterations and decades that are always shown.
+    /// Numbers of iterations and highest decade of the axes, at least.
     const FEWEST: usize = 12;
     const HIGHEST: f64 = 1.0;
     const LEFT: f32 = 40.0;
@@ -89,7 +90,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     let inside = painter.with_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
     dashed(&inside, place(0.0, asked), place(most, asked), Stroke::new(1.0, palette.secondary));
     if let Some(rho) = rho {
-        // Through the last point, as it goes on from there; where that goes nowhere, through the lowest.
+        // A converging line ends at the last residual; a diverging one starts at the lowest.
         let mut points = residuals.iter().enumerate().map(|(i, &r)| (i as f64 + 1.0, decade(r)));
         let anchor = if rho < 1.0 { points.next_back() } else { points.min_by(|a, b| a.1.total_cmp(&b.1)) };
         let (k, r) = anchor.unwrap_or((0.0, 0.0));

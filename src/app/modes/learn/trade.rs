@@ -1,4 +1,4 @@
-//! What an error costs: elements by methods, measured beside the window when asked.
+//! Card of the trade-off between error and time: elements by methods, measured in the background on request.
 
 use egui::{Button, Grid, ProgressBar, RichText, Ui};
 
@@ -13,10 +13,11 @@ use crate::scene::{ElementKind, MethodKind};
 use crate::study::{Measurement, Study};
 use crate::words::{engineering, two_digits};
 
-/// Errors that can be asked for, percent.
+/// Selectable errors, percent.
 pub(super) const ASKED: [f64; 3] = [10.0, 1.0, 0.1];
 
-/// The fastest setting of an element and a method whose error is at most `percent`; else the closest.
+/// Returns the fastest setting with this element and method whose error is at most `percent`, or else the most accurate
+/// one.
 pub(super) fn best(
     study: &Study,
     element: ElementKind,
@@ -29,7 +30,7 @@ pub(super) fn best(
     good.map(|m| (*m, true)).or_else(|| Some((*closest()?, false)))
 }
 
-/// The table, and the button that measures it.
+/// Shows the table, and the button that starts the study.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     ui.horizontal_wrapped(|ui| {

@@ -1,4 +1,4 @@
-//! What the article makes of the elements of a body.
+//! Quantities of the article for the elements of a body.
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
@@ -9,13 +9,13 @@ use crate::rotation::{Rotation, polar};
 use crate::scene::ElementKind;
 use crate::simulation::Simulation;
 
-/// A three-node triangle, at rest and now.
+/// Three-node triangle, at rest and in the current state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Triangle {
     pub nodes: [u32; 3],
-    /// Its corners at rest, m.
+    /// Corners at rest, m.
     pub rest: [Vector2<f64>; 3],
-    /// F, the linear part of the map from there to where they are (article eqs. 12–15).
+    /// F, the linear part of the map from the rest shape to the current one (article eqs. 12–15).
     pub gradient: Matrix2<f64>,
     /// R and S of F = R S (eqs. 37–39).
     pub rotation: Rotation,
@@ -23,7 +23,8 @@ pub(super) struct Triangle {
 }
 
 impl Triangle {
-    /// An element of a body of three-node triangles; `None` of other elements, and where F has no polar decomposition.
+    /// Returns an element of a body of three-node triangles; `None` for other elements, and if F has no polar
+    /// decomposition.
     pub(super) fn of(simulation: &Simulation, element: usize) -> Option<Self> {
         let mesh = simulation.system().mesh();
         if mesh.element() != ElementKind::T3 {
@@ -39,7 +40,7 @@ impl Triangle {
         Some(Self { nodes, rest, gradient, rotation, stretch: (stretch + stretch.transpose()) * 0.5 })
     }
 
-    /// Ke, N/m (eqs. 1, 3).
+    /// Returns Ke, N/m (eqs. 1, 3).
     pub(super) fn stiffness(&self, simulation: &Simulation) -> Option<ElementStiffness> {
         let entry = ElementKind::T3.entry();
         let point = entry.points.first()?;
@@ -47,13 +48,13 @@ impl Triangle {
         Some(ElementStiffness::new(&[point], simulation.problem().material().membrane()))
     }
 
-    /// The unknowns (2 · node + axis) of its six rows.
+    /// Returns the unknowns (2 · node + axis) of the six rows.
     pub(super) fn unknowns(&self) -> [usize; 6] {
         std::array::from_fn(|i| 2 * self.nodes[i / 2] as usize + i % 2)
     }
 }
 
-/// Σ R Ke Rᵀ over all nodes, N/m, before clamping, with the R that the method uses. `None` of other elements.
+/// Returns Σ R Ke Rᵀ over all nodes, N/m, without supports, with the R that the method uses; `None` for other elements.
 pub(super) fn assembled(simulation: &Simulation) -> Option<DMatrix<f64>> {
     let count = 2 * simulation.system().mesh().nodes().len();
     let mut sum = DMatrix::zeros(count, count);
@@ -70,7 +71,8 @@ pub(super) fn assembled(simulation: &Simulation) -> Option<DMatrix<f64>> {
     Some(sum)
 }
 
-/// The frame of every element: its R, of several quadrature points the mean. Linear theory turns none.
+/// Returns the frame of every element: its R, or the mean R of its quadrature points. In linear theory all are the
+/// identity.
 pub(super) fn frames(simulation: &Simulation) -> Vec<Rotation> {
     let elements = simulation.system().elements();
     let per_element = (elements.rotation_count() / simulation.system().mesh().element_count().max(1)).max(1);
@@ -81,7 +83,7 @@ pub(super) fn frames(simulation: &Simulation) -> Vec<Rotation> {
     simulation.state().rotations().chunks(per_element).map(mean).collect()
 }
 
-/// How much the area of a body has grown, percent of that at rest: ∫ det F dA.
+/// Returns the growth of a body's area ∫ det F dA, percent of the area at rest.
 pub(super) fn area_growth(simulation: &Simulation) -> f64 {
     let (problem, state) = (simulation.problem(), simulation.state());
     let elements = problem.system().elements();

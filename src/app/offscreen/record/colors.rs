@@ -1,4 +1,4 @@
-//! A palette for a whole recording, and its colours by their place in it.
+//! Palette of a whole recording, and the lookup of colours in it.
 
 use std::collections::HashMap;
 use std::iter::repeat_n;
@@ -9,16 +9,17 @@ use crate::picture::Picture;
 
 type Color = [u8; 3];
 
-/// Colours of a GIF.
+/// Largest number of colours of a GIF.
 const MOST: usize = 256;
-/// Of these, how many are the most frequent ones as they are: backgrounds and texts keep their colour.
+/// Number of colours that are taken over exactly: the most frequent ones, so that backgrounds and texts keep their
+/// colours.
 const EXACT: usize = 32;
 
-/// No more than 256 colours that stand for all.
+/// At most 256 colours that represent all colours.
 #[derive(Debug)]
 pub(super) struct Palette {
     colors: Vec<Color>,
-    /// The places of colours that have been asked for, with `true` for those that are not near.
+    /// Indices of colours looked up so far, with `true` for those whose nearest palette colour differs visibly.
     known: HashMap<Color, (u8, bool)>,
 }
 
@@ -30,7 +31,7 @@ impl Palette {
             *counts.entry(color).or_default() += 1;
         }
         let mut counts: Vec<_> = counts.into_iter().collect();
-        // The same on every run: frequent first, then by value.
+        // Sorted by frequency, then by value, so that the result is the same in every run.
         counts.sort_by_key(|&(color, count)| (std::cmp::Reverse(count), color));
         let rare = counts.split_off(counts.len().min(if counts.len() > MOST { EXACT } else { MOST }));
         let mut palette: Vec<Color> = counts.into_iter().map(|(color, _)| color).collect();
@@ -41,15 +42,15 @@ impl Palette {
         Self { colors: palette, known: HashMap::new() }
     }
 
-    /// Red, green and blue of all.
+    /// Returns red, green and blue of all colours.
     pub(super) fn bytes(&self) -> &[u8] {
         self.colors.as_flattened()
     }
 
-    /// The places of a picture's pixels in the palette: of the nearest colours. Without dithering, which would move. Returns
-    /// how many pixels have no near one.
+    /// Computes the palette indices of an image's pixels, without dithering, whose pattern would flicker. Returns the
+    /// number of pixels without a similar palette colour.
     pub(super) fn indices(&mut self, picture: &Picture, indices: &mut Vec<u8>) -> usize {
-        /// Colours that are remembered.
+        /// Largest number of cached colours.
         const MOST_KNOWN: usize = 1 << 18;
         let Self { colors: palette, known } = self;
         if known.len() > MOST_KNOWN {
@@ -59,7 +60,7 @@ impl Palette {
         let mut poor = 0;
         let mut last = None;
         for color in colors(picture) {
-            // Neighbours are mostly the same.
+            // Adjacent pixels mostly have the same colour.
             let (place, is_poor) = match last {
                 Some((before, found)) if before == color => found,
                 _ => *known.entry(color).or_insert_with(|| nearest(palette, color)),
@@ -76,12 +77,12 @@ fn colors(picture: &Picture) -> impl Iterator<Item = Color> {
     picture.rgba.as_chunks().0.iter().map(|&[r, g, b, _]: &[u8; 4]| [r, g, b])
 }
 
-/// The place of the nearest colour, and `true` where that is not near.
+/// Returns the index of the nearest colour, and `true` if it differs visibly.
 fn nearest(palette: &[Color], color: Color) -> (u8, bool) {
-    /// Distance that is seen: about 20 of 255 in every channel.
+    /// Squared distance above which colours differ visibly: about 20 of 255 in every channel.
     const FAR: u32 = 4000;
     let distance = |other: &Color| -> u32 {
-        // Green counts most to the eye, blue least.
+        // The eye is most sensitive to green, and least to blue.
         other.iter().zip(color).zip([3, 6, 1]).map(|((&a, b), weight)| weight * u32::from(a.abs_diff(b)).pow(2)).sum()
     };
     let nearest = (0..=u8::MAX).zip(palette).map(|(place, other)| (distance(other), place)).min();
@@ -127,7 +128,7 @@ mod tests {
     #[test]
     fn many_colours_are_near_ones_and_the_background_is_exact() {
         let background = [22, 24, 28];
-        // A gradient, a wide one beside it, and much background.
+        // A gradient, another gradient that is wide, and a large background.
         let gradient = (0..4000_u32).map(|i| [(i / 16) as u8, (i / 20) as u8, 128 - (i / 40) as u8]);
         let many = picture(gradient.chain(std::iter::repeat_n(background, 9000)));
         let mut palette = Palette::of(std::slice::from_ref(&many));

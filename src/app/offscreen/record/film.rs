@@ -1,4 +1,4 @@
-//! Pictures one after the other, as files.
+//! Files of frames: animated GIF or PNG, or a folder of images.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -9,16 +9,16 @@ use super::RecordError;
 use super::colors::Palette;
 use crate::picture::Picture;
 
-/// How a recording is kept.
+/// Format of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovieFormat {
-    /// An animated GIF: everywhere, 256 colours.
+    /// Animated GIF: supported everywhere, 256 colours.
     Gif,
     /// A folder of numbered PNG files.
     Folder,
 }
 
-/// How long a picture is shown: a fraction of a second.
+/// Duration of a frame, as a fraction of a second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Delay {
     numerator: u16,
@@ -30,7 +30,7 @@ impl Delay {
         f64::from(self.numerator) / f64::from(self.denominator)
     }
 
-    /// The delay with some seconds more.
+    /// Returns the duration extended by a number of seconds.
     fn longer(self, seconds: f64) -> Self {
         let more = (seconds * f64::from(self.denominator)).round() as u16;
         Self { numerator: self.numerator.saturating_add(more), ..self }
@@ -38,10 +38,10 @@ impl Delay {
 }
 
 impl MovieFormat {
-    /// The format a name asks for.
+    /// Returns the format for a path.
     ///
     /// # Errors
-    /// [`RecordError::UnknownFormat`], and [`RecordError::NoFolder`] where the file's folder is not there.
+    /// [`RecordError::UnknownFormat`], and [`RecordError::NoFolder`] if the file's folder does not exist.
     pub fn of(path: &Path) -> Result<Self, RecordError> {
         let unknown = || RecordError::UnknownFormat(path.to_owned());
         if path.is_dir() {
@@ -64,9 +64,9 @@ impl MovieFormat {
         }
     }
 
-    /// The time of a picture at this rate, or the nearest that the format has.
+    /// Returns the duration of a frame at this rate, or the nearest one that the format supports.
     pub(super) fn delay(self, rate: u16) -> Delay {
-        /// Viewers take a GIF's delays below this for a mistake.
+        /// Viewers replace shorter delays of a GIF, in 1/100 s, by a longer default.
         const SHORTEST: u16 = 2;
         match self {
             Self::Gif => {
@@ -77,7 +77,7 @@ impl MovieFormat {
     }
 }
 
-/// A recording on its way into its file or folder.
+/// Recording that is being written to its file or folder.
 pub(super) struct Film {
     path: PathBuf,
     delay: Delay,
@@ -93,24 +93,24 @@ enum Reel {
 struct Gif {
     encoder: gif::Encoder<BufWriter<File>>,
     palette: Palette,
-    /// `true` where a picture whose colours the palette lacks gets a new one.
+    /// `true` if a frame whose colours are missing in the palette gets a new palette.
     adapts: bool,
-    /// `true` once the palette is not the one at the beginning of the file.
+    /// `true` if the current palette is not the one at the beginning of the file.
     is_local: bool,
     before: Vec<u8>,
     now: Vec<u8>,
 }
 
-/// Removes the numbered pictures of an earlier recording from a folder.
+/// Removes the numbered images of an earlier recording from a folder.
 ///
 /// # Errors
-/// [`RecordError::HasPictures`] where there are some and `overwrite` is `false`.
+/// [`RecordError::HasPictures`] if there are some and `overwrite` is `false`.
 pub(super) fn clear(folder: &Path, overwrite: bool) -> Result<(), RecordError> {
     let is_picture = |path: &PathBuf| {
         let number = path.file_name().and_then(|name| name.to_str()?.strip_prefix("frame-")?.strip_suffix(".png"));
         number.is_some_and(|number| number.len() >= 4 && number.bytes().all(|b| b.is_ascii_digit()))
     };
-    // A folder that is not there has none.
+    // A folder that does not exist has no images.
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     let pictures: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_picture).collect();
     if !pictures.is_empty() && !overwrite {
@@ -136,7 +136,7 @@ impl Film {
         let reel = match format {
             MovieFormat::Gif => {
                 let palette = Palette::of(samples);
-                // A side of a picture is no more than 8192 pixels.
+                // A side of a frame has at most 8192 pixels.
                 let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
                 let mut encoder = gif::Encoder::new(file()?, width, height, palette.bytes()).map_err(|e| failed(&e))?;
                 encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e))?;
@@ -157,21 +157,21 @@ impl Film {
         Ok(Self { path: path.to_owned(), delay, pictures: 0, reel })
     }
 
-    /// Lets a GIF take new palettes where pictures differ from the samples.
+    /// Lets a GIF use new palettes for frames that differ from the samples.
     pub(super) fn adapt(&mut self) {
         if let Reel::Gif(gif) = &mut self.reel {
             gif.adapts = true;
         }
     }
 
-    /// Writes what is in memory; returns the length of the file.
+    /// Writes buffered data to the file; returns the length of the file.
     pub(super) fn flush(&mut self) -> Result<u64, RecordError> {
         let Reel::Gif(gif) = &mut self.reel else { return Ok(0) };
         let file = gif.encoder.get_mut();
         file.flush().and_then(|()| file.stream_position()).map_err(|e| failed(&self.path, &e))
     }
 
-    /// Adds a picture, to be shown for so many seconds longer than others.
+    /// Adds a frame whose duration is `hold` s longer than that of others.
     pub(super) fn add(&mut self, picture: &Picture, hold: f64) -> Result<(), RecordError> {
         let Self { path, delay, pictures, reel } = self;
         let failed = |reason: &dyn std::fmt::Display| failed(path, reason);
@@ -209,9 +209,9 @@ fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RecordError {
 }
 
 impl Gif {
-    /// Adds what has changed: the smallest rectangle that holds it.
+    /// Adds the changed part of a frame: the smallest rectangle that contains it.
     fn add(&mut self, picture: &Picture, shown: Delay) -> Result<(), gif::EncodingError> {
-        /// Share of pixels without a near colour beyond which there is a new palette.
+        /// Fraction of pixels without a similar palette colour above which there is a new palette.
         const MOST_POOR: f64 = 1e-3;
         let Self { encoder, palette, adapts, is_local, before, now } = self;
         let poor = palette.indices(picture, now);
@@ -225,7 +225,7 @@ impl Gif {
         let rect = changed(before, now, width);
         let rows = now.chunks(width.max(1)).skip(rect.top).take(rect.height);
         let pixels: Vec<u8> = rows.flat_map(|row| row.iter().skip(rect.left).take(rect.width)).copied().collect();
-        // Sides of pictures are far below.
+        // Cannot fail: frames are much smaller.
         let small = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
         encoder.write_frame(&gif::Frame {
             delay: shown.numerator,
@@ -250,7 +250,8 @@ struct Rect {
     height: usize,
 }
 
-/// Where two pictures of this width differ; all of it where there was none before, and a pixel where they do not.
+/// Returns the rectangle in which two frames of this width differ: the whole frame if there was none before, and one
+/// pixel if they are equal.
 fn changed(before: &[u8], now: &[u8], width: usize) -> Rect {
     let width = width.max(1);
     if before.len() != now.len() {

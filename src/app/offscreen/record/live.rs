@@ -1,4 +1,4 @@
-//! Recording of the window as it is drawn: pictures at a steady rate, encoded in a background thread.
+//! Recording of the window as it is drawn: frames at a constant rate, encoded in a background thread.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,35 +16,35 @@ use crate::app::task::thread::{Task, Update};
 use crate::picture::Picture;
 use crate::render::{Gpu, RenderError, View};
 
-/// Pictures a second.
+/// Frames per second.
 const RATE: u16 = 25;
-/// Largest side of the pictures, pixels: larger windows are recorded smaller.
+/// Largest side of the frames, pixels: larger windows are scaled down.
 const MAX_SIDE: f32 = 1280.0;
-/// Pictures on their way from the graphics device; others are left out meanwhile.
+/// Largest number of frames being copied from the graphics device; further frames are skipped.
 const MOST_READ: usize = 2;
-/// Pictures that wait for the encoder; others are left out meanwhile.
+/// Largest number of frames waiting for the encoder; further frames are skipped.
 const MOST_WAITING: usize = 4;
 
-/// A recording of the window. Dropped, it ends with what it has.
+/// Recording of the window. Dropping it ends it with the frames taken so far.
 pub(crate) struct LiveRecording {
     path: PathBuf,
     task: Task<(), String>,
-    /// Way to the encoder; `None` once the recording is stopped.
+    /// Channel to the encoder; `None` once the recording is stopped.
     sender: Option<SyncSender<(u64, Picture)>>,
-    /// Number of the picture at which the recording ends.
+    /// Number of the frame at which the recording ends.
     end: Arc<AtomicU64>,
     target: wgpu::Texture,
     size: [u32; 2],
     pending: Vec<Reading>,
-    /// Buffers that are read from, kept for the next picture.
+    /// Read-back buffers that can be reused.
     free: Vec<wgpu::Buffer>,
-    /// Time of the first picture, s.
+    /// Time of the first frame, s.
     start: Option<f64>,
-    /// Number of the last picture taken.
+    /// Number of the last frame taken.
     last: Option<u64>,
 }
 
-/// A picture that the graphics device is still copying to memory.
+/// Frame that the graphics device is still copying to memory.
 struct Reading {
     number: u64,
     buffer: wgpu::Buffer,
@@ -52,10 +52,10 @@ struct Reading {
 }
 
 impl LiveRecording {
-    /// Starts to record a window of this many pixels, drawn in this format.
+    /// Starts recording a window of this size, pixels, drawn in this format.
     ///
     /// # Errors
-    /// There is no thread for it.
+    /// The system cannot start another thread.
     pub(crate) fn start(
         gpu: &Gpu,
         format: wgpu::TextureFormat,
@@ -87,19 +87,20 @@ impl LiveRecording {
         })
     }
 
-    /// Time that has been recorded at `now`, s.
+    /// Returns the duration recorded at `now`, s.
     pub(crate) fn seconds(&self, now: f64) -> f64 {
         self.start.map_or(0.0, |start| now - start)
     }
 
-    /// Number of the picture that is due at `now`; `None` where it has been taken already, or the recording is stopped.
+    /// Returns the number of the frame that is due at `now`; `None` if it has been taken already, or the recording is
+    /// stopped.
     pub(crate) fn due(&self, now: f64) -> Option<u64> {
         let number = (self.seconds(now) * f64::from(RATE)).max(0.0) as u64;
         (self.sender.is_some() && self.last.is_none_or(|last| number > last)).then_some(number)
     }
 
-    /// Draws the window once more, as the picture of this number, and lets it be read; leaves it out where too many are on
-    /// their way.
+    /// Draws the window again as the frame with this number, and starts reading it back; skips it if too many frames
+    /// are being read.
     pub(crate) fn take(
         &mut self,
         gpu: &Gpu,
@@ -111,7 +112,7 @@ impl LiveRecording {
         if self.pending.len() >= MOST_READ {
             return;
         }
-        // A window that has another size now is shown whole.
+        // If the size of the window has changed, the image is scaled so that it fits.
         let [x, y] = [0, 1].map(|axis| self.size[axis] as f32 / screen.size_in_pixels[axis].max(1) as f32);
         let own = ScreenDescriptor { size_in_pixels: self.size, pixels_per_point: screen.pixels_per_point * x.min(y) };
         let view = self.target.create_view(&wgpu::TextureViewDescriptor::default());
@@ -122,7 +123,7 @@ impl LiveRecording {
         self.last = Some(number);
     }
 
-    /// Copies the target into a buffer that is mapped once the device is there.
+    /// Copies the target into a buffer, which is mapped when the device has finished.
     fn read(&mut self, gpu: &Gpu, number: u64) -> Reading {
         let row = padded_row(self.size[0]);
         let buffer = self.free.pop().unwrap_or_else(|| {
@@ -144,12 +145,12 @@ impl LiveRecording {
         );
         gpu.queue.submit([encoder.finish()]);
         let (sender, mapped) = std::sync::mpsc::channel();
-        // The receiver may be gone with the recording.
+        // The receiver may have been dropped with the recording.
         buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| drop(sender.send(result)));
         Reading { number, buffer, mapped }
     }
 
-    /// Hands on the pictures that have come from the graphics device; waits for nothing.
+    /// Passes the frames that have arrived from the graphics device to the encoder, without waiting.
     pub(crate) fn hand_on(&mut self, gpu: &Gpu) {
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         while let Some(first) = self.pending.first() {
@@ -158,7 +159,7 @@ impl LiveRecording {
                 Ok(Ok(())) => {
                     let Reading { number, buffer, .. } = self.pending.remove(0);
                     if let Ok(picture) = self.picture(&buffer) {
-                        // A full line: the picture is left out.
+                        // If the encoder's queue is full, the frame is skipped.
                         let _ = self.sender.as_ref().map(|sender| sender.try_send((number, picture)));
                     }
                     buffer.unmap();
@@ -181,24 +182,25 @@ impl LiveRecording {
         Ok(Picture { size: self.size, rgba })
     }
 
-    /// Ends the recording with what has been taken; the file is whole once [`Self::listen`] or [`Self::wait`] says so.
+    /// Ends the recording with the frames taken so far; the file is complete once [`Self::listen`] or [`Self::wait`]
+    /// returns a message.
     pub(crate) fn stop(&mut self, gpu: &Gpu, now: f64) {
         if !self.is_running() {
             return;
         }
-        // Waits for the pictures that the device is still copying.
+        // Waits for the frames that the device is still copying.
         let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
         self.hand_on(gpu);
         self.end.store((self.seconds(now) * f64::from(RATE)).max(0.0) as u64, Ordering::Relaxed);
         self.sender = None;
     }
 
-    /// `true` while pictures are taken.
+    /// Returns `true` while frames are taken.
     pub(crate) fn is_running(&self) -> bool {
         self.sender.is_some()
     }
 
-    /// Returns a message once the recording has ended, also where it failed.
+    /// Returns a message once the recording has ended or failed.
     pub(crate) fn listen(&self) -> Option<String> {
         match self.task.poll() {
             Update::Done(words) => Some(words),
@@ -207,12 +209,12 @@ impl LiveRecording {
         }
     }
 
-    /// Waits until the file is whole; returns the message.
+    /// Waits until the file is complete; returns the message.
     pub(crate) fn wait(&self) -> Option<String> {
         if let Update::Done(words) = self.task.wait() { Some(words) } else { None }
     }
 
-    /// The mark in the window, which is not recorded.
+    /// Returns the recording indicator in the window, which is not recorded.
     pub(crate) fn mark(&self, ctx: &egui::Context, view: Rect, now: f64) -> Vec<Shape> {
         let visuals = ctx.global_style().visuals.clone();
         let seconds = format!("{:.1}", self.seconds(now));
@@ -224,7 +226,7 @@ impl LiveRecording {
         let color = visuals.strong_text_color();
         let galley = ctx.fonts_mut(|fonts| fonts.layout_no_wrap(words, egui::FontId::proportional(14.0), color));
         const DOT: f32 = 6.0;
-        // Below the key.
+        // Below the line key.
         let corner = view.left_top() + egui::vec2(16.0, 44.0);
         let text = corner + egui::vec2(3.0 * DOT, 0.0);
         let rect = Rect::from_min_max(corner, text + galley.size()).expand(6.0);
@@ -239,7 +241,7 @@ impl LiveRecording {
 
 const RED: Color32 = Color32::from_rgb(214, 40, 40);
 
-/// The pointer, which the system draws over the window and recordings would lack.
+/// Returns the mouse pointer as a shape: the system draws the real one over the window, so recordings would lack it.
 pub(crate) fn pointer(ctx: &egui::Context) -> Option<Shape> {
     let (at, is_down) = ctx.input(|i| (i.pointer.latest_pos(), i.pointer.any_down()));
     let radius = if is_down { 6.0 } else { 8.0 };
@@ -248,12 +250,12 @@ pub(crate) fn pointer(ctx: &egui::Context) -> Option<Shape> {
     at.map(|at| Shape::Circle(shape(at)))
 }
 
-/// Bytes of a row in a buffer.
+/// Returns the number of bytes of a row in a buffer.
 fn padded_row(width: u32) -> u32 {
     (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
-/// Writes the pictures as they come, each shown until the next; returns what there is to say.
+/// Writes the frames as they arrive, each shown until the next; returns the final message.
 fn encode(path: &Path, pictures: &Receiver<(u64, Picture)>, end: &AtomicU64) -> String {
     match write(path, pictures, end) {
         Ok(0) => tr("Nothing was recorded").to_owned(),
@@ -268,7 +270,7 @@ fn encode(path: &Path, pictures: &Receiver<(u64, Picture)>, end: &AtomicU64) -> 
     }
 }
 
-/// Returns how many pictures the file has, with the reason where it ended early.
+/// Returns the number of frames in the file; the error also contains the reason for an early end.
 fn write(path: &Path, pictures: &Receiver<(u64, Picture)>, end: &AtomicU64) -> Result<u64, (u64, RecordError)> {
     let delay = MovieFormat::Gif.delay(RATE);
     let Ok((mut number, mut picture)) = pictures.recv() else { return Ok(0) };
@@ -279,7 +281,7 @@ fn write(path: &Path, pictures: &Receiver<(u64, Picture)>, end: &AtomicU64) -> R
     loop {
         let next = pictures.recv();
         let until = next.as_ref().map_or_else(|_| end.load(Ordering::Relaxed), |(number, _)| *number);
-        // A picture has its own time, and that of those that are left out or the same.
+        // A frame is also shown during the following frames that were skipped or equal.
         let hold = until.saturating_sub(number).saturating_sub(1) as f64 * delay.seconds();
         let added = film.add(&picture, hold).and_then(|()| film.flush());
         match added {
@@ -298,7 +300,7 @@ fn write(path: &Path, pictures: &Receiver<(u64, Picture)>, end: &AtomicU64) -> R
     film.finish().map(|()| written).map_err(|error| (written, error))
 }
 
-/// Makes a GIF whole that could not be written beyond this length.
+/// Completes a GIF that could not be written beyond this length.
 fn end_early(path: &Path, length: u64) -> std::io::Result<()> {
     use std::io::{Seek as _, SeekFrom, Write as _};
     const TRAILER: u8 = 0x3b;
@@ -316,7 +318,7 @@ mod tests {
     use crate::scene::{Source, open};
     use crate::simulation::Simulation;
 
-    /// The pictures of a GIF in RGB, with the hundredths of a second that each is shown.
+    /// Returns the frames of a GIF in RGB, each with its duration in 1/100 s.
     fn decode(path: &Path) -> Vec<(Vec<u8>, u16)> {
         let mut options = gif::DecodeOptions::new();
         options.set_color_output(gif::ColorOutput::RGBA);
@@ -341,7 +343,7 @@ mod tests {
         Picture { size: [20, 20], rgba }
     }
 
-    /// Writes pictures by their numbers, and says what `encode` says.
+    /// Writes frames with their numbers, and returns the message of `encode`.
     fn encoded(path: &Path, pictures: Vec<(u64, Picture)>, end: u64) -> String {
         let (sender, receiver) = sync_channel(pictures.len());
         pictures.into_iter().for_each(|picture| sender.send(picture).unwrap());
@@ -397,13 +399,13 @@ mod tests {
         assert!(words.starts_with("Saved"), "{words}");
         let movie = decode(&path);
         assert!(movie.len() >= 3, "{}", movie.len());
-        // The film is as long as the recording took, in steps of 0.04 s.
+        // The film has the duration of the recording, in steps of 0.04 s.
         let length: u16 = movie.iter().map(|(_, delay)| delay).sum();
         assert!(length.abs_diff(180) <= 8 && movie.iter().all(|(_, delay)| delay.is_multiple_of(4)), "{length}");
         let (shown, _) = movie.last().unwrap();
         let drawn = last.rgba.chunks(4).flat_map(|pixel| &pixel[..3]);
         let far = drawn.zip(shown).filter(|(a, b)| a.abs_diff(**b) > 24).count();
-        // Pictures may be left out, also the last one: most of the two is the same.
+        // Frames may be skipped, including the last one; most of the two images is equal.
         assert!(far < shown.len() / 20, "{far} of {} differ", shown.len());
         assert!(movie.windows(2).any(|pair| pair[0].0 != pair[1].0), "nothing moves");
     }
@@ -426,14 +428,14 @@ mod tests {
         let path = folder.path().join("cut.gif");
         encoded(&path, vec![(0, plain([1, 2, 3], [4, 5, 6])), (1, plain([4, 5, 6], [1, 2, 3]))], 2);
         let (whole, length) = (decode(&path), std::fs::metadata(&path).unwrap().len());
-        // A picture of which only a part could be written.
+        // A frame of which only a part could be written.
         let mut bytes = std::fs::read(&path).unwrap();
         bytes.truncate(length as usize - 1);
         bytes.extend([0x2c, 0, 0, 0, 0, 20, 0]);
         std::fs::write(&path, bytes).unwrap();
         end_early(&path, length - 1).unwrap();
         assert_eq!(decode(&path), whole);
-        // Nowhere to write to.
+        // The folder does not exist.
         let words = encoded(&folder.path().join("none/a.gif"), vec![(0, plain([1; 3], [2; 3]))], 1);
         assert!(words.starts_with("No recording") && words.contains("a.gif"), "{words}");
         assert_eq!(encoded(&path, Vec::new(), 0), "Nothing was recorded");

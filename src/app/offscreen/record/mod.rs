@@ -1,4 +1,4 @@
-//! Moving pictures of a lab without a window.
+//! Recordings of a lab without a window.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -25,129 +25,129 @@ mod colors;
 mod film;
 mod live;
 
-/// Pictures a second of a motion, where none are asked for: what GIF can say exactly.
+/// Default frames per second of a motion: a rate that GIF represents exactly.
 const MOTION_RATE: u16 = 25;
-/// Pictures a second of an iteration: slow enough to see each.
+/// Default frames per second of an iteration: slow enough to see each frame.
 const SEARCH_RATE: u16 = 4;
-/// How long an equilibrium is shown at the end, s.
+/// Duration for which an equilibrium is shown at the end, s.
 const HOLD: f64 = 2.0;
-/// A fraction of a step, or of the time between pictures, that is rounding.
+/// Tolerance for rounding, as a fraction of a step or of the time between frames.
 const NO_TIME: f64 = 1e-6;
-/// Sizes of the body that the picture may show: what goes farther leaves it.
+/// Largest size of the area shown of a motion, relative to the body; states beyond it are cut off.
 const LARGEST_VIEW: f64 = 20.0;
-/// How much larger than what is shown in the end the way to it may be.
+/// Largest size of the area shown of an iteration, relative to the area of rest and final state.
 const LARGEST_WAY: f64 = 1.5;
-/// Pictures whose colours a palette is made of, at most.
+/// Largest number of frames that a palette is made from.
 const SAMPLES: usize = 12;
 
-/// Why there is no moving picture.
+/// Reason for which there is no recording.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// The file name asks for a format there is not.
+    /// The file name has an unknown format.
     #[error(
         "{}: expected a file name ending in .gif, or the name of a folder for numbered pictures, \
          which ffmpeg makes a film of",
         .0.display()
     )]
     UnknownFormat(PathBuf),
-    /// There is no folder to write the file to.
+    /// The folder of the file does not exist.
     #[error("{}: no such folder", .0.display())]
     NoFolder(PathBuf),
-    /// A folder has numbered pictures already.
+    /// The folder already contains numbered images.
     #[error("{}: has {count} numbered pictures; --overwrite replaces them", folder.display())]
     HasPictures {
         /// The folder.
         folder: PathBuf,
-        /// Its numbered pictures.
+        /// Number of numbered images.
         count: usize,
     },
-    /// A time was asked of a body at rest.
+    /// A duration was requested for a body at rest.
     #[error("expected no --seconds and no --speed: this scene is static, and each picture is an iteration")]
     NotInMotion,
     /// The scene cannot be simulated.
     #[error("{scene}: {error}")]
     Simulation {
-        /// What it was opened as.
+        /// Name of the scene.
         scene: String,
-        /// Why.
+        /// Reason.
         error: SimulationError,
     },
     /// The recording cannot be written.
     #[error("{}: {reason}", path.display())]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The reason.
         reason: String,
     },
 }
 
-/// What a recording looks like.
+/// Options of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordOptions {
-    /// Pixels.
+    /// Size, pixels.
     pub size: [u32; 2],
-    /// How much of a motion is recorded, s; else the scene's duration.
+    /// Recorded duration of a motion, s; `None` means the scene's duration.
     pub seconds: Option<f64>,
-    /// Seconds of the motion in a second of the recording; else 1.
+    /// Playback speed, simulated seconds per second of the recording; `None` means 1.
     pub speed: Option<f64>,
-    /// Pictures a second; else 25, and 4 of a search.
+    /// Frames per second; `None` means 25 for a motion, and 4 for an iteration.
     pub fps: Option<u16>,
-    /// Replaces the numbered pictures that the folder has.
+    /// `true` if numbered images in the folder are replaced.
     pub overwrite: bool,
     /// Light or dark.
     pub theme: ThemeChoice,
-    /// Of the words.
+    /// Language of the texts.
     pub language: Language,
 }
 
-/// What is being done.
+/// Phase of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// The motion is run to find what the camera and the colours have to span.
+    /// The motion is simulated to find the ranges of the camera and of the colours.
     Looking,
-    /// Pictures are drawn.
+    /// Frames are drawn.
     Drawing,
 }
 
-/// How far a recording is.
+/// Progress of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordProgress {
-    /// What is being done.
+    /// Current phase.
     pub phase: Phase,
-    /// Fraction of that, 0 to 1.
+    /// Fraction of the phase that is done, 0 to 1.
     pub fraction: f64,
-    /// Time of the motion that has been reached, s.
+    /// Current simulated time of the motion, s.
     pub time: f64,
-    /// Pictures drawn so far.
+    /// Number of frames drawn so far.
     pub drawn: u64,
-    /// Pictures in all; 0 while that is being found out.
+    /// Total number of frames; 0 until it is known.
     pub pictures: u64,
 }
 
-/// Is told how far a recording is, and calls it off with [`ControlFlow::Break`].
+/// Callback that receives the progress of a recording, and can cancel it with [`ControlFlow::Break`].
 pub type RecordObserver<'a> = &'a mut dyn FnMut(RecordProgress) -> ControlFlow<()>;
 
-/// What has been recorded.
+/// Result of a recording.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Recorded {
-    /// Pictures written; 0: there is no file.
+    /// Number of frames written; 0 means that there is no file.
     pub pictures: u64,
-    /// Pictures a second, as the format can have them.
+    /// Frames per second, as the format represents them.
     pub rate: f64,
     /// The format.
     pub format: MovieFormat,
-    /// Whether it was called off before its end.
+    /// `true` if the recording was cancelled before its end.
     pub interrupted: bool,
-    /// How the motion, or the search, ended, or where it was called off.
+    /// Final status of the motion or iteration, or its status when it was cancelled.
     pub status: Status,
 }
 
-/// Records the scene in motion, or on its way to equilibrium, from its start. It is run twice: once to learn what the
-/// camera and the colours have to span, so that neither moves, and once to draw. What `observe` calls off is a shorter
-/// recording, and none where nothing has been drawn yet.
+/// Records the scene's motion, or its iteration to equilibrium, from the start. The simulation runs twice: once to find
+/// the ranges of the camera and of the colours, so that both are constant, and once to draw. A recording cancelled by
+/// `observe` is shorter; if no frame has been drawn yet, there is none.
 ///
 /// # Errors
 /// [`AppError::Render`], [`AppError::Record`].
@@ -160,7 +160,7 @@ pub fn record(
 ) -> Result<Recorded, AppError> {
     let format = MovieFormat::of(output)?;
     if format == MovieFormat::Folder && !options.overwrite {
-        // Before the work, not after.
+        // Fails before the simulation, not after it.
         film::clear(output, false)?;
     }
     let moves = scene.analysis == Analysis::Dynamic;
@@ -194,7 +194,7 @@ pub fn record(
     if format == MovieFormat::Gif {
         let mut lab = new_lab()?;
         for state in &preview.samples {
-            // A state of the same equations is taken.
+            // Cannot fail: the state belongs to the same equations.
             if lab.restore(state) {
                 samples.push(draw(&mut canvas, &mut lab, 0)?);
             }
@@ -215,7 +215,7 @@ pub fn record(
             pictures: preview.pictures,
         };
         let reached = reel.advance(k, &mut lab, &mut |time| observe(told(time)));
-        // At least a picture: a file without one is none.
+        // Even a cancelled recording has one frame, because a file without frames is invalid.
         if k > 0 && reached != Reached::Picture {
             break;
         }
@@ -227,20 +227,20 @@ pub fn record(
     film.finish()?;
     recorded.interrupted = recorded.pictures < preview.pictures;
     recorded.status = match lab.simulation().status() {
-        // The last picture may be earlier than the last step.
+        // The last frame may be earlier than the last step.
         Status::Running if moves && !recorded.interrupted => Status::Finished,
         status => status.clone(),
     };
     Ok(recorded)
 }
 
-/// Draws the lab, and the time or the iteration above the body.
+/// Draws the lab, with the time or the iteration above the body.
 fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, RenderError> {
     language::speak(lab.language());
     let simulation = lab.simulation();
     let text = match simulation.motion() {
         Some(_) => {
-            // As many digits as tell steps apart.
+            // The number of digits distinguishes consecutive steps.
             let digits = -simulation.scene().dynamics.time_step.log10();
             format!("{:.*} s", digits.ceil().clamp(2.0, 9.0) as usize, simulation.state().time())
         }
@@ -254,26 +254,26 @@ fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, Rende
     })
 }
 
-/// Which states are the pictures: those of a motion at times evenly spread, those of a search one by one.
+/// Times of the frames: a motion has frames at equal intervals of time, an iteration one frame per iteration.
 struct Reel {
-    /// Time of the motion from picture to picture, s.
+    /// Simulated time between two frames, s.
     between: f64,
-    /// When it ends, s.
+    /// Duration of the motion, s.
     duration: f64,
 }
 
-/// Where a simulation has been taken.
+/// Result of advancing a simulation to a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reached {
-    /// The state of the picture that was asked for.
+    /// The simulation has the state of the requested frame.
     Picture,
-    /// There is no such picture.
+    /// The requested frame does not exist.
     End,
-    /// Called off on the way.
+    /// The recording was cancelled on the way.
     CalledOff,
 }
 
-/// What is taken from picture to picture: a simulation, or a lab that remembers the way for its trail.
+/// Simulation that is advanced from frame to frame: alone, or in a lab, which records the trail.
 trait Moving {
     fn simulation(&self) -> &Simulation;
     fn step(&mut self);
@@ -300,7 +300,7 @@ impl Moving for Lab {
 }
 
 impl Reel {
-    /// Takes a simulation from picture to picture `k`: the last step that is not later. `observe` is told the time.
+    /// Advances a simulation to frame `k`: to the last step that is not later. `observe` receives the time.
     fn advance(&self, k: u64, body: &mut impl Moving, observe: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Reached {
         let time = |body: &dyn Moving| body.simulation().state().time();
         if observe(time(body)).is_break() {
@@ -326,26 +326,26 @@ impl Reel {
                 return Reached::CalledOff;
             }
         }
-        // A motion that was given up has no pictures beyond.
+        // A motion that has been stopped has no further frames.
         let given_up = matches!(body.simulation().status(), Status::Stopped(_)) && time(body) + step <= at;
         if given_up { Reached::End } else { Reached::Picture }
     }
 }
 
-/// What a run shows of its pictures before they are drawn.
+/// Ranges of a recording, found before its frames are drawn.
 struct Preview {
     pictures: u64,
-    /// The box that holds the body, m.
+    /// Box that contains the body in all frames, m.
     low: Vector2<f64>,
     high: Vector2<f64>,
-    /// The values that the colours span.
+    /// Range of the colour map.
     range: [f64; 2],
-    /// Some of the states, evenly spread.
+    /// Evenly spaced samples of the states.
     samples: Vec<State>,
 }
 
 impl Preview {
-    /// Of a whole run; `None` where it was called off.
+    /// Simulates the whole recording; `None` if it was cancelled.
     fn new(reel: &Reel, mut simulation: Simulation, observe: RecordObserver<'_>) -> Option<Self> {
         let moves = simulation.motion().is_some();
         let (low, high) = simulation.system().mesh().bounds();
@@ -369,7 +369,7 @@ impl Preview {
             }
             let (low, high) = bounds(&simulation);
             if moves {
-                // What explodes neither shrinks the body to a dot nor takes all colours.
+                // Unstable states extend neither the view nor the colour range.
                 if preview.include(low, high, largest) {
                     smooth_values(&simulation, &mut values);
                     values.append(&mut extremes);
@@ -404,10 +404,11 @@ impl Preview {
         Some(preview)
     }
 
-    /// Widens the box to hold another, unless it were larger than this then; whether it does.
+    /// Extends the box to contain another, unless it would become larger than `largest`; returns `true` if it was
+    /// extended.
     fn include(&mut self, low: Vector2<f64>, high: Vector2<f64>, largest: f64) -> bool {
         let (low, high) = (self.low.inf(&low), self.high.sup(&high));
-        // Not of a box that is not finite either.
+        // `false` also for a box that is not finite.
         let fits = (high - low).norm() <= largest;
         if fits {
             (self.low, self.high) = (low, high);
@@ -416,14 +417,14 @@ impl Preview {
     }
 }
 
-/// The box that holds the nodes where they are, m.
+/// Returns the box that contains the current positions of the nodes, m.
 fn bounds(simulation: &Simulation) -> (Vector2<f64>, Vector2<f64>) {
     let nodes = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
     let none = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
     nodes.fold(none, |(low, high), p| (low.inf(&p), high.sup(&p)))
 }
 
-/// The values that colour the body.
+/// Computes the values of the default field at the nodes.
 fn smooth_values(simulation: &Simulation, values: &mut Vec<Option<f64>>) {
     simulation.smooth_field(Field::default(), (&mut None, &mut RecoveryScratch::default()), values);
 }
@@ -441,7 +442,7 @@ mod tests {
         Reel { between, duration: simulation.scene().dynamics.duration }
     }
 
-    /// Runs to the end; `each` sees every picture.
+    /// Advances through all frames, calls `each` for every frame, and returns their number.
     fn run(reel: &Reel, mut simulation: Simulation, each: &mut dyn FnMut(u64, &Simulation)) -> u64 {
         for k in 0.. {
             match reel.advance(k, &mut simulation, &mut |_| ControlFlow::Continue(())) {
@@ -454,7 +455,7 @@ mod tests {
 
     #[test]
     fn a_picture_shows_the_last_step_that_is_not_later() {
-        // Steps shorter than the time between pictures, the same, and longer.
+        // Steps that are shorter than the time between frames, equal to it, and longer.
         for (step, between, pictures) in [(0.01, 0.04, 26), (0.01, 0.03, 34), (0.04, 0.04, 26), (0.1, 0.04, 26)] {
             let swing = simulation("swing", &[&format!("dynamics.time_step={step}"), "dynamics.duration=1"]);
             let reel = reel(&swing, between);
@@ -477,12 +478,12 @@ mod tests {
             let moves = again().motion().is_some();
             let seen = run(&reel, again(), &mut |k, simulation| {
                 let (low, high) = bounds(simulation);
-                // On the way to an equilibrium an iteration may leave the picture; the end is in it.
+                // Iterations before the equilibrium may leave the frame; the equilibrium is inside it.
                 let shown = moves || *simulation.status() == Status::Converged;
                 assert!(!shown || low >= preview.low && high <= preview.high, "{id}, picture {k}");
                 smooth_values(simulation, &mut values);
                 let [low, high] = range_of(&values);
-                // A body at rest has a range of its own.
+                // The colour range of a body at rest covers its last state only.
                 let strained = values.iter().flatten().any(|v| *v > 0.0);
                 assert!(
                     !moves || !strained || low >= preview.range[0] && high <= preview.range[1],
@@ -498,7 +499,7 @@ mod tests {
         assert!(called_off.is_none());
     }
 
-    /// A motion that explodes does not make the picture infinitely large.
+    /// An unstable motion does not make the view infinitely large.
     #[test]
     fn what_explodes_leaves_the_picture() {
         let swing = simulation("swing", &["dynamics.integrator=symplectic-euler", "dynamics.time_step=0.001"]);

@@ -1,4 +1,4 @@
-//! The picker of scenes: a gallery of the built-in ones, each with its thumbnail, name and sentence.
+//! Gallery of the built-in scenes, each with thumbnail, name and description.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -22,14 +22,14 @@ use crate::scene::{Analysis, Scene, registry};
 mod thumbnail;
 mod workshop;
 
-/// Size of a thumbnail, and height of an entry around it, points.
+/// Size of a thumbnail, and height of its entry, points.
 const THUMBNAIL: egui::Vec2 = vec2(112.0, 68.0);
 const HEIGHT: f32 = 80.0;
-/// An entry is no wider than this, points, and no narrower than that where there are two beside each other.
+/// Largest width of an entry in two columns, and smallest width for which there are two columns, points.
 const WIDEST: f32 = 420.0;
 const NARROWEST: f32 = 340.0;
 
-/// A built-in scene, as it is offered.
+/// Built-in scene in the gallery.
 struct Entry {
     id: &'static str,
     name: String,
@@ -45,10 +45,10 @@ static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| {
     registry::BUILT_IN.iter().filter_map(entry).collect()
 });
 
-/// The groups of entries, with their headings.
+/// Groups of entries with their headings.
 const GROUPS: [(Analysis, &str); 2] = [(Analysis::Dynamic, "In motion"), (Analysis::Static, "At rest")];
 
-/// The thumbnails that there are. They are made when the gallery is opened first.
+/// Gallery with its thumbnails, which are made when it is opened for the first time.
 #[derive(Debug, Default)]
 pub(crate) struct Gallery {
     thumbnails: BTreeMap<&'static str, Thumbnail>,
@@ -56,7 +56,7 @@ pub(crate) struct Gallery {
     is_open: bool,
 }
 
-/// How far the thumbnails are.
+/// State of the work on the thumbnails.
 #[derive(Debug, Default)]
 enum Work {
     #[default]
@@ -66,10 +66,10 @@ enum Work {
 }
 
 impl Gallery {
-    /// Takes the thumbnails that are ready; begins with them where nobody has.
+    /// Receives the thumbnails that are ready; starts the work on the first call.
     fn listen(&mut self, ctx: &Context) {
         if matches!(self.work, Work::NotBegun) {
-            // Without thumbnails there are names and sentences.
+            // If the thread cannot be started, the gallery shows names and descriptions only.
             self.work = Workshop::start().map_or(Work::Ended, Work::Goes);
         }
         while let Work::Goes(workshop) = &self.work {
@@ -81,7 +81,7 @@ impl Gallery {
         }
     }
 
-    /// The button with the scene's name, which opens the gallery.
+    /// Shows the button with the scene's name, which opens the gallery.
     pub(crate) fn show(&mut self, ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) {
         let palette = Palette::new(ui.visuals());
         let window = ui.ctx().content_rect().size();
@@ -97,7 +97,7 @@ impl Gallery {
     }
 
     fn entries(&mut self, ui: &mut Ui, input: &Readout<'_>, window: f32, actions: &mut Vec<Action>) {
-        /// What is beside the entries: margins and the scroll bar.
+        /// Width of the margins and the scroll bar, points.
         const BESIDE: f32 = 36.0;
         const GAP: f32 = 6.0;
         self.listen(ui.ctx());
@@ -117,7 +117,7 @@ impl Gallery {
             }
             ui.label(RichText::new(tr("or drop one on the window")).small().color(palette.secondary));
         });
-        // Who opens it by a key goes on by keys.
+        // If the gallery was opened with a key, an entry gets the keyboard focus.
         let by_key = ui.input(|i| !i.pointer.any_down() && !i.pointer.any_released());
         for (analysis, heading) in GROUPS {
             ui.label(RichText::new(tr(heading)).small().color(palette.secondary));
@@ -135,7 +135,7 @@ impl Gallery {
                         }
                         if response.clicked() {
                             actions.push(Action::Open(entry.id));
-                            // A key closes nothing by itself.
+                            // A click closes the gallery by itself, a key does not.
                             ui.close();
                         }
                     }
@@ -177,7 +177,7 @@ impl Gallery {
         }
         let left = plate.right() + TEXT;
         let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
-        // On what is chosen or under the pointer only the text's own colour has the contrast.
+        // On selected or hovered entries only the main text colour has enough contrast.
         let quiet = if fill == palette.control { palette.secondary } else { palette.text };
         let mut job = LayoutJob::default();
         job.append(tr(&entry.name), 0.0, format(BODY, palette.text));
@@ -196,7 +196,7 @@ impl Gallery {
 mod tests {
     use super::*;
 
-    /// Every scene gets its thumbnail, made by a thread; then nothing is waited for.
+    /// A background thread makes the thumbnails of all scenes, and the work then ends.
     #[test]
     fn thumbnails_come_in_beside_the_window() {
         let ctx = Context::default();

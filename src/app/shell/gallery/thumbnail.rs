@@ -1,4 +1,5 @@
-//! A small picture of a scene: the body at rest as an outline, and where the scene takes it, coloured like the view.
+//! Thumbnail of a scene: the body at rest as an outline, and its equilibrium or a state of its motion, coloured as in
+//! the view.
 
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Color32, Painter, Pos2, Rect, Shape as Painted, Stroke, vec2};
@@ -13,33 +14,34 @@ use crate::render::{Camera, Margins};
 use crate::scene::Scene;
 use crate::simulation::{Field, Simulation, Status};
 
-/// A motion is shown this long after its start, s.
+/// Time at which a motion is shown, s.
 const MOMENT: f64 = 0.4;
-/// Most iterations or time steps of a small body; a large one has fewer.
+/// Largest number of iterations or time steps; large bodies have fewer.
 const MOST_STEPS: usize = 200;
-/// Unknowns times steps are at most about this many, but for the fewest steps.
+/// Largest product of unknowns and steps, unless that gives fewer steps than `FEWEST_STEPS`.
 const WORK: usize = 400_000;
 const FEWEST_STEPS: usize = 8;
 
-/// What is drawn of a scene.
+/// Drawing of a scene.
 #[derive(Debug)]
 pub(super) struct Thumbnail {
     scene: Scene,
     field: Field,
-    /// The field's values at the two ends of the colour map.
+    /// Values of the field at both ends of the colour map.
     range: [f64; 2],
-    /// Where the drawn points are, m: at rest, and moved.
+    /// Positions of the drawn points, m: at rest, and displaced.
     rest: Vec<Vector2<f64>>,
     moved: Vec<Vector2<f64>>,
-    /// Lines around the body, through these points.
+    /// Lines of the outline, as indices of points.
     outline: Vec<Vec<u32>>,
     triangles: Vec<[u32; 3]>,
-    /// At their corners.
+    /// Values of the field at the corners of the triangles.
     values: Vec<[Option<f64>; 3]>,
 }
 
 impl Thumbnail {
-    /// Takes a scene as far as its picture needs, or until it is called off; `None` where it cannot be set up.
+    /// Computes the state that the thumbnail shows, or an earlier one if `is_called_off` returns `true`; `None` if the
+    /// scene cannot be set up.
     pub(super) fn of(scene: &Scene, is_called_off: impl Fn() -> bool) -> Option<Self> {
         let mut simulation = Simulation::new(scene).ok()?;
         simulation.keep_ledger(false);
@@ -65,7 +67,7 @@ impl Thumbnail {
         Some(Self { scene: scene.clone(), field: view.field, range, rest, moved, outline, triangles, values })
     }
 
-    /// Paints it in the middle of a place, as large as that allows.
+    /// Paints the thumbnail in the middle of `place`, as large as possible.
     pub(super) fn paint(&self, painter: &Painter, place: Rect, palette: &Palette) {
         const MARGIN: f64 = 7.0;
         let infinity = Vector2::repeat(f64::INFINITY);
@@ -85,7 +87,7 @@ impl Thumbnail {
     }
 
     fn lines(&self, points: &[Pos2], stroke: Stroke) -> Vec<Painted> {
-        /// Points nearer to each other are one.
+        /// Points closer together than this, in points of the window, are merged.
         const NEAR: f32 = 0.7;
         let line = |numbers: &Vec<u32>| {
             let mut line: Vec<Pos2> = Vec::new();
@@ -130,7 +132,7 @@ mod tests {
         Thumbnail::of(&scene, || false).unwrap()
     }
 
-    /// Every scene has one, whose body is where the scene takes it: at the equilibrium, or away from the start.
+    /// Every scene has a thumbnail, whose body is displaced: at the equilibrium, or away from the start.
     #[test]
     fn it_shows_what_the_scene_does() {
         for built_in in registry::BUILT_IN {
@@ -155,7 +157,7 @@ mod tests {
         }
     }
 
-    /// What has been called off is at rest.
+    /// A cancelled thumbnail shows the body at rest.
     #[test]
     fn it_can_be_called_off() {
         let scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();

@@ -1,4 +1,4 @@
-//! The thread that makes the thumbnails of the built-in scenes, one after the other.
+//! Background thread that makes the thumbnails of the built-in scenes one after the other.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use super::thumbnail::Thumbnail;
 use crate::scene::{self, Source, registry};
 
-/// The work on all thumbnails, beside the window. Dropped, it is called off.
+/// Background work on all thumbnails. Dropping it cancels it.
 #[derive(Debug)]
 pub(super) struct Workshop {
     receiver: Receiver<(&'static str, Thumbnail)>,
@@ -15,10 +15,10 @@ pub(super) struct Workshop {
 }
 
 impl Workshop {
-    /// Begins.
+    /// Starts the thread.
     ///
     /// # Errors
-    /// There is no thread for it.
+    /// The system cannot start another thread.
     pub(super) fn start() -> std::io::Result<Self> {
         let (sender, receiver) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
@@ -27,7 +27,8 @@ impl Workshop {
         Ok(Self { receiver, cancel })
     }
 
-    /// The next thumbnail that is ready, with its scene's name; the error says that none is yet, or that there are no more.
+    /// Returns the next thumbnail that is ready, with its scene's name; the error tells whether none is ready yet or no
+    /// more will follow.
     pub(super) fn hear(&self) -> Result<(&'static str, Thumbnail), TryRecvError> {
         self.receiver.try_recv()
     }
