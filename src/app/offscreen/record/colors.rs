@@ -86,7 +86,7 @@ fn nearest(palette: &[Color], color: Color) -> (u8, bool) {
     nearest.map_or((0, true), |(distance, place)| (place, distance > FAR))
 }
 
-/// Median cut, Heckbert 1982: halves the widest box of colours until there are `most` boxes, and returns their means.
+/// Halves the widest box of colours until there are `most` boxes, and returns their means: median cut, Heckbert 1982.
 fn median_cut(colors: Vec<(Color, u64)>, most: usize) -> Vec<Color> {
     if colors.is_empty() || most == 0 {
         return Vec::new();
