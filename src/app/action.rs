@@ -35,7 +35,7 @@ pub(crate) enum Action {
     Edit(&'static str, Box<Scene>),
     /// Start or stop iterating.
     ToggleRun,
-    /// One iteration.
+    /// Make one iteration or one time step.
     Step,
     /// Show the recorded state of a motion that is closest to this time, s, and pause there.
     Scrub(f64),

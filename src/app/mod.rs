@@ -1,5 +1,5 @@
-//! The window and its pictures. [`Lab`] is what is shown: a scene, its simulation and how to look at it. The
-//! window, the offscreen shot and the tests of the panel all show the same lab through [`Lab::ui`].
+//! The application: window, screenshots and recordings. [`Lab`] is the content of a window: a scene, its simulation and
+//! the display options. The window, the offscreen shot and the tests of the panel all show it through [`Lab::ui`].
 
 use std::path::PathBuf;
 
@@ -35,30 +35,30 @@ pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
 pub use window::{Display, NoDisplay, opens_beside, run};
 
-/// No number is free for a file's name.
+/// Error if all numbered file names are taken.
 #[derive(Debug, Error)]
 #[error("warpbeam-001.{extension} to warpbeam-999.{extension} all exist")]
 struct NoName {
     extension: &'static str,
 }
 
-/// The first of `warpbeam-001.png`, … that does not exist.
+/// Returns the first of the names `warpbeam-001.png`, … for which no file exists.
 fn free_name(extension: &'static str) -> Result<PathBuf, NoName> {
     let mut names = (1..1000).map(|i| PathBuf::from(format!("warpbeam-{i:03}.{extension}")));
     names.find(|path| !path.exists()).ok_or(NoName { extension })
 }
 
-/// Why the window closed.
+/// Error of the window, of a screenshot or of a recording.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AppError {
-    /// Nothing to draw with, or a picture not written.
+    /// Drawing failed, or an image could not be written.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// No moving picture.
+    /// The recording failed.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// The window system gave no window.
+    /// The window system failed to open or to run the window.
     #[error("no window: {0}")]
     Window(String),
 }

@@ -1,4 +1,4 @@
-//! The state of the model and of its results that bars, panel and cards show.
+//! State of the model and of its results, as shown by bars, panel and cards.
 
 use crate::app::language::Language;
 use crate::app::session::playback::Playback;
@@ -16,7 +16,7 @@ pub(crate) struct Readout<'a> {
     pub original: &'a Scene,
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
-    /// The same scene solved with linear theory.
+    /// Solution of the same scene with linear theory.
     pub linear: Option<&'a Simulation>,
     pub running: bool,
     /// `true` if the calculation or the motion that is shown has ended.

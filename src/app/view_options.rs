@@ -8,10 +8,10 @@ use crate::simulation::Field;
 /// Mode of the user interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Mode {
-    /// The body, its load and its numbers.
+    /// Body, load and results.
     #[default]
     Explore,
-    /// The article on a row of cards.
+    /// Article on a row of cards.
     Learn,
     /// Two to four settings side by side under one load.
     Compare,
@@ -19,7 +19,7 @@ pub(crate) enum Mode {
     Budget,
 }
 
-/// A mode in the toolbar.
+/// Entry of a mode in the toolbar.
 pub(crate) struct ModeEntry {
     pub mode: Mode,
     pub name: &'static str,

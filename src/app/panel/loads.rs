@@ -12,7 +12,7 @@ use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::scene::{Load, Place, Scene, limits};
 use crate::words::engineering;
 
-/// Standard gravity of the earth, m/s².
+/// Gravitational acceleration on earth, m/s².
 const EARTH: f64 = 9.81;
 
 /// Returns the forces of a scene, each with its index among the loads.

@@ -7,7 +7,7 @@ use crate::words::two_digits;
 
 /// Displayed frames per second for which the costs of motions are stated.
 pub(crate) const FRAMES: f64 = 60.0;
-/// Share of a frame's time available for time steps; the rest is for drawing.
+/// Largest time per frame for time steps; the rest of the frame is for drawing.
 const WORK: Duration = Duration::from_millis(24);
 
 /// Lowest playback speed, simulated seconds per second.

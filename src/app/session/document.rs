@@ -93,15 +93,16 @@ fn written(path: &Path) -> Option<SystemTime> {
 /// the new content, never a part.
 ///
 /// # Errors
-/// The system's; the previous content is unchanged.
+/// Error of the operating system; the previous content is unchanged.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_beside(path, bytes, true)
 }
 
-/// [`write_whole`] without waiting for the disk: the file survives a crash of the program, but not of the machine.
+/// Writes a file as [`write_whole`] does, but without waiting for the disk: the file survives a crash of the program,
+/// but not of the machine.
 ///
 /// # Errors
-/// The system's; the previous content is unchanged.
+/// Error of the operating system; the previous content is unchanged.
 pub(crate) fn write_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_beside(path, bytes, false)
 }

@@ -33,7 +33,7 @@ use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::timings::Timings;
 
-/// A change of the model that can be undone.
+/// Change of the model that can be undone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Edit {
     /// Change the scene with the control of this label. Edits with one control during one press are one undo step.

@@ -54,7 +54,7 @@ struct Copy {
 /// Writes an edited scene and its document to a file.
 ///
 /// # Errors
-/// The system's; the previous content is unchanged.
+/// Error of the operating system; the previous content is unchanged.
 fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
     let Source { name, assignments } = &document.source;
     let name = if document.path().is_some() { std::path::absolute(name)? } else { name.clone() };
@@ -118,7 +118,7 @@ impl Recovery {
     /// has left there.
     ///
     /// # Errors
-    /// The system's, or all files are taken.
+    /// Error of the operating system, or all files are taken.
     pub fn open(folder: &Path) -> io::Result<(Self, Option<Unsaved>)> {
         std::fs::create_dir_all(folder)?;
         let mut left = None;
@@ -143,7 +143,7 @@ impl Recovery {
     /// the next attempt if it is too early to write.
     ///
     /// # Errors
-    /// The system's.
+    /// Error of the operating system.
     pub(crate) fn keep(&mut self, edits: Option<(&Document, &Scene)>) -> io::Result<Option<Instant>> {
         if self.written.as_ref().map(|written| (&written.document, &written.scene)) != edits {
             let due = self.last.map(|last| last + PAUSE).filter(|due| *due > Instant::now());

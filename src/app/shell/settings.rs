@@ -81,7 +81,7 @@ impl Settings {
     /// Writes the settings to a file, and creates its folder if necessary.
     ///
     /// # Errors
-    /// The system's.
+    /// Error of the operating system.
     pub fn save(&self, file: &Path) -> std::io::Result<()> {
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder)?;

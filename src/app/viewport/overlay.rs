@@ -358,7 +358,7 @@ fn moved_supports(
 /// Height that the colour bar takes at the bottom or the top of the view, points.
 pub(crate) const LEGEND_HEIGHT: f32 = 66.0;
 
-/// Width that it takes on the right of the view, points.
+/// Width that the colour bar takes on the right of the view, points.
 pub(crate) const LEGEND_WIDTH: f32 = 300.0;
 
 /// Smallest size of a view with a colour bar, points.

@@ -1,4 +1,4 @@
-//! The view of one body: its camera, its drawn mesh, the pointer over it, and the overlays.
+//! View of one body: camera, drawn mesh, pointer, and overlays.
 
 use egui::{Align2, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
 use nalgebra::Vector2;
@@ -40,7 +40,7 @@ pub(crate) struct Content<'a> {
     pub direction: f64,
     /// Body and linear solution of an animation, drawn in place of the session's.
     pub animation: Option<(&'a Simulation, Option<&'a Simulation>)>,
-    /// The card of Learn below the view.
+    /// Card of Learn below the view.
     pub card: Option<CardContent<'a>>,
 }
 
@@ -582,7 +582,7 @@ fn least_margins(content: &Content<'_>, [low, high]: [Vector2<f64>; 2], view: [f
     }
 }
 
-/// Positions of a body's nodes, m.
+/// Returns the positions of a body's nodes, m.
 fn positions(simulation: &Simulation) -> impl Iterator<Item = Vector2<f64>> + '_ {
     simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u)
 }

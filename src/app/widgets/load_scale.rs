@@ -91,8 +91,8 @@ impl LoadScale {
         Self { usual, stub: 0.0, opening: OPENING, decade: (1.0 - STRAIGHT * OPENING) / decades }
     }
 
-    /// Returns the scale of a slider from −1 to 1 whose ends are ∓`largest`. The opening value is in the middle third of
-    /// the whole slider.
+    /// Returns the scale of a slider from −1 to 1 whose ends are ∓`largest`. The opening value is in the middle third
+    /// of the whole slider.
     pub(crate) fn two_sided_slider(usual: f64, largest: f64) -> Self {
         const OPENING: f64 = 0.3;
         let one_sided = Self::slider(usual, largest);

@@ -63,7 +63,8 @@ impl NumberField {
         self.show_beside(ui, messages, value, None)
     }
 
-    /// [`Self::show`] for a value with an original: a double click, or Delete on the slider, restores the original.
+    /// Shows the row as [`Self::show`] does, for a value with an original: a double click, or Delete on the slider,
+    /// restores the original.
     pub(crate) fn show_beside(
         &self,
         ui: &mut Ui,

@@ -45,7 +45,7 @@ pub(crate) struct Palette {
     pub support: Color32,
     pub load: Color32,
     pub hand: Color32,
-    /// Bodies without values of the field.
+    /// Colour of bodies without values of the field.
     pub absent: Color32,
     /// Element sides over the colours of the body, with straight (not premultiplied) alpha.
     pub wire: [u8; 4],

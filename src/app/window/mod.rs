@@ -277,7 +277,7 @@ fn first_size(event_loop: &ActiveEventLoop, wanted: [f32; 2]) -> LogicalSize<f64
 }
 
 impl App {
-    /// Makes the iterations and draws one frame. Returns the delay after which egui requests the next frame.
+    /// Makes the iterations of one frame, draws it, and schedules the next frame that egui requests.
     fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<(), AppError> {
         let Some(open) = &mut self.open else {
             return Ok(());

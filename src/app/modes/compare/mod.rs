@@ -54,7 +54,7 @@ const TRACE_HEIGHT: f32 = 190.0;
 const TRACE_SHARE: f32 = 0.28;
 /// In a window lower than this, points, the load curve is hidden unless the user opens it.
 const LOW: f32 = 560.0;
-/// The same limit if the panes have two rows, points.
+/// Limit of the same kind for panes in two rows, points.
 const LOW_FOR_TWO_ROWS: f32 = 680.0;
 
 /// Input of the comparison of equilibria.

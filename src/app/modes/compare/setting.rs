@@ -39,13 +39,13 @@ pub enum PaneSettingError {
         ELEMENTS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "),
     )]
     Unknown {
-        /// The part.
+        /// Text of the part.
         part: String,
     },
     /// A part repeats a kind of setting.
     #[error("expected one method, element, mesh and number of iterations, got another one: \u{201c}{part}\u{201d}")]
     Twice {
-        /// The part.
+        /// Text of the part.
         part: String,
     },
     /// There are too few or too many panes.

@@ -491,7 +491,7 @@ fn not_triangles(ui: &mut Ui, words: &str, learn: &Learn, actions: &mut Vec<Acti
     });
 }
 
-/// Number of cards.
+/// Returns the number of cards of the mode Learn.
 #[must_use]
 pub fn card_count() -> usize {
     CARDS.len()

@@ -66,7 +66,7 @@ fn last_ratio(residuals: &[f64]) -> Option<f64> {
 }
 
 fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
-    /// Numbers of iterations and highest decade of the axes, at least.
+    /// Smallest number of iterations on the horizontal axis, and decimal exponent at the top of the vertical axis.
     const FEWEST: usize = 12;
     const HIGHEST: f64 = 1.0;
     const LEFT: f32 = 40.0;
