@@ -1,5 +1,5 @@
-//! Sparse factorizations with faer: analysed once, refactorized every iteration without allocating. The only file that
-//! names faer.
+//! Sparse factorizations with faer: analysed once, refactorized every iteration without allocating. No other file uses
+//! faer.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use thiserror::Error;
 
 pub(crate) mod lanczos;
 
-/// Why there is no factor.
+/// Reason why there is no factor.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum SolverError {
     /// The matrix is not positive definite, or not finite.
@@ -28,7 +28,7 @@ pub enum SolverError {
     TooLarge,
 }
 
-/// Which factor is held.
+/// Type of the current factorization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// L Lᵀ.
@@ -37,15 +37,15 @@ enum Kind {
     Indefinite,
 }
 
-/// The order of elimination and the sparsity of the factors of a pattern. Made once and shared: a clone is a pointer.
+/// Elimination order and sparsity of the factors of a pattern. Computed once and shared: a clone copies a pointer.
 #[derive(Clone)]
 pub struct Symbolic(Arc<Analysis>);
 
 struct Analysis {
     structure: SymbolicSparseColMat<usize>,
-    /// Of L Lᵀ: simplicial where that is faster.
+    /// Sparsity of L Lᵀ; simplicial if that is faster.
     definite: SymbolicCholesky<usize>,
-    /// Of L B Lᵀ, where it is another: simplicial factors do not pivot.
+    /// Sparsity of L B Lᵀ, if it differs: simplicial factors do not pivot.
     indefinite: Option<SymbolicCholesky<usize>>,
     price: f64,
 }
@@ -66,9 +66,10 @@ impl std::fmt::Debug for Symbolic {
 }
 
 impl Symbolic {
-    /// Orders (AMD) and analyses the lower triangle of a symmetric matrix, in compressed columns with sorted rows: the
-    /// start of each column and the end of the last, and the row of every entry. The factor is simplicial up to
-    /// 14 entries an unknown (`SPARSE`), supernodal beyond; faer's own choice is up to 2.6 times slower on these meshes.
+    /// Orders (AMD) and analyses the lower triangle of a symmetric matrix, in compressed columns with sorted rows:
+    /// `column_starts` holds the start of each column and the end of the last, `row_indices` the row of every entry.
+    /// The factor is simplicial up to 14 entries per unknown (`SPARSE`), supernodal beyond; faer's own choice is up to
+    /// 2.6 times slower on these meshes.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -76,7 +77,7 @@ impl Symbolic {
         Self::with_ordering(column_starts, row_indices, SymmetricOrdering::Amd)
     }
 
-    /// [`Self::new`] with the order of elimination given: every row once, the first to go first.
+    /// Analyses as [`Self::new`] with a given elimination order: every row once, in the order of elimination.
     pub(crate) fn in_order(
         column_starts: &[usize],
         row_indices: &[usize],
@@ -106,21 +107,21 @@ impl Symbolic {
         Ok(Self(Arc::new(Analysis { structure, definite, indefinite, price })))
     }
 
-    /// Rows of the matrix.
+    /// Returns the number of rows of the matrix.
     #[must_use]
     pub fn size(&self) -> usize {
         self.0.structure.ncols()
     }
 }
 
-/// Up to so many entries an unknown a simplicial factor is faster, factorization and solve together: measured on
-/// cantilevers, by 6 to 22 % on three-node triangles (7 to 13.5 entries), by 5 % on six-node triangles (12.5); with 16 and
-/// more, from some two thousand unknowns on, it is slower, by 10 % and more.
+/// Largest number of factor entries per unknown for which a simplicial factor is faster, factorization and solve
+/// together. Measured on cantilevers: 6 to 22 % faster on three-node triangles (7 to 13.5 entries), 5 % on six-node
+/// triangles (12.5); with 16 and more entries, from about two thousand unknowns on, 10 % slower and more.
 const SPARSE: usize = 14;
-/// Larger systems have more: it is not looked for.
+/// Number of unknowns above which a simplicial factor is not tried, because it has more entries.
 const MOST_SIMPLICIAL: usize = 2500;
 
-/// The sparsity of a factor in an order of elimination: simplicial or supernodal, as the threshold forces it to be.
+/// Computes the sparsity of a factor in an elimination order; `threshold` forces it to be simplicial or supernodal.
 fn symbolic_cholesky(
     structure: &SymbolicSparseColMat<usize>,
     ordering: SymmetricOrdering<'_, usize>,
@@ -130,7 +131,7 @@ fn symbolic_cholesky(
     factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, ordering, params).map_err(|_| SolverError::TooLarge)
 }
 
-/// The place of every row in an order.
+/// Inverts a permutation.
 fn inverse(order: &[usize]) -> Vec<usize> {
     let mut inverse = vec![0; order.len()];
     for (place, &row) in order.iter().enumerate() {
@@ -139,29 +140,29 @@ fn inverse(order: &[usize]) -> Vec<usize> {
     inverse
 }
 
-/// What is coupled with what: the sparsity of a symmetric matrix, without its diagonal.
+/// Adjacency graph: the sparsity of a symmetric matrix, without its diagonal.
 pub(crate) struct Graph(SymbolicSparseColMat<usize>);
 
 impl Graph {
-    /// A graph of the neighbours of every vertex, in ascending order: their start for each vertex and the end of the
-    /// last, and the neighbours. Every vertex is a neighbour of its neighbours.
+    /// Returns a graph from the neighbours of every vertex, in ascending order: `starts` holds the first index of each
+    /// vertex and the end of the last. The relation must be symmetric.
     pub(crate) fn new(starts: Vec<usize>, neighbours: Vec<usize>) -> Self {
         let n = starts.len().saturating_sub(1);
         Self(SymbolicSparseColMat::new_checked(n, n, starts, None, neighbours))
     }
 
-    /// Number of vertices.
+    /// Returns the number of vertices.
     pub(crate) fn size(&self) -> usize {
         self.0.ncols()
     }
 
-    /// The neighbours of a vertex.
+    /// Returns the neighbours of a vertex.
     pub(crate) fn neighbours(&self, vertex: usize) -> &[usize] {
         self.0.row_idx_of_col_raw(vertex)
     }
 
-    /// An order of elimination by approximate minimum degree (Amestoy, Davis and Duff 1996, *An approximate minimum degree
-    /// ordering algorithm*). Of vertices of one degree, the numbers decide.
+    /// Returns an elimination order by approximate minimum degree (Amestoy, Davis and Duff 1996, *An approximate
+    /// minimum degree ordering algorithm*). Ties are broken by vertex numbers.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -176,7 +177,7 @@ impl Graph {
         Ok(order)
     }
 
-    /// The operations of a factorization in an order of elimination, for one unknown a vertex.
+    /// Returns the number of operations of a factorization in an elimination order, for one unknown per vertex.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -188,7 +189,7 @@ impl Graph {
     }
 }
 
-/// The operations of a factorization and of a back substitution.
+/// Returns the numbers of operations of a factorization and of a back substitution.
 fn operations(symbolic: &SymbolicCholesky<usize>) -> [f64; 2] {
     let (mut factorization, mut substitution) = (0.0, 0.0);
     match symbolic.raw() {
@@ -211,11 +212,11 @@ fn operations(symbolic: &SymbolicCholesky<usize>) -> [f64; 2] {
     [factorization, substitution]
 }
 
-/// See [`Factor::price`]: from the operations that the sparsity says, not from a clock.
+/// Computes [`Factor::price`] from the sparsity, not from measured times.
 fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
-    // What small columns and fronts take, and the price of an operation of a factorization over that of a back
-    // substitution, which waits for memory: fitted to beams, simplicial of 100 to 1 200 unknowns, supernodal of 40 to
-    // 33 000.
+    // Overhead of small columns and fronts, and cost of an operation of a factorization relative to one of a back
+    // substitution, which is limited by memory bandwidth: fitted to beams, simplicial with 100 to 1 200 unknowns,
+    // supernodal with 40 to 33 000.
     let (least, operation) = match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(_) => (4.2, 0.9),
         SymbolicCholeskyRaw::Supernodal(_) => (1.5, 0.25),
@@ -224,11 +225,11 @@ fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
     if substitution > 0.0 { least + operation * factorization / substitution } else { least }
 }
 
-/// A factor of a symmetric matrix with a fixed pattern.
+/// Factor of a symmetric matrix with a fixed pattern.
 pub struct Factor {
     symbolic: Symbolic,
     values: Vec<f64>,
-    /// What the indefinite factor has beside L: B's subdiagonal, and pivots within supernodes.
+    /// Data of the indefinite factor apart from L: B's subdiagonal, and pivots within supernodes.
     subdiagonal: Vec<f64>,
     pivots: Vec<usize>,
     inverse_pivots: Vec<usize>,
@@ -243,7 +244,7 @@ impl std::fmt::Debug for Factor {
 }
 
 impl Factor {
-    /// Makes room for factors.
+    /// Allocates memory for factors.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -272,7 +273,7 @@ impl Factor {
         })
     }
 
-    /// About how many back substitutions take as long as a factorization; the same on every machine.
+    /// Returns the approximate cost of a factorization in back substitutions; the same on every machine.
     #[must_use]
     pub fn price(&self) -> f64 {
         self.symbolic.0.price
@@ -281,7 +282,7 @@ impl Factor {
     /// Factorizes the positive definite matrix with these lower-triangle values, in the pattern's order.
     ///
     /// # Errors
-    /// [`SolverError::NotPositiveDefinite`]; the factor then is of no use until the next success.
+    /// [`SolverError::NotPositiveDefinite`]; the factor is then invalid until the next success.
     pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), SolverError> {
         let analysis = &*self.symbolic.0;
         let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
@@ -299,7 +300,7 @@ impl Factor {
         factorized.map(|_| ()).map_err(|_| SolverError::NotPositiveDefinite)
     }
 
-    /// Factorizes a symmetric matrix, as positive definite if it is that; says whether it is.
+    /// Factorizes a symmetric matrix, as positive definite if possible; returns `true` if it is positive definite.
     pub fn factorize_symmetric(&mut self, matrix: &[f64]) -> bool {
         let definite = self.factorize(matrix).is_ok();
         if !definite {
@@ -308,8 +309,7 @@ impl Factor {
         definite
     }
 
-    /// Factorizes a symmetric matrix that need not be definite. One that is singular gives solutions that are not
-    /// finite.
+    /// Factorizes a symmetric matrix that may be indefinite. A singular matrix gives solutions that are not finite.
     fn factorize_indefinite(&mut self, matrix: &[f64]) {
         let analysis = &*self.symbolic.0;
         let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
@@ -328,7 +328,8 @@ impl Factor {
         );
     }
 
-    /// Number of negative eigenvalues of the matrix of the last factor (Sylvester's law of inertia: those of B in L B Lᵀ).
+    /// Returns the number of negative eigenvalues of the matrix of the last factor (Sylvester's law of inertia: those
+    /// of B in L B Lᵀ).
     #[must_use]
     pub fn negative_eigenvalues(&self) -> usize {
         let symbolic = self.symbolic.0.symbolic(self.kind);
@@ -351,7 +352,7 @@ impl Factor {
                     continue;
                 }
                 let (a, b) = (diagonal(i), diagonal(i + 1));
-                // A block with a negative determinant has one eigenvalue of either sign.
+                // A block with a negative determinant has one positive and one negative eigenvalue.
                 negative += match a * b - coupling * coupling < 0.0 {
                     true => 1,
                     false => 2 * usize::from(a < 0.0),
