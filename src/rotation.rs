@@ -105,8 +105,8 @@ pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
         a = 0.5 * f.m11 + 0.5 * f.m22;
         b = 0.5 * f.m21 - 0.5 * f.m12;
     }
-    // A floating-point sum is zero only where the exact one is, and has full relative accuracy otherwise: dividing by
-    // the larger of the two keeps both digits and range.
+    // The rounded sum is zero only if the exact sum is, and otherwise has full relative accuracy: dividing by the
+    // larger of the two keeps both digits and range.
     let m = a.abs().max(b.abs());
     if m == 0.0 {
         return None;
@@ -121,7 +121,7 @@ pub fn polar_or<T: Number>(f: &Matrix2<T>, previous: Rotation<T>) -> Rotation<T>
     polar_or_else(f, || previous)
 }
 
-/// [`polar_or`] with a previous rotation that is evaluated only if needed.
+/// Evaluates [`polar_or`] with a previous rotation that is computed only if needed.
 #[inline(always)]
 pub(crate) fn polar_or_else<T: Number>(f: &Matrix2<T>, previous: impl FnOnce() -> Rotation<T>) -> Rotation<T> {
     Rotation::towards(f.m11 + f.m22, f.m21 - f.m12).unwrap_or_else(|| one_by_one(f, previous()))

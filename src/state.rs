@@ -90,7 +90,7 @@ impl State {
         self.knows_net_force = other.knows_net_force;
     }
 
-    /// Displacement u = x − X of every node, m.
+    /// Returns the displacement u = x − X of every node, m.
     #[must_use]
     pub fn displacement(&self) -> &[Vector2<f64>] {
         &self.displacement
@@ -102,7 +102,7 @@ impl State {
         self.displacement.view()
     }
 
-    /// R of every element or quadrature point, element by element.
+    /// Returns R of every element or quadrature point, element by element.
     #[must_use]
     pub fn rotations(&self) -> &[Rotation] {
         &self.rotations
@@ -115,13 +115,13 @@ impl State {
         &self.turns
     }
 
-    /// Velocity of every node, m/s.
+    /// Returns the velocity of every node, m/s.
     #[must_use]
     pub fn velocity(&self) -> &[Vector2<f64>] {
         &self.velocity
     }
 
-    /// Time since the start, s.
+    /// Returns the time since the start, s.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.time

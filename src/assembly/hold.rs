@@ -141,8 +141,8 @@ fn loose_hinge(mesh: &Mesh, fixed: &[bool], parts: usize, of_node: &[Vec<u32>]) 
     hinges.max_by(|a, b| turns(a).total_cmp(&turns(b))).map(|node| node as u32)
 }
 
-/// `true` if the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of the three
-/// rigid modes, restricted to them, is regular.
+/// Returns `true` if the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of
+/// the three rigid modes, restricted to them, is regular.
 fn is_held(nodes: &[(Vector2<f64>, &[bool])]) -> bool {
     const SINGULAR: f64 = 1e-12;
     // Relative to the fixed nodes themselves, so that the result does not depend on the length of the body.

@@ -23,7 +23,7 @@ pub(super) struct Stage<'a> {
     pub inertia: f64,
     /// `true` if the iteration starts from the state at the start of the step; `false` from the state in free flight.
     pub from_start: bool,
-    /// s, N.
+    /// Start force s, N; `None` for zero.
     pub start_force: Option<&'a [Vector2<f64>]>,
     /// `true` if forces are averages between the start of the step and the end of the stage; `false` if they are those
     /// at its end.

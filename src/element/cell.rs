@@ -11,7 +11,7 @@ pub struct Cell {
     pub area: f64,
     /// Corners of the four parts of a uniform refinement.
     pub children: &'static [&'static [[f64; 2]]],
-    /// Weights of the corners at a point; they interpolate a map that takes straight sides to straight sides.
+    /// Weights of the corners at a point; they interpolate a map that keeps straight sides straight.
     pub corner_weights: fn(at: [f64; 2]) -> Vec<f64>,
     /// Distance-like function of a point: positive inside, 0 on the boundary, negative outside.
     pub depth: fn(at: [f64; 2]) -> f64,

@@ -51,7 +51,7 @@ pub struct IncompatibleQuads {
 struct Quad<T: Number = f64> {
     /// ∇Nₐ at the centre, 1/m, and the element's area, m².
     centre: QuadraturePoint<4, T>,
-    /// q = Σ γₐ uₐ.
+    /// Weights γₐ of q = Σ γₐ uₐ.
     gamma: [T; 4],
 }
 
@@ -423,8 +423,8 @@ impl Elements for IncompatibleQuads {
         }
     }
 
-    /// [`DiscreteGradient`] gives the part at the centre. The difference of ½ q̃ K q̃ is K q̃ₘ·(q̃₁ − q̃₀), q̃ₘ their
-    /// mean. With R̄ half way between R₀ and R₁, δ the angle between these, q̂ = R̄ᵀq and b̂ = tr((R̄ J)ᵀF),
+    /// Uses [`DiscreteGradient`] for the part at the centre. The difference of ½ q̃ K q̃ is K q̃ₘ·(q̃₁ − q̃₀), q̃ₘ
+    /// their mean. With R̄ half way between R₀ and R₁, δ the angle between these, q̂ = R̄ᵀq and b̂ = tr((R̄ J)ᵀF),
     ///
     /// q̃₁ − q̃₀ = cos(δ/2) (q̂₁ − q̂₀) − sin(δ/2) J (q̂₀ + q̂₁), and sin(δ/2) = (b̂₁ − b̂₀)/(tr S₀ + tr S₁):
     ///
@@ -480,9 +480,9 @@ impl Elements for IncompatibleQuads {
         }
     }
 
-    /// The part at the centre is that of one quadrature point. The part in q uses F₀ᵀ q, which is q in the body's
-    /// frame, its rate and K. Like Green's strain, F₀ᵀ q is quadratic in x and does not change under rigid motion: it
-    /// is the ξη part of Green's strain.
+    /// Adds two parts. The part at the centre is that of one quadrature point. The part in q uses F₀ᵀ q, which is q in
+    /// the body's frame, its rate and K. Like Green's strain, F₀ᵀ q is quadratic in x and does not change under rigid
+    /// motion: it is the ξη part of Green's strain.
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {
         let condensed = self.condensed(moduli);
         for (nodes, quad, k) in self.with_twist(&condensed) {
@@ -569,7 +569,7 @@ impl Elements for IncompatibleQuads {
         smallest
     }
 
-    /// H is computed from the shape functions; the strain also contains the modes.
+    /// Computes H from the shape functions; the strain also contains the modes.
     fn visit_strains(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>) {
         let condensed = self.condensed(moduli);
         let modes = self.points.iter().zip(&condensed.modes);

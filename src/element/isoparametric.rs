@@ -27,7 +27,7 @@ pub struct Isoparametric<const N: usize, const Q: usize> {
 /// Rotation, strain and stress of a quadrature point in an element loop.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
-    /// R.
+    /// Rotation R.
     rotation: Rotation<Lanes>,
     /// Trace of the strain.
     trace: Lanes,
@@ -181,10 +181,10 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         }
     }
 
-    /// ψ = μ ‖S − I‖² + λ/2 tr²(S − I) depends on ‖F‖² and r = tr S only, and r² is quadratic in F. So with F̄ = (F₀ +
-    /// F₁)/2, R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁) and t̄ = (r₀ + r₁)/2 − 2 the stress P = 2μ (F̄ − R̄) + λ t̄ R̄ satisfies P :
-    /// (F₁ − F₀) = ψ₁ − ψ₀ exactly, and P F̄ᵀ is symmetric (the idea of Simo and Tarnow 1992 and Gonzalez 2000, in
-    /// closed form for this energy). A is evaluated at R̄/|R̄|, G at t̄.
+    /// Uses the discrete gradient in closed form. ψ = μ ‖S − I‖² + λ/2 tr²(S − I) depends on ‖F‖² and r = tr S only,
+    /// and r² is quadratic in F. So with F̄ = (F₀ + F₁)/2, R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁) and t̄ = (r₀ + r₁)/2 − 2 the
+    /// stress P = 2μ (F̄ − R̄) + λ t̄ R̄ satisfies P : (F₁ − F₀) = ψ₁ − ψ₀ exactly, and P F̄ᵀ is symmetric (the idea of
+    /// Simo and Tarnow 1992 and Gonzalez 2000, in closed form for this energy). A is evaluated at R̄/|R̄|, G at t̄.
     fn linearize_between(
         &self,
         moduli: Lame,

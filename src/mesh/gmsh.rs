@@ -130,7 +130,7 @@ impl Mesh {
     }
 
     /// Returns the number of nodes of a file's mesh converted to `element`, from the headers of its blocks alone: exact
-    /// for the file's own element type, else valid for a connected body without holes.
+    /// for the file's own element type; for others, valid for a connected body without holes.
     #[must_use]
     pub fn gmsh_nodes(text: &str, element: ElementKind) -> u64 {
         let headers = Headers::of(text);

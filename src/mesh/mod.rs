@@ -435,7 +435,7 @@ impl Mesh {
     }
 }
 
-/// Twice the area of a polygon, positive if it is counter-clockwise.
+/// Returns twice the area of a polygon, positive if it is counter-clockwise.
 fn doubled_area(corners: &[Vector2<f64>]) -> f64 {
     let Some(&first) = corners.first() else { return 0.0 };
     corners.windows(2).map(|w| (w[0] - first).perp(&(w[1] - first))).sum()

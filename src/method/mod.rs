@@ -147,10 +147,10 @@ pub trait Method: std::fmt::Debug + Send + Sync {
     /// Decides whether the state has converged.
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict;
 
-    /// Called when the iteration limit is reached: leaves the best available state.
+    /// Leaves the best available state; called when the iteration limit is reached.
     fn stop(&mut self, _: &mut State) {}
 
-    /// Called when an iteration failed; the state is the one before it. Returns how to continue.
+    /// Handles a failed iteration; the state is the one before it. Returns how to continue.
     fn recover(&mut self, _: &mut Iteration<'_>, error: IterationError) -> Verdict {
         Verdict::Stop(Reason::Iteration(error))
     }

@@ -210,7 +210,8 @@ impl Method for Newton {
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
         let (residual, tolerance) = (it.residual, it.tolerances.residual);
         if self.steps == 0 {
-            // Nothing solved yet; a state without load is its own equilibrium.
+            // Before the first step only a state under the full load can have converged; without load the state is
+            // trivially in equilibrium.
             let is_there = self.target == 1.0 && it.supports_are_at(1.0, Kinematics::Corotated);
             return if residual <= tolerance && is_there { Verdict::Converged } else { Verdict::Continue };
         }

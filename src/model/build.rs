@@ -164,7 +164,8 @@ impl Scene {
         self
     }
 
-    /// Makes the load added last a pulse: times sin²(π (t − start)/duration) within, 0 outside.
+    /// Makes the load added last a pulse, with the factor sin²(π (t − start)/duration) from `start`, s, for `duration`,
+    /// s, and 0 at other times.
     #[must_use]
     pub fn pulse(mut self, start: f64, duration: f64) -> Self {
         match self.loads.last_mut() {

@@ -57,7 +57,7 @@ pub enum IntegratorKind {
     TrBdf2,
     /// Second order, conserves energy, momentum and angular momentum.
     EnergyMomentum,
-    /// Explicit.
+    /// Explicit; no equations are solved.
     SymplecticEuler,
 }
 
@@ -72,7 +72,7 @@ pub struct Start {
     pub spin: f64,
 }
 
-/// Time dependence of a load: times sin²(π (t − start)/duration) within, 0 outside.
+/// Time dependence of a load: the factor is sin²(π (t − start)/duration) during the pulse and 0 at other times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pulse {

@@ -9,7 +9,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{key}: {message}")]
 pub struct Invalid {
-    /// The key, as `--set` writes it: `load.0.force`.
+    /// Key as in `--set`: `load.0.force`.
     pub key: String,
     /// Expected and actual value.
     pub message: String,

@@ -97,9 +97,9 @@ pub const TIME_STEP: Limit = Limit::new("s", 1e-9, 1e3);
 pub const DURATION: Limit = Limit::new("s", 1e-9, 1e6);
 /// Solves per time step.
 pub const STEP_ITERATIONS: Limit = Limit::new("", 0.0, 100.0);
-/// Factor of the mass in Rayleigh damping.
+/// Mass-proportional factor α of Rayleigh damping.
 pub const MASS_DAMPING: Limit = Limit::new("1/s", 0.0, 1e6);
-/// Factor of the stiffness in Rayleigh damping.
+/// Stiffness-proportional factor β of Rayleigh damping.
 pub const STIFFNESS_DAMPING: Limit = Limit::new("s", 0.0, 1e6);
 /// A speed.
 pub const SPEED: Limit = Limit::new("m/s", 0.0, 1e6);

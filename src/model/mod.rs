@@ -158,7 +158,7 @@ pub struct Material {
     pub plane: Plane,
 }
 
-/// `true` for a default value, which files leave out.
+/// Returns `true` for a default value, which scene files omit.
 fn is_zero<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
@@ -212,7 +212,7 @@ impl Default for SolverSettings {
     }
 }
 
-/// `true` for 0, which turns `accept_after` off.
+/// Returns `true` for 0, which turns `accept_after` off.
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_off(iterations: &u32) -> bool {
     *iterations == 0

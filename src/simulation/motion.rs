@@ -226,7 +226,8 @@ impl Motion {
                 Ok(()) => left -= 1,
                 Err(error) => {
                     body.state.copy_from(&self.start);
-                    // An explicit scheme beyond its critical step should fail visibly, except through a mouse spring.
+                    // An explicit scheme beyond its critical step should fail visibly; failures due to a mouse spring
+                    // are handled by halving.
                     let gives_up = entry(&body.scene).is_explicit() && !self.is_guarded;
                     if halvings == MOST_HALVINGS || gives_up {
                         self.stopped = Some(self.reason(error, part));
@@ -384,7 +385,7 @@ impl Motion {
         self.quiet_steps >= QUIET_STEPS && quiet >= QUIET && pulses_are_over
     }
 
-    /// Called when a mouse spring was attached, moved or removed.
+    /// Updates the motion after a mouse spring was attached, moved or removed.
     pub(super) fn pulled(&mut self, body: &Body) {
         if !self.keeps_books() {
             self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);

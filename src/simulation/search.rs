@@ -154,7 +154,7 @@ impl Search {
         self.workspace = Some(workspace);
     }
 
-    /// Called when a mouse spring was attached, moved or removed.
+    /// Restarts the search after a mouse spring was attached, moved or removed.
     pub fn pulled(&mut self, body: &mut Body, moved_only: bool) {
         let why = if moved_only { Restart::NewLoads } else { Restart::NewStiffness };
         // The tangent contains the mouse spring.

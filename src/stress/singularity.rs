@@ -136,7 +136,7 @@ fn is_singular_clamp(angle: f64, material: &Material) -> bool {
         let (turned, own) = ((lambda * angle).sin(), lambda * angle.sin());
         turned * turned - ((kappa + 1.0).powi(2) - 4.0 * own * own) / (4.0 * kappa)
     };
-    // At λ = 0 the gap is negative.
+    // The gap is negative at λ = 0, so a positive value means that there is a root.
     (1..STEPS).any(|i| gap(f64::from(i) / f64::from(STEPS)) > 0.0)
 }
 

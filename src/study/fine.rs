@@ -77,7 +77,7 @@ pub(super) struct Fine {
     pub probes: Vec<Vector2<f64>>,
     /// Bound of the error of each probe, m; `None` if unknown.
     pub errors: Vec<Option<f64>>,
-    /// Closed lines around the body, m, node by node.
+    /// Closed outlines of the body, m, node by node.
     pub outline: Vec<Vec<Vector2<f64>>>,
     /// Displacement of the first probe by linear theory on the same mesh, m.
     pub linear: Option<Vector2<f64>>,

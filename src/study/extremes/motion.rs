@@ -31,7 +31,7 @@ pub struct MotionCase {
 pub enum MotionOutcome {
     /// All steps were computed without spurious energy.
     Finished,
-    /// As [`Self::Finished`], with inverted elements at the end.
+    /// All steps were computed without spurious energy, with inverted elements at the end.
     Inverted,
     /// All steps were computed, but the integrator added more than a hundredth of the largest kinetic energy.
     GainedEnergy,

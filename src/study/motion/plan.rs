@@ -56,7 +56,7 @@ const REFERENCE_STEPS: u32 = 4;
 const BELOW_CRITICAL: f64 = 0.9;
 /// Smallest number of steps in a scene; a shorter scene is studied with shorter steps.
 const FEWEST_STEPS: f64 = 8.0;
-/// Largest number of nodes of the settings' finest mesh.
+/// Largest number of nodes, along times across, of a mesh with `factor` 1.
 const MOST_NODES: f64 = 1000.0;
 
 impl Plan {
