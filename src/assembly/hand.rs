@@ -9,7 +9,7 @@ use crate::mesh::MaterialPoint;
 const REACH: f64 = 0.25;
 
 /// Mouse spring at a material point. Its force k (p − x + τ (ṗ − ẋ)) is capped smoothly (Huber 1964), so that its
-/// tangent is never negative and no pointer motion can make a time step fail.
+/// tangent is never negative and no pointer motion exerts more force than a time step can handle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hand {
     point: MaterialPoint,

@@ -30,11 +30,11 @@ pub struct Problem {
 pub enum Change {
     /// At most loads, probes and prescribed displacements; the internal forces of a state are unchanged.
     Loads,
-    /// Stiffness too; states remain valid.
+    /// The stiffness too; states remain valid.
     Stiffness,
-    /// Free unknowns or their couplings too.
+    /// The free unknowns or their couplings too.
     Unknowns,
-    /// Mesh.
+    /// The mesh too.
     Mesh,
 }
 

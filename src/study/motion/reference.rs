@@ -104,7 +104,7 @@ impl MotionReference {
         Ok(reference)
     }
 
-    /// Returns the largest distance, and its root mean square, between two paths sampled like the reference, percent of
+    /// Returns the largest and the root mean square distance between two paths sampled like the reference, percent of
     /// the size.
     #[must_use]
     pub fn distance(&self, a: &[Vector2<f64>], b: &[Vector2<f64>]) -> [f64; 2] {
