@@ -1,63 +1,63 @@
-//! Displacements that keep more digits than one number has.
+//! Displacements with more digits than one f64 has.
 //!
-//! On a slender body neighbours move by nearly the same, and a strain is a difference of their displacements over the size
-//! of a cell: what rounding takes from a large displacement is a large part of a small strain. So every component is kept
-//! as an unevaluated sum of two numbers (Dekker 1971, *A floating-point technique for extending the available
-//! precision*): corrections are added without losing what they are smaller than, and elements form their differences
-//! from both parts. Everything else is done with the first part alone, which is the sum, rounded.
+//! On a slender body neighbouring nodes have nearly equal displacements, and a strain is their difference over the size
+//! of a cell: the rounding error of a large displacement is a large part of a small strain. Therefore every component
+//! is kept as an unevaluated sum of two numbers (Dekker 1971, *A floating-point technique for extending the available
+//! precision*): corrections below the last digit of the displacement are not lost, and elements form their differences
+//! from both parts. All other code uses the first part alone, which is the rounded sum.
 
 use nalgebra::Vector2;
 
 use crate::lanes::{LANES, Lanes, gather, zero_vector};
 
-/// The displacement of every node, m. It reads as its rounded values.
+/// Displacement of every node, m. Dereferences to the rounded values.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Displacement {
     rounded: Vec<Vector2<f64>>,
-    /// What rounding has left out, at most half of the last digit.
+    /// Rounding error of `rounded`, at most half of its last digit.
     remainder: Vec<Vector2<f64>>,
 }
 
 impl Displacement {
-    /// That of so many nodes at rest.
+    /// Returns the zero displacement of `nodes` nodes.
     pub fn zeros(nodes: usize) -> Self {
         Self { rounded: vec![Vector2::zeros(); nodes], remainder: vec![Vector2::zeros(); nodes] }
     }
 
-    /// These values exactly.
+    /// Returns the displacement with exactly these values.
     pub fn from_rounded(rounded: Vec<Vector2<f64>>) -> Self {
         Self { remainder: vec![Vector2::zeros(); rounded.len()], rounded }
     }
 
-    /// Both parts, for elements.
+    /// Returns both parts, used by elements.
     pub fn view(&self) -> Compensated<'_> {
         Compensated { rounded: &self.rounded, remainder: &self.remainder }
     }
 
-    /// Back to rest.
+    /// Sets all values to zero.
     pub fn reset(&mut self) {
         self.overwrite().fill(Vector2::zeros());
     }
 
-    /// Becomes another one of as many nodes, without allocating.
+    /// Copies another displacement of as many nodes without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.rounded.clone_from(&other.rounded);
         self.remainder.clone_from(&other.remainder);
     }
 
-    /// The rounded values, to be written anew: nothing is left out of what is written.
+    /// Clears the remainders and returns the rounded values for writing.
     pub fn overwrite(&mut self) -> &mut [Vector2<f64>] {
         self.remainder.fill(Vector2::zeros());
         &mut self.rounded
     }
 
-    /// Puts one component of a node, m.
+    /// Sets one component of a node, m.
     pub fn put(&mut self, node: u32, axis: usize, value: f64) {
         self.rounded[node as usize][axis] = value;
         self.remainder[node as usize][axis] = 0.0;
     }
 
-    /// Moves one component of a node, m.
+    /// Adds `by`, m, to one component of a node.
     #[inline]
     pub fn advance(&mut self, node: usize, axis: usize, by: f64) {
         let (rounded, remainder) = (&mut self.rounded[node][axis], &mut self.remainder[node][axis]);
@@ -83,7 +83,7 @@ impl<'a> IntoIterator for &'a Displacement {
     }
 }
 
-/// The rounded sum of two numbers, and what rounding has left out of it, exactly (Knuth).
+/// Returns the rounded sum of two numbers and its exact rounding error (Knuth).
 #[inline]
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
@@ -99,26 +99,27 @@ pub struct Compensated<'a> {
 }
 
 impl<'a> Compensated<'a> {
-    /// The sums, rounded.
+    /// Returns the rounded sums.
     #[must_use]
     pub fn rounded(&self) -> &'a [Vector2<f64>] {
         self.rounded
     }
 
-    /// What rounding has left out of them.
+    /// Returns the rounding errors of [`Self::rounded`].
     #[must_use]
     pub fn remainder(&self) -> &'a [Vector2<f64>] {
         self.remainder
     }
 
-    /// The displacements of an element's nodes relative to its first one.
+    /// Returns the displacements of an element's nodes relative to its first one.
     #[inline(always)]
     pub(crate) fn relative<const N: usize>(&self, nodes: &[u32; N]) -> [Vector2<f64>; N] {
         let first = (self.rounded[nodes[0] as usize], self.remainder[nodes[0] as usize]);
         nodes.map(|n| (self.rounded[n as usize] - first.0) + (self.remainder[n as usize] - first.1))
     }
 
-    /// The same of several elements, side by side: `nodes` has those in all lanes, node by node.
+    /// Returns the displacements of the nodes of several elements, one element per SIMD lane, relative to each
+    /// element's first node; `nodes` holds the node numbers of all lanes, node by node.
     #[inline(always)]
     pub(crate) fn relative_side_by_side<const N: usize>(&self, nodes: &[[u32; LANES]; N]) -> [Vector2<Lanes>; N] {
         let part = |n: [u32; LANES]| (gather(self.rounded, n), gather(self.remainder, n));

@@ -1,5 +1,5 @@
-//! A result as a file: a table of nodes (`.csv`) or a mesh with fields (`.vtu`, read by ParaView); of a motion, a table of
-//! what its probes see (`.csv`), its last state (`.vtu`) or a series of states (`.pvd`).
+//! Export of results to files. Equilibrium: a table of nodes (`.csv`) or a mesh with fields (`.vtu`, read by ParaView).
+//! Motion: a table of probes and energies (`.csv`), the last state (`.vtu`) or a series of states (`.pvd`).
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -11,13 +11,13 @@ use thiserror::Error;
 
 use crate::simulation::{Field, Simulation};
 
-/// Why a result was not written.
+/// Reason why a result was not written.
 #[derive(Debug, Error)]
 pub enum ExportError {
-    /// The file name asks for a format there is not.
+    /// The file name has an unknown extension.
     #[error("{0}: expected a file name ending in .csv or .vtu, or in .pvd for a scene in motion")]
     UnknownFormat(String),
-    /// A series of states, of a body at rest.
+    /// A series of states was requested for a static scene.
     #[error(
         "{0}: expected a scene in motion (analysis = \"dynamic\") for a series of states; .vtu has the equilibrium"
     )]
@@ -35,16 +35,17 @@ pub enum ExportError {
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A row a node: rest and current position, displacement. Of a motion, a row a time step: probes and energies.
+    /// Equilibrium: one row per node with rest and current position and displacement. Motion: one row per time step
+    /// with probes and energies.
     Csv,
     /// VTK unstructured grid, XML, ASCII.
     Vtu,
-    /// ParaView collection: a file that names a series of `.vtu` files with their times.
+    /// ParaView collection: a file that lists a series of `.vtu` files with their times.
     Pvd,
 }
 
 impl Format {
-    /// The format a file name asks for.
+    /// Returns the format for a file name's extension.
     ///
     /// # Errors
     /// [`ExportError::UnknownFormat`].
@@ -58,7 +59,7 @@ impl Format {
     }
 }
 
-/// Writes the current state in the format its file name asks for.
+/// Writes the current state in the format given by the file name.
 ///
 /// # Errors
 /// [`ExportError`].
@@ -71,18 +72,18 @@ pub fn write(simulation: &Simulation, path: &Path) -> Result<(), ExportError> {
     write_text(path, &text)
 }
 
-/// Most states of a series, about: more is seldom watched and fills the disk.
+/// Approximate upper limit of the number of states in a series; more would fill the disk.
 pub const MOST_STATES: u64 = 300;
 
-/// A motion on its way into a file, step by step. What has been written is valid whenever [`Self::finish`] is called.
+/// Writer of a motion, step by step. The file is valid whenever [`Self::finish`] is called.
 ///
-/// - `.csv`: a row a time step, and one of the start. Columns: `t` (s); for every probe NAME its mean position
-///   `NAME_x`, `NAME_y` and displacement `NAME_u_x`, `NAME_u_y` (m), and velocity `NAME_v_x`, `NAME_v_y` (m/s); then the
-///   energies of the [`Ledger`](crate::dynamics::Ledger), J: `kinetic`, `elastic`, `potential`, `dissipated`,
+/// - `.csv`: one row per time step, and one for the start. Columns: `t` (s); for every probe NAME its mean position
+///   `NAME_x`, `NAME_y` and displacement `NAME_u_x`, `NAME_u_y` (m), and velocity `NAME_v_x`, `NAME_v_y` (m/s); then
+///   the energies of the [`Ledger`](crate::dynamics::Ledger), J: `kinetic`, `elastic`, `potential`, `dissipated`,
 ///   `integrator`, `pulses`, `hands`. In every row kinetic + elastic + potential + dissipated + integrator − pulses −
 ///   hands is the same.
-/// - `.pvd`: a collection of the files `NAME_0000.vtu`, `NAME_0001.vtu`, … beside it: every step, or every n-th, n the
-///   least that makes them no more than [`MOST_STATES`], and the first and the last.
+/// - `.pvd`: a collection of the files `NAME_0000.vtu`, `NAME_0001.vtu`, … in the same folder: the first and the last
+///   state, and every n-th step, with the smallest n that gives at most [`MOST_STATES`] states.
 /// - `.vtu`: the last state.
 #[derive(Debug)]
 pub struct MotionWriter {
@@ -97,18 +98,18 @@ enum MotionFile {
     Last,
 }
 
-/// The states of a `.pvd` file so far.
+/// States of a `.pvd` file written so far.
 #[derive(Debug)]
 struct Series {
-    /// Steps from state to state, and since the last one.
+    /// Steps between written states, and steps since the last one.
     stride: u64,
     steps: u64,
-    /// Times and names of files.
+    /// Times, s, and file names.
     states: Vec<(f64, String)>,
 }
 
 impl MotionWriter {
-    /// Begins the file that its name asks for with the start of a motion.
+    /// Creates the file in the format given by its name and writes the start of a motion.
     ///
     /// # Errors
     /// [`ExportError`].
@@ -116,7 +117,7 @@ impl MotionWriter {
         let kind = match Format::of(path)? {
             Format::Csv => MotionFile::Table(BufWriter::new(File::create(path).map_err(failed(path))?)),
             Format::Vtu => {
-                // A folder that is not there is said before the work.
+                // Opens the file now, so that a missing folder is reported before the simulation runs.
                 File::options().write(true).create(true).truncate(false).open(path).map_err(failed(path))?;
                 MotionFile::Last
             }
@@ -138,7 +139,7 @@ impl MotionWriter {
         Ok(writer)
     }
 
-    /// Adds what a step has led to.
+    /// Adds the state after a time step.
     ///
     /// # Errors
     /// [`ExportError::Write`].
@@ -158,7 +159,7 @@ impl MotionWriter {
         Ok(())
     }
 
-    /// Ends the file with the last state, the one that was added last.
+    /// Completes the file with the last state.
     ///
     /// # Errors
     /// [`ExportError::Write`].
@@ -178,7 +179,7 @@ impl MotionWriter {
 
 impl Series {
     fn add(&mut self, simulation: &Simulation, collection: &Path) -> Result<(), ExportError> {
-        // The collection names its files, and XML is text.
+        // Lossy conversion: the collection lists the file names as XML text.
         let stem = collection.file_stem().unwrap_or_default().to_string_lossy();
         let name = format!("{stem}_{:04}.vtu", self.states.len());
         write_text(&collection.with_file_name(&name), &vtu(simulation))?;
@@ -203,12 +204,12 @@ fn collection(states: &[(f64, String)]) -> String {
     text
 }
 
-/// A text as the value of an XML attribute.
+/// Escapes a text for an XML attribute.
 fn xml_attribute(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// A text as a field of a CSV file.
+/// Quotes a text as a field of a CSV file where necessary.
 pub(crate) fn csv_field(text: &str) -> Cow<'_, str> {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\"")).into()
@@ -252,7 +253,7 @@ fn table_row(simulation: &Simulation) -> String {
     text
 }
 
-/// Writes a file, naming it where that fails.
+/// Writes a file; an error contains its path.
 ///
 /// # Errors
 /// [`ExportError::Write`].
@@ -278,7 +279,7 @@ fn csv(simulation: &Simulation) -> String {
         let stresses = stress.map_or([None; 4], |s| s.components().map(Some));
         let others = strain.into_iter().chain(stresses).chain([stress.map(|s| s.von_mises())]);
         for value in std::iter::once(Some(local.rotation.angle().to_degrees())).chain(others) {
-            // What is not known is empty.
+            // Unknown values are written as empty fields.
             let value = value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string());
             let _ = write!(text, ",{value}");
         }
@@ -291,8 +292,8 @@ fn csv(simulation: &Simulation) -> String {
     text
 }
 
-/// A `DataArray` with its values, a row a line; nothing where there are none, as VTK has no word for a value that is
-/// absent.
+/// Writes a `DataArray`, one row per line; writes nothing if `rows` is `None`, because VTK cannot represent missing
+/// values.
 fn data_array<T: std::fmt::Display, const K: usize>(
     text: &mut String,
     kind: &str,
@@ -308,8 +309,8 @@ fn data_array<T: std::fmt::Display, const K: usize>(
     let _ = writeln!(text, "</DataArray>");
 }
 
-/// What is recovered at the nodes, as tensors of nine components; the nodes' numbers in their file, −1 for those it lacks;
-/// and the nodes of every named edge, 1 or 0.
+/// Writes the fields recovered at the nodes, tensors with nine components; the node numbers in the mesh file, −1 for
+/// nodes that it lacks; and for every named edge 1 at its nodes and 0 elsewhere.
 fn nodal_data(text: &mut String, simulation: &Simulation) {
     let (mesh, nodal) = (simulation.system().mesh(), simulation.nodal_stress());
     let strains = nodal.nodes().iter().map(|local| local.strain(nodal.material()));
@@ -335,7 +336,7 @@ fn nodal_data(text: &mut String, simulation: &Simulation) {
     }
 }
 
-/// A field's name with its unit.
+/// Returns the field's name with its unit.
 fn title(field: Field) -> String {
     if field.unit().is_empty() { field.name().to_owned() } else { format!("{} [{}]", field.name(), field.unit()) }
 }
@@ -381,10 +382,10 @@ fn vtu(simulation: &Simulation) -> String {
     nodal_data(&mut text, simulation);
     let _ = writeln!(text, "</PointData>\n<CellData>");
     let mut values = Vec::new();
-    // Stresses are at the nodes: their mean over a cell is far from the largest.
+    // Stresses are written at the nodes, because their mean over a cell is far below the maximum.
     for field in [Field::EnergyDensity, Field::LargestStrain, Field::RotationAngle, Field::MeshError] {
         simulation.field(field, &mut values);
-        // VTK has no word for a value that is absent: a field that lacks one is left out.
+        // VTK cannot represent missing values: a field that lacks one is left out.
         let Some(values) = values.iter().copied().collect::<Option<Vec<f64>>>() else { continue };
         let mean = |element: &[f64]| [element.iter().sum::<f64>() / element.len() as f64];
         let values = values.chunks_exact(per_element).map(mean).collect();

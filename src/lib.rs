@@ -1,5 +1,5 @@
-//! **warpbeam** bends 2D beams of triangles and quadrilaterals with the *warped stiffness* (corotational finite element) method, and says what
-//! each method costs and how wrong it is.
+//! **warpbeam** computes the bending of 2D beams meshed with triangles and quadrilaterals by the *warped stiffness*
+//! (corotational finite element) method, and reports the cost and the error of each method.
 //!
 //! ```
 //! use warpbeam::{Scene, Simulation, Status};
@@ -19,7 +19,7 @@
 //! | symbol | meaning | shape, unit |
 //! |---|---|---|
 //! | `X`, `x` | rest and current node positions | n × 2, m |
-//! | `u = x − X` | displacement: what the state stores, as a sum of two numbers, so that small strains keep their digits | n × 2, m |
+//! | `u = x − X` | displacement, stored as a sum of two numbers so that small strains keep their digits | n × 2, m |
 //! | `F = I + H` | deformation gradient Σ xₐ ⊗ ∇Nₐ at a quadrature point | 2 × 2 |
 //! | `R`, `S` | polar factors F = R S; R a proper rotation, S symmetric | 2 × 2 |
 //! | `E`, `ν`, `ρ`, `t` | Young's modulus Pa, Poisson ratio, density kg/m³, thickness m | scalars |
@@ -36,22 +36,22 @@
 //! rotations(F(x)) → assemble A, f → factorize → solve → update x → (draw)
 //! ```
 //!
-//! Data flows one way, and the modules say so; each imports only from its left:
+//! Data flows in one direction; each module imports only from modules to its left:
 //!
-//! [`words`], [`timings`], the scene's data (`model`), [`lanes`] → [`rotation`], [`material`], [`displacement`] → [`element`] → [`mesh`] →
-//! [`solver`], [`scene`] (reads scenes and mesh files, and re-exports their data), [`state`] → [`assembly`] → [`method`] for equilibria,
-//! [`dynamics`] for motions, [`stress`] → [`simulation`] → [`truth`] → [`study`] → `plot`, the drawings → the window → the commands. [`article`] needs elements and
-//! rotations only.
+//! [`words`], [`timings`], the scene's data (`model`), [`lanes`] → [`rotation`], [`material`], [`displacement`] →
+//! [`element`] → [`mesh`] → [`solver`], [`scene`] (reads scenes and mesh files, and re-exports their data), [`state`] →
+//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`truth`] →
+//! [`study`] → `plot`, the drawings → the window → the commands. [`article`] needs elements and rotations only. The list
+//! `LAYERS` in `tests/architecture.rs` holds this order, and a test fails on imports against it.
 //!
-//! The feature `app` (on by default) is the window and the commands; `cli` is the commands alone, without a GPU or a
-//! window. With neither the library names no GPU, window or command line crate.
+//! The feature `app` (on by default) adds the window and the commands; `cli` adds the commands alone, without a GPU or
+//! a window. Without both features the library depends on no GPU, window or command line crate.
 //!
 //! # Sources
 //!
 //! - M. Müller, M. Gross, *Interactive Virtual Materials*, Graphics Interface 2004: warped stiffness.
-//! - "实时物理模拟之 Warped Stiffness 方法" (*the article*): the equation numbers in these pages are its own. Its errata
-//!   are documented where they matter: [`rotation::polar`], and those of formulas that the solver does not need in
-//!   `tests/article`.
+//! - "实时物理模拟之 Warped Stiffness 方法" (*the article*): equation numbers in these pages refer to it. Its errata are
+//!   documented at [`rotation::polar`]; those of formulas that the solver does not need, in `tests/article`.
 //! - faer for sparse Cholesky, nalgebra for small matrices.
 
 #![forbid(unsafe_code)]

@@ -1,4 +1,4 @@
-//! The command line: arguments in, exit code out.
+//! Entry point of the command line program.
 
 #![forbid(unsafe_code)]
 

@@ -15,13 +15,13 @@ pub struct Lame {
 }
 
 impl Lame {
-    /// Times a factor.
+    /// Returns both constants times `factor`.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self { lambda: factor * self.lambda, mu: factor * self.mu }
     }
 
-    /// T = 2 μ ε + λ tr(ε) I, Pa, for a strain ε. With the Biot strain S − I this is the Biot stress.
+    /// Returns T = 2 μ ε + λ tr(ε) I, Pa, for a strain ε. With the Biot strain S − I this is the Biot stress.
     #[must_use]
     #[inline]
     pub fn stress<T: Number>(self, strain: &Matrix2<T>) -> Matrix2<T> {
@@ -34,7 +34,7 @@ impl Lame {
         )
     }
 
-    /// ψ = μ ‖ε‖² + λ/2 tr²(ε), J/m³.
+    /// Returns ψ = μ ‖ε‖² + λ/2 tr²(ε), J/m³.
     #[must_use]
     #[inline]
     pub fn energy_density<T: Number>(self, strain: &Matrix2<T>) -> T {
@@ -46,7 +46,7 @@ impl Lame {
 }
 
 impl Material {
-    /// The Lamé constants of this material under its plane assumption.
+    /// Returns the Lamé constants of this material under its plane assumption.
     #[must_use]
     pub fn lame(&self) -> Lame {
         let (e, nu) = (self.young, self.poisson);
@@ -57,20 +57,20 @@ impl Material {
         Lame { lambda, mu: e / (2.0 * (1.0 + nu)) }
     }
 
-    /// The Lamé constants times the thickness, N/m: what elements integrate over their area.
+    /// Returns the Lamé constants times the thickness, N/m, which elements integrate over their area.
     #[must_use]
     pub fn membrane(&self) -> Lame {
         let Lame { lambda, mu } = self.lame();
         Lame { lambda: lambda * self.thickness, mu: mu * self.thickness }
     }
 
-    /// Mass per area of the plane, kg/m².
+    /// Returns the mass per area of the plane, kg/m².
     #[must_use]
     pub fn area_density(&self) -> f64 {
         self.density * self.thickness
     }
 
-    /// The matrix C of σ = C ε with ε = (ε_xx, ε_yy, 2 ε_xy), Pa.
+    /// Returns the matrix C of σ = C ε with ε = (ε_xx, ε_yy, 2 ε_xy), Pa.
     #[must_use]
     pub fn elasticity_matrix(&self) -> Matrix3<f64> {
         let Lame { lambda, mu } = self.lame();
@@ -78,8 +78,8 @@ impl Material {
         Matrix3::new(axial, lambda, 0.0, lambda, axial, 0.0, 0.0, 0.0, mu)
     }
 
-    /// Stress out of the plane for in-plane stresses of the given sum: 0 in plane stress, ν (σ_xx + σ_yy) in plane
-    /// strain, Pa.
+    /// Returns the stress out of the plane for in-plane stresses of the given sum: 0 in plane stress, ν (σ_xx + σ_yy)
+    /// in plane strain, Pa.
     #[must_use]
     pub fn out_of_plane_stress(&self, in_plane_trace: f64) -> f64 {
         match self.plane {

@@ -1,11 +1,11 @@
-//! Pictures in memory, and as PNG files.
+//! Images in memory, written as PNG files.
 
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// Why there is no picture.
+/// Reason why an image could not be made.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PictureError {
@@ -25,12 +25,12 @@ pub enum PictureError {
     },
 }
 
-/// Rows of pixels, RGBA, eight bits each.
+/// Pixels of an image, RGBA, eight bits per channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Width and height.
+    /// Width and height, pixels.
     pub size: [u32; 2],
-    /// `4 · width · height` bytes, from the top.
+    /// `4 · width · height` bytes, rows from top to bottom.
     pub rgba: Vec<u8>,
 }
 
@@ -51,5 +51,5 @@ impl Picture {
     }
 }
 
-/// Font with the Chinese letters of the window.
+/// Font with the Chinese glyphs of the window.
 pub(crate) const CHINESE_FONT: &[u8] = include_bytes!("../assets/fonts/NotoSansSC-subset.otf");

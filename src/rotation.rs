@@ -1,12 +1,12 @@
-//! Rotations of the plane: the closed-form polar decomposition that every iteration runs once a quadrature point.
+//! Rotations of the plane: closed-form polar decomposition, computed once per quadrature point in every iteration.
 //!
-//! Article eqs. (37)–(39), with the reciprocal its eq. (38) lost.
+//! Article eqs. (37)–(39), with the reciprocal that is missing in its eq. (38).
 
 use nalgebra::{Matrix2, SimdBool, Vector2};
 
 use crate::lanes::Number;
 
-/// A proper rotation of the plane, stored as cosine and sine; or several, side by side.
+/// Proper rotation of the plane, stored as cosine and sine; with SIMD `T`, one rotation per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation<T = f64> {
     /// Cosine of the angle.
@@ -19,14 +19,14 @@ impl Rotation {
     /// The rotation by 0.
     pub const IDENTITY: Self = Self { c: 1.0, s: 0.0 };
 
-    /// The rotation by `angle` (rad, counter-clockwise).
+    /// Returns the rotation by `angle` (rad, counter-clockwise).
     #[must_use]
     pub fn from_angle(angle: f64) -> Self {
         let (s, c) = angle.sin_cos();
         Self { c, s }
     }
 
-    /// The angle in (−π, π], rad.
+    /// Returns the angle in (−π, π], rad.
     #[must_use]
     pub fn angle(self) -> f64 {
         self.s.atan2(self.c)
@@ -34,28 +34,28 @@ impl Rotation {
 }
 
 impl<T: Number> Rotation<T> {
-    /// The matrix of article eq. (39).
+    /// Returns the matrix of article eq. (39).
     #[must_use]
     #[inline(always)]
     pub fn matrix(self) -> Matrix2<T> {
         Matrix2::new(self.c, -self.s, self.s, self.c)
     }
 
-    /// R v.
+    /// Returns R v.
     #[must_use]
     #[inline(always)]
     pub fn apply(self, v: Vector2<T>) -> Vector2<T> {
         Vector2::new(self.c * v.x - self.s * v.y, self.s * v.x + self.c * v.y)
     }
 
-    /// Rᵀ v.
+    /// Returns Rᵀ v.
     #[must_use]
     #[inline(always)]
     pub fn apply_inverse(self, v: Vector2<T>) -> Vector2<T> {
         Vector2::new(self.c * v.x + self.s * v.y, self.c * v.y - self.s * v.x)
     }
 
-    /// (a, b) normalised; `None` where squares leave the range of f64.
+    /// Returns (a, b) normalised; `None` if a² + b² underflows or overflows f64.
     #[inline(always)]
     fn towards(a: T, b: T) -> Option<Self> {
         let squares = a * a + b * b;
@@ -68,12 +68,13 @@ impl<T: Number> Rotation<T> {
     }
 }
 
-/// Sums of squares between these are right to the last digits: what underflows in them does not count.
+/// Range of a² + b² inside which underflow of one square does not change the last digit of the sum.
 const SMALLEST_SQUARE: f64 = 1e-250;
 /// See [`SMALLEST_SQUARE`].
 const LARGEST_SQUARE: f64 = 1e300;
 
-/// The rotation R of the polar decomposition F = R S, S symmetric (article eqs. 37–39); `None` where it is undefined.
+/// Returns the rotation R of the polar decomposition F = R S, S symmetric (article eqs. 37–39); `None` where it is
+/// undefined.
 ///
 /// R is the proper rotation that maximises tr(RᵀF) = c (F₀₀ + F₁₁) + s (F₁₀ − F₀₁), so (c, s) is that pair of sums,
 /// normalised. It is right for every finite F: inverted, singular, subnormal or near the largest number. It never is a
@@ -100,12 +101,12 @@ pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
         if !f.iter().all(|v| v.is_finite()) {
             return None;
         }
-        // Only the sums overflowed. What halving rounds away is beyond the last digit of the larger one.
+        // Only the sums overflowed. Halving first loses at most what is below the last digit of the larger summand.
         a = 0.5 * f.m11 + 0.5 * f.m22;
         b = 0.5 * f.m21 - 0.5 * f.m12;
     }
-    // A floating-point sum is zero only where the exact one is, and has full relative accuracy otherwise: dividing by
-    // the larger of the two keeps both digits and range.
+    // The rounded sum is zero only if the exact sum is, and otherwise has full relative accuracy: dividing by the
+    // larger of the two keeps both digits and range.
     let m = a.abs().max(b.abs());
     if m == 0.0 {
         return None;
@@ -113,20 +114,20 @@ pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
     Rotation::towards(a / m, b / m)
 }
 
-/// [`polar`], keeping `previous` where the rotation is undefined.
+/// Returns [`polar`] of `f`, or `previous` where it is undefined.
 #[must_use]
 #[inline(always)]
 pub fn polar_or<T: Number>(f: &Matrix2<T>, previous: Rotation<T>) -> Rotation<T> {
     polar_or_else(f, || previous)
 }
 
-/// [`polar_or`] with a rotation that is looked up where it is wanted.
+/// Evaluates [`polar_or`] with a previous rotation that is computed only if needed.
 #[inline(always)]
 pub(crate) fn polar_or_else<T: Number>(f: &Matrix2<T>, previous: impl FnOnce() -> Rotation<T>) -> Rotation<T> {
     Rotation::towards(f.m11 + f.m22, f.m21 - f.m12).unwrap_or_else(|| one_by_one(f, previous()))
 }
 
-/// [`polar_or`] where not all lanes are ordinary.
+/// Evaluates [`polar_or`] lane by lane; called if a sum of squares is out of range in any lane.
 #[cold]
 fn one_by_one<T: Number>(f: &Matrix2<T>, previous: Rotation<T>) -> Rotation<T> {
     let mut result = previous;

@@ -1,4 +1,4 @@
-//! What a simulation knows of its body at an instant. A clone is a snapshot: it can be saved, restored and compared.
+//! State of a simulated body at one instant. A clone is a snapshot that can be saved, restored and compared.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -6,50 +6,51 @@ use thiserror::Error;
 use crate::displacement::{Compensated, Displacement};
 use crate::rotation::Rotation;
 
-/// Where a body is and how it moves. Slices over nodes are in the mesh's order; rotations are those of the elements, one
-/// element after the other.
+/// Positions, rotations and velocities of a body. Slices over nodes are in the mesh's order; rotations are in the order
+/// of the elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// u = x − X of every node, m.
     pub(crate) displacement: Displacement,
-    /// R of every element or quadrature point. Where the polar factor of F is undefined it is the one before.
+    /// R of every element or quadrature point. Where the polar factor of F is undefined, the previous rotation is kept.
     pub(crate) rotations: Vec<Rotation>,
-    /// How far every named edge has turned since rest, rad, full turns included; 0 for edges that are not straight.
+    /// Rotation of every named edge since rest, rad, full turns included; 0 for edges that are not straight.
     pub(crate) turns: Vec<f64>,
     /// Velocity of every node, m/s; zero in statics.
     pub(crate) velocity: Vec<Vector2<f64>>,
     /// Time since the start, s; zero in statics.
     pub(crate) time: f64,
-    /// The force that accelerates every node at the end of a time step, without pulses and hand, as that step has left it, N …
+    /// Force that accelerates every node at the end of the last time step, N, without pulses and mouse spring. Valid
+    /// only if [`Self::knows_net_force`].
     pub(crate) net_force: Vec<Vector2<f64>>,
-    /// … where it is known: not at the start, and not of a body that has been moved or loaded anew.
+    /// `true` if `net_force` is valid: `false` at the start and after the body has been moved or loaded from outside.
     pub(crate) knows_net_force: bool,
 }
 
-/// A state, or a nodal vector, that does not belong to a body.
+/// Error for a state or a nodal vector that does not fit a body.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum StateError {
-    /// Not as many values as the body has.
+    /// The number of values differs from the body's.
     #[error("expected {expected} {what}, got {got}")]
     Length {
-        /// What is counted.
+        /// Name of the counted values.
         what: &'static str,
-        /// How many the body has.
+        /// Number of values that the body has.
         expected: usize,
-        /// How many there are.
+        /// Number of values given.
         got: usize,
     },
     /// A value that is NaN or infinite.
     #[error("expected finite {what}")]
     NotFinite {
-        /// What is not finite.
+        /// Name of the values.
         what: &'static str,
     },
 }
 
 impl State {
-    /// A body of so many nodes, rotations and edges at rest.
+    /// Returns a body at rest with these numbers of nodes, rotations and named edges.
     #[must_use]
     pub(crate) fn at_rest(nodes: usize, rotations: usize, edges: usize) -> Self {
         Self {
@@ -63,7 +64,7 @@ impl State {
         }
     }
 
-    /// Back to rest.
+    /// Returns to the rest position with zero velocity and time.
     pub(crate) fn reset(&mut self) {
         self.displacement.reset();
         self.rotations.fill(Rotation::IDENTITY);
@@ -71,14 +72,14 @@ impl State {
         self.stop();
     }
 
-    /// Takes its velocity, and puts it at the start of time.
+    /// Sets velocity and time to zero.
     pub(crate) fn stop(&mut self) {
         self.velocity.fill(Vector2::zeros());
         self.time = 0.0;
         self.knows_net_force = false;
     }
 
-    /// Becomes a state of the same body, without allocating.
+    /// Copies another state of the same body without allocating.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.displacement.copy_from(&other.displacement);
         self.rotations.clone_from(&other.rotations);
@@ -89,44 +90,44 @@ impl State {
         self.knows_net_force = other.knows_net_force;
     }
 
-    /// Displacement u = x − X of every node, m.
+    /// Returns the displacement u = x − X of every node, m.
     #[must_use]
     pub fn displacement(&self) -> &[Vector2<f64>] {
         &self.displacement
     }
 
-    /// The displacement with the digits beyond [`Self::displacement`], m.
+    /// Returns the displacement including the digits that [`Self::displacement`] rounds away, m.
     #[must_use]
     pub fn compensated(&self) -> Compensated<'_> {
         self.displacement.view()
     }
 
-    /// R of every element or quadrature point, element by element.
+    /// Returns R of every element or quadrature point, element by element.
     #[must_use]
     pub fn rotations(&self) -> &[Rotation] {
         &self.rotations
     }
 
-    /// How far every named edge of the mesh has turned since rest, rad, counter-clockwise, full turns included, in the
-    /// order of their names; 0 for edges that are not straight.
+    /// Returns the rotation of every named edge of the mesh since rest, rad, counter-clockwise, full turns included, in
+    /// the order of their names; 0 for edges that are not straight.
     #[must_use]
     pub fn turns(&self) -> &[f64] {
         &self.turns
     }
 
-    /// Velocity of every node, m/s.
+    /// Returns the velocity of every node, m/s.
     #[must_use]
     pub fn velocity(&self) -> &[Vector2<f64>] {
         &self.velocity
     }
 
-    /// Time since the start, s.
+    /// Returns the time since the start, s.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.time
     }
 
-    /// Memory that its numbers take, bytes.
+    /// Returns the memory of the state's arrays, bytes.
     #[must_use]
     pub(crate) fn bytes(&self) -> usize {
         let vectors = 2 * self.displacement.len() + self.velocity.len() + self.net_force.len();
@@ -135,7 +136,7 @@ impl State {
             + size_of_val(self.turns.as_slice())
     }
 
-    /// Whether every number is finite.
+    /// Returns `true` if every number is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         is_finite(&self.displacement)
@@ -146,10 +147,10 @@ impl State {
             && (!self.knows_net_force || is_finite(&self.net_force))
     }
 
-    /// The state with another displacement, m, but the same rotations.
+    /// Returns a copy of the state with displacement `u`, m, and the same rotations.
     ///
     /// # Errors
-    /// [`StateError`] where there are not as many vectors as nodes, or one is not finite.
+    /// [`StateError`] if the number of vectors differs from the number of nodes, or one is not finite.
     pub fn with_displacement(&self, u: Vec<Vector2<f64>>) -> Result<Self, StateError> {
         same_length("displacements", self.displacement.len(), u.len())?;
         if !is_finite(&u) {
@@ -158,7 +159,7 @@ impl State {
         Ok(Self { displacement: Displacement::from_rounded(u), knows_net_force: false, ..self.clone() })
     }
 
-    /// Accepts `other` as a state of the same body.
+    /// Checks that `other` is a finite state of the same body.
     ///
     /// # Errors
     /// [`StateError`].
@@ -172,17 +173,17 @@ impl State {
     }
 }
 
-/// Whether every component is finite.
+/// Returns `true` if every component is finite.
 pub(crate) fn is_finite(nodal: &[Vector2<f64>]) -> bool {
     nodal.iter().all(|v| v.x.is_finite() && v.y.is_finite())
 }
 
-/// Accepts a count, or says what was expected.
+/// Checks a count.
 pub(crate) fn same_length(what: &'static str, expected: usize, got: usize) -> Result<(), StateError> {
     if expected == got { Ok(()) } else { Err(StateError::Length { what, expected, got }) }
 }
 
-/// The largest length in a nodal field.
+/// Returns the largest length in a nodal field.
 #[must_use]
 pub(crate) fn largest(nodal: &[Vector2<f64>]) -> f64 {
     nodal.iter().map(|v| v.norm()).fold(0.0, f64::max)

@@ -1,12 +1,12 @@
-//! Where the time goes.
+//! Computing time by stage.
 
 use std::time::{Duration, Instant};
 
 /// Time spent in each stage of an iteration or a time step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timings {
-    /// Rotations and turns of edges found apart, at the end of time steps; those of an iteration are found in the sweep
-    /// that assembles.
+    /// Rotations and edge angles computed separately at the end of time steps. Those of an iteration are computed in
+    /// the assembly loop and counted in `assemble`.
     pub rotate: Duration,
     /// Rotations, stiffness, forces, residual.
     pub assemble: Duration,
@@ -14,18 +14,18 @@ pub struct Timings {
     pub factorize: Duration,
     /// Forward and back substitution, update.
     pub solve: Duration,
-    /// What is known of the result: its stability, and ρ.
+    /// Stability of the result, and ρ.
     pub certify: Duration,
 }
 
 impl Timings {
-    /// All stages together.
+    /// Returns the sum of all stages.
     #[must_use]
     pub fn total(&self) -> Duration {
         self.rotate + self.assemble + self.factorize + self.solve + self.certify
     }
 
-    /// Adds other timings, stage by stage.
+    /// Adds `other`, stage by stage.
     pub fn add(&mut self, other: &Self) {
         self.rotate += other.rotate;
         self.assemble += other.assemble;

@@ -1,8 +1,8 @@
-//! What errors are measured against: beam theories solved as ordinary differential equations, independently of any mesh.
+//! Reference solutions for errors: beam theories solved as ordinary differential equations, independently of any mesh.
 //!
 //! - the **elastica** (Euler 1744): inextensible, no shear;
-//! - the **geometrically exact beam** (Reissner 1972): it stretches and shears too, with the shear area 5/6 of the
-//!   section;
+//! - the **geometrically exact beam** (Reissner 1972): with stretch and shear, shear area 5/6 of the section;
+//! - linear beam theory, P L³/3EI and its companions.
 //! - linear beam theory, P L³/3EI and its companions.
 //!
 //! A clamped beam of length L carries a dead tip force, a tip moment and a weight per rest length. With s the rest arc
@@ -10,14 +10,14 @@
 //!
 //! x′ = (1 + ε) t + γ m,  θ′ = M / EI,  M′ = −x′ × n,  n(s) = F + q (L − s),
 //!
-//! t = (cos θ, sin θ), m = (−sin θ, cos θ), ε = n·t / EA, γ = n·m / GA (both 0 for the elastica), θ(0) = 0, M(L) = M_tip.
-//! Solved by multiple shooting with RK4, following the load up from zero.
+//! t = (cos θ, sin θ), m = (−sin θ, cos θ), ε = n·t / EA, γ = n·m / GA (both 0 for the elastica), θ(0) = 0, M(L) =
+//! M_tip. The equations are solved by multiple shooting with RK4, following the load from zero.
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector2};
 
 use crate::model::{Analysis, Axis, Load, Place, Plane, Scene, Support};
 
-/// A clamped beam and its loads. Any consistent units.
+/// Clamped beam and its loads, in any consistent units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClampedBeam {
     /// Length L at rest.
@@ -36,36 +36,36 @@ pub struct ClampedBeam {
     pub weight: Vector2<f64>,
 }
 
-/// Where the tip of a beam is.
+/// Tip of a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tip {
-    /// Its position; the clamp is at the origin and the beam rests along x.
+    /// Position; the clamp is at the origin and the beam at rest lies along x.
     pub x: Vector2<f64>,
-    /// The section's angle there, rad.
+    /// Angle of the section, rad.
     pub angle: f64,
 }
 
-/// An equilibrium on the way up from no load.
+/// Equilibrium on the load path from zero load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
-    /// Fraction of the load.
+    /// Load factor, relative to the full load.
     pub factor: f64,
-    /// The tip.
+    /// Tip position and angle.
     pub tip: Tip,
     /// Bending moment at the clamp.
     pub clamp_moment: f64,
 }
 
-/// Pieces of the beam that are shot over separately: each stays well-conditioned under large loads.
+/// Number of shooting segments; a single segment would be ill-conditioned under large loads.
 const SEGMENTS: usize = 32;
-/// RK4 steps a piece.
+/// RK4 steps per segment.
 const STEPS: usize = 24;
-/// Newton iterations a load step may take.
+/// Largest number of Newton iterations per load step.
 const MAX_ITERATIONS: u32 = 20;
-/// The smallest load step, relative to a load of one in these units.
+/// Smallest step of the load factor.
 const SMALLEST_LOAD_STEP: f64 = 1e-4;
 
-/// θ and M at a point, and the way from the start of the piece to it.
+/// θ and M at a point, and the vector from the start of the segment to it.
 #[derive(Clone, Copy)]
 struct State {
     theta: f64,
@@ -74,7 +74,7 @@ struct State {
 }
 
 impl ClampedBeam {
-    /// Derivatives with respect to s, for a load factor.
+    /// Returns the derivatives with respect to s at a load factor.
     fn derivative(&self, s: f64, state: &State, factor: f64) -> State {
         let n = (self.tip_force + self.weight * (self.length - s)) * factor;
         let (sin, cos) = state.theta.sin_cos();
@@ -83,7 +83,7 @@ impl ClampedBeam {
         State { theta: state.moment / self.bending, moment: -x.perp(&n), x }
     }
 
-    /// Over one piece, from θ and M at its start.
+    /// Integrates over one segment from θ and M at its start; returns the state at its end.
     fn shoot(&self, piece: usize, theta: f64, moment: f64, factor: f64) -> State {
         let h = self.length / (SEGMENTS * STEPS) as f64;
         let mut state = State { theta, moment, x: Vector2::zeros() };
@@ -108,12 +108,12 @@ impl ClampedBeam {
         state
     }
 
-    /// The lowest angular frequency of small vibrations without loads, rad/s, of a beam of this mass per length (kg/m) and
-    /// rotary inertia per length (kg m): Timoshenko's beam; Euler's and Bernoulli's without shear and rotary inertia.
-    /// `None` where there is none below the second frequency of the slender beam.
+    /// Returns the lowest angular frequency of small vibrations without loads, rad/s, for a mass per length (kg/m) and
+    /// a rotary inertia per length (kg m): Timoshenko beam; without shear compliance and rotary inertia,
+    /// Euler–Bernoulli beam. `None` if there is none below the upper bound β = 4 of the search.
     ///
-    /// With amplitudes w, θ, M, V over the length: w′ = θ + V/GA, θ′ = M/EI, M′ = −V − ω² J θ, V′ = −ω² m w; w and θ vanish at
-    /// the clamp, M and V at the tip.
+    /// With amplitudes w, θ, M, V over the length: w′ = θ + V/GA, θ′ = M/EI, M′ = −V − ω² J θ, V′ = −ω² m w; w and θ
+    /// vanish at the clamp, M and V at the tip.
     #[must_use]
     pub fn lowest_frequency(&self, mass: f64, rotary_inertia: f64) -> Option<f64> {
         let Self { length, bending, shear_compliance, .. } = *self;
@@ -132,7 +132,7 @@ impl ClampedBeam {
             let end = slope.exp();
             end.fixed_view::<2, 2>(2, 2).determinant()
         };
-        /// Between the first two roots of the slender beam, 1.875 and 4.694.
+        /// Upper bound of β, between the first two roots of the slender beam, 1.875 and 4.694.
         const MOST: f64 = 4.0;
         const SCAN: f64 = 0.05;
         let (mut low, mut high) = (SCAN, 2.0 * SCAN);
@@ -152,14 +152,14 @@ impl ClampedBeam {
         Some(low * low * (bending / mass).sqrt() / (length * length))
     }
 
-    /// One Newton step of multiple shooting on the unknowns θₖ, Mₖ; returns the scaled size of the step, and on which
-    /// side of a critical point the state is.
+    /// Performs one Newton step of multiple shooting on the unknowns θₖ, Mₖ; returns the scaled size of the step, and
+    /// the sign of the determinant, which changes at a critical point.
     fn newton_step(&self, unknowns: &mut DVector<f64>, factor: f64) -> Option<(f64, bool)> {
         const DIFFERENCE: f64 = 1e-7;
         let scale = self.bending / self.length;
         let n = 2 * SEGMENTS;
         let (mut jacobian, mut residual) = (DMatrix::zeros(n, n), DVector::zeros(n));
-        // θ₀ = 0 stands in for the first unknown; row k says that piece k − 1 ends where piece k begins.
+        // The equation θ₀ = 0 takes row 0; the other rows state that segment k − 1 ends where segment k begins.
         jacobian[(0, 0)] = 1.0;
         residual[0] = unknowns[0];
         for piece in 0..SEGMENTS {
@@ -167,7 +167,7 @@ impl ClampedBeam {
             let end = self.shoot(piece, theta, moment, factor);
             let by_theta = self.shoot(piece, theta + DIFFERENCE, moment, factor);
             let by_moment = self.shoot(piece, theta, moment + DIFFERENCE * scale, factor);
-            // Rows 2k+1 (θ) and 2k+2 (M) of the next piece's start; of the last piece only M, at the tip.
+            // Rows 2k+1 (θ) and 2k+2 (M): continuity with the next segment; the last segment has only M = M_tip.
             let last = piece + 1 == SEGMENTS;
             let row = 2 * piece + 1;
             if !last {
@@ -192,18 +192,18 @@ impl ClampedBeam {
         size.is_finite().then_some((size, lu.determinant() > 0.0))
     }
 
-    /// The equilibria that grow out of the straight beam as the load grows from nothing to `largest` times itself, at
-    /// `points` equally spaced load factors; fewer where they cannot be followed.
+    /// Returns the equilibria on the path from the straight beam as the load grows from zero to `largest` times the
+    /// full load, at `points` equally spaced load factors; fewer points if the path cannot be followed to its end.
     ///
-    /// The sign of the shooting method's determinant changes where the equilibrium loses its stability: a state on the
-    /// other side of that is not taken, so the path stays the stable one.
+    /// The sign of the shooting method's determinant changes where the equilibrium loses its stability. States with the
+    /// other sign are rejected, so the path stays on the stable branch.
     #[must_use]
     pub fn path(&self, largest: f64, points: u32) -> Vec<PathPoint> {
         self.path_to_critical(largest, points).0
     }
 
-    /// [`Self::path`] with the load factor at which the path loses its stability, where it does so without turning back: the
-    /// beam buckles there.
+    /// Returns [`Self::path`] and the load factor at which it loses its stability by bifurcation (buckling); `None` for
+    /// the load factor if the path stays stable or turns back.
     #[must_use]
     pub fn path_to_critical(&self, largest: f64, points: u32) -> (Vec<PathPoint>, Option<f64>) {
         let mut path = Vec::new();
@@ -215,7 +215,7 @@ impl ClampedBeam {
         (path, critical)
     }
 
-    /// The axis under the whole load, from the clamp to the tip; `None` where the equilibrium cannot be followed.
+    /// Returns the axis under the full load, from the clamp to the tip; `None` if the equilibrium cannot be followed.
     #[must_use]
     pub fn axis(&self) -> Option<Vec<Tip>> {
         let mut axis = None;
@@ -223,7 +223,7 @@ impl ClampedBeam {
         axis
     }
 
-    /// Both ends of every piece of a solution, from the clamp to the tip.
+    /// Returns the end points of all segments of a solution, from the clamp to the tip.
     fn stations(&self, unknowns: &DVector<f64>, factor: f64) -> Vec<Tip> {
         let scale = self.bending / self.length;
         let mut tip = Tip { x: Vector2::zeros(), angle: 0.0 };
@@ -236,7 +236,7 @@ impl ClampedBeam {
         stations
     }
 
-    /// Visits the equilibria of [`Self::path`]; returns the load factor beyond which the path goes on unstably.
+    /// Visits the equilibria of [`Self::path`]; returns the load factor beyond which the path continues unstably.
     fn follow(&self, largest: f64, points: u32, visit: &mut dyn FnMut(f64, &DVector<f64>)) -> Option<f64> {
         let mut unknowns = DVector::zeros(2 * SEGMENTS);
         let (_, side) = self.newton_step(&mut unknowns, 0.0)?;
@@ -254,7 +254,7 @@ impl ClampedBeam {
                     None => {
                         step = 0.4 * step.min(goal - reached);
                         if step < SMALLEST_LOAD_STEP {
-                            // Half a step back from where the other side begins.
+                            // The critical point lies between `reached` and `target`: return their middle.
                             return self.converge(&unknowns, target, !side).map(|_| 0.5 * (reached + target));
                         }
                     }
@@ -265,9 +265,9 @@ impl ClampedBeam {
         None
     }
 
-    /// The equilibrium at a load factor, near `start` and on the same side of a critical point.
+    /// Returns the equilibrium at a load factor, near `start` and with the same sign of the determinant, `side`.
     fn converge(&self, start: &DVector<f64>, factor: f64, side: bool) -> Option<DVector<f64>> {
-        /// Largest change of an angle in a load step, rad: farther away is another equilibrium.
+        /// Largest change of an angle in a load step, rad; a larger change means another equilibrium branch.
         const FARTHEST: f64 = 0.2;
         let mut state = start.clone();
         for _ in 0..MAX_ITERATIONS {
@@ -280,20 +280,20 @@ impl ClampedBeam {
         None
     }
 
-    /// The tip of the equilibrium that grows out of the straight beam; `None` where it cannot be followed.
+    /// Returns the tip of the equilibrium on the path from the straight beam; `None` if the path cannot be followed.
     #[must_use]
     pub fn tip(&self) -> Option<Tip> {
         self.path(1.0, 1).pop().map(|p| p.tip)
     }
 
-    /// The same beam without stretch and shear: the elastica.
+    /// Returns the same beam without stretch and shear: the elastica.
     #[must_use]
     pub fn elastica(self) -> Self {
         Self { stretch_compliance: 0.0, shear_compliance: 0.0, ..self }
     }
 
-    /// The tip's displacement in linear beam theory: P L³/3EI, q L⁴/8EI, M L²/2EI across, F L/EA and q L²/2EA along, and
-    /// the shear's P L/GA and q L²/2GA.
+    /// Returns the tip's displacement in linear beam theory: P L³/3EI, q L⁴/8EI, M L²/2EI across, F L/EA and q L²/2EA
+    /// along, and the shear's P L/GA and q L²/2GA.
     #[must_use]
     pub fn linear_tip_displacement(&self) -> Vector2<f64> {
         let (l, f, q) = (self.length, self.tip_force, self.weight);
@@ -303,19 +303,20 @@ impl ClampedBeam {
     }
 }
 
-/// The distance of a displacement from the true one, over the length of that, percent; `None` where nothing moves.
+/// Returns the distance of a displacement from the reference, relative to the reference's length, percent; `None` if
+/// the reference is zero.
 #[must_use]
 pub fn error_percent(u: Vector2<f64>, truth: Vector2<f64>) -> Option<f64> {
     let length = truth.norm();
     (length > 0.0).then(|| 100.0 * (u - truth).norm() / length)
 }
 
-/// A scene whose right edge has a known displacement.
+/// Reference solution for scenes whose right edge has a known displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BeamTruth {
     /// Clamped left, loaded on the right edge or by its weight: the geometrically exact beam.
     Cantilever(ClampedBeam),
-    /// Pulled along its axis, free to thin: P L / (E A).
+    /// Bar pulled along its axis, free to contract laterally: P L / (E A).
     Bar {
         /// Displacement of the right edge along x, m.
         stretch: f64,
@@ -323,10 +324,10 @@ pub enum BeamTruth {
 }
 
 impl BeamTruth {
-    /// The truth of a scene, if there is one.
+    /// Returns the reference solution of a scene, `None` if it has none.
     ///
-    /// A rectangle clamped on its left edge whose loads are forces and moments on the right edge, and gravity; or one
-    /// held there along its axis only (and in one point against sliding across), pulled along the axis.
+    /// It exists for a rectangle clamped on its left edge whose loads are gravity and forces and moments on the right
+    /// edge; and for a rectangle fixed there in x only (and in one point in y) that is pulled along its axis.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         const SHEAR_AREA: f64 = 5.0 / 6.0;
@@ -374,7 +375,7 @@ impl BeamTruth {
             .then(|| Self::Bar { stretch: clamped.tip_force.x * beam.length * clamped.stretch_compliance })
     }
 
-    /// The true displacement of the right edge's middle, m; `None` where the equilibrium cannot be followed.
+    /// Returns the displacement of the right edge's middle, m; `None` if the equilibrium cannot be followed.
     #[must_use]
     pub fn tip_displacement(&self) -> Option<Vector2<f64>> {
         match self {
@@ -383,8 +384,8 @@ impl BeamTruth {
         }
     }
 
-    /// The outline of a beam this high, m, around its true axis, closed and counter-clockwise; `None` for the bar, whose
-    /// sides move in, and where the equilibrium cannot be followed.
+    /// Returns the outline of a beam of this height, m, around its computed axis, closed and counter-clockwise; `None`
+    /// for the bar, whose sides contract, and if the equilibrium cannot be followed.
     #[must_use]
     pub fn outline(&self, height: f64) -> Option<Vec<Vector2<f64>>> {
         let Self::Cantilever(beam) = self else { return None };

@@ -1,6 +1,7 @@
-//! Words for numbers and counts, the same in messages, tables and the window.
+//! Formats numbers, units and counts, the same way in messages, tables and the window.
 
-/// The shortest text that reads back as the same number: plain where that is short, else with an exponent.
+/// Returns the shortest text that reads back as the same number: plain decimals for magnitudes from 1e-4 to 1e7, else
+/// with an exponent.
 ///
 /// ```
 /// use warpbeam::words::number;
@@ -16,14 +17,14 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// A number of things: `1 iteration`, `2 iterations`.
+/// Formats a count with its noun: `1 iteration`, `2 iterations`.
 #[must_use]
 pub fn count(n: impl Into<u64>, what: &str) -> String {
     let n = n.into();
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-/// A whole number with its thousands apart: `500,000`.
+/// Formats a whole number with thousands separators: `500,000`.
 ///
 /// ```
 /// use warpbeam::words::grouped;
@@ -49,13 +50,13 @@ const PREFIXES: [(&str, i32); 9] =
 /// Significant digits of measured values.
 const DIGITS: i32 = 4;
 
-/// Units that take no prefix: they have one already, or are no symbol.
+/// Returns `true` for units that take no SI prefix: they have one already, or are no symbol.
 fn takes_no_prefix(unit: &str) -> bool {
     ["kg", "°", "%", "1/"].iter().any(|own| unit.starts_with(own)) || ["", "ms"].contains(&unit)
 }
 
-/// The prefix in which the largest of some values, in SI units, is from 1 to 1000: a power of ten and its symbol. Units
-/// that have a prefix already, such as kg m/s, and °, % and 1/s take none.
+/// Returns the SI prefix (power of ten and symbol) that scales the largest of `values`, in SI units, to between 1 and
+/// 1000. Units that have a prefix already, such as kg m/s, and °, % and 1/s take none.
 ///
 /// ```
 /// use warpbeam::words::prefix;
@@ -67,14 +68,14 @@ pub fn prefix(values: &[f64], unit: &str) -> (i32, &'static str) {
     if largest == 0.0 || takes_no_prefix(unit) {
         return (0, "");
     }
-    // Rounded first: 999.96 is 1000.
+    // Rounding comes first, because 999.96 is shown as 1000.
     let rounded: f64 = format!("{largest:.*e}", DIGITS as usize - 1).parse().unwrap_or(largest);
     let fits = |power: i32| rounded >= 10f64.powi(power);
     let found = PREFIXES.iter().rev().find(|(_, power)| fits(*power));
     found.or(PREFIXES.first()).map_or((0, ""), |(symbol, power)| (*power, *symbol))
 }
 
-/// A measured value in engineering units, to four significant digits: `-5.12 µm`, `30 kN`, `0 m`.
+/// Formats a measured value in engineering units, to four significant digits: `-5.12 µm`, `30 kN`, `0 m`.
 ///
 /// ```
 /// use warpbeam::words::engineering;
@@ -85,19 +86,19 @@ pub fn engineering(value: f64, unit: &str) -> String {
     engineering_digits(value, unit, DIGITS)
 }
 
-/// The same to so many significant digits.
+/// Formats like [`engineering`] to `digits` significant digits.
 fn engineering_digits(value: f64, unit: &str, digits: i32) -> String {
     let (power, symbol) = prefix(&[value], unit);
     with_unit(&significant(scaled(value, power), digits), symbol, unit)
 }
 
-/// A number with its unit. A degree sign follows at once.
+/// Appends the unit to a number, without a space before a degree sign.
 fn with_unit(number: &str, symbol: &str, unit: &str) -> String {
     if unit == "°" { format!("{number}°") } else { format!("{number} {symbol}{unit}").trim_end().to_owned() }
 }
 
-/// A value that is edited, in engineering units: all of its digits where they are no more than six, as typed ones are, else
-/// four.
+/// Formats an editable value in engineering units: with all of its digits if six are enough, as for typed values, else
+/// with four.
 ///
 /// ```
 /// use warpbeam::words::editable;
@@ -109,13 +110,13 @@ fn with_unit(number: &str, symbol: &str, unit: &str) -> String {
 #[must_use]
 pub fn editable(value: f64, unit: &str) -> String {
     const TYPED: usize = 6;
-    /// Of a value, what changing its unit may add to a typed one.
+    /// Relative rounding error that a change of units may add to a typed value.
     const ROUNDING: f64 = 1e-12;
     let is_typed = (value - rounded(value, TYPED)).abs() <= ROUNDING * value.abs();
     engineering_digits(value, unit, if is_typed { TYPED as i32 } else { DIGITS })
 }
 
-/// An error or a share in percent: two digits, `exact` where only rounding is left.
+/// Formats a percentage with two digits; differences at rounding level are `exact`.
 ///
 /// ```
 /// use warpbeam::words::percent;
@@ -126,7 +127,7 @@ pub fn editable(value: f64, unit: &str) -> String {
 /// ```
 #[must_use]
 pub fn percent(value: f64) -> String {
-    /// Below this, percent, a difference is rounding.
+    /// Smallest difference that is not rounding error, percent.
     const ROUNDING: f64 = 1e-7;
     if value.abs() < ROUNDING {
         return "exact".to_owned();
@@ -137,19 +138,19 @@ pub fn percent(value: f64) -> String {
     format!("{} %", significant(value, 2))
 }
 
-/// The nearest number of three significant digits: as much as a slider, a pointer or a clock is good for.
+/// Rounds to three significant digits, the precision of sliders, pointer positions and clocks.
 #[must_use]
 pub fn three_digits(value: f64) -> f64 {
     rounded(value, 3)
 }
 
-/// The nearest number of two significant digits: as much as a time that varies, or a residual, has to say.
+/// Rounds to two significant digits, the precision of measured times and residuals.
 #[must_use]
 pub fn two_digits(value: f64) -> f64 {
     rounded(value, 2)
 }
 
-/// The nearest number of so many significant digits.
+/// Rounds to `digits` significant digits.
 fn rounded(value: f64, digits: usize) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
@@ -157,14 +158,15 @@ fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
-/// The largest of 1, 2, 5 · 10ⁿ that is not above `length`.
+/// Returns the largest number of the form 1, 2 or 5 · 10ⁿ that is not above `length`.
 #[must_use]
 pub fn round_down(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
     [5.0, 2.0].into_iter().map(|m| m * power).find(|&l| l <= length * (1.0 + 1e-12)).unwrap_or(power)
 }
 
-/// Round values from `low` to `high`, 1, 2 or 5 · 10ⁿ apart: as many as there can be, and at most `most`.
+/// Returns round values from `low` to `high`, with a spacing of 1, 2 or 5 · 10ⁿ: as many as possible, but at most
+/// `most`.
 ///
 /// ```
 /// use warpbeam::words::ticks;
@@ -182,13 +184,14 @@ pub fn ticks(low: f64, high: f64, most: u32) -> Vec<f64> {
         if last - first < f64::from(most) && step > 0.0 {
             return (0..).map(|i| first + f64::from(i)).take_while(|&k| k <= last).map(|k| k * step).collect();
         }
-        // A little above it is the next round number: 1, 2, 5, 10.
+        // 2.5 times the step rounds down to the next round number: 1, 2, 5, 10.
         step = round_down(2.5 * step);
     }
     Vec::new()
 }
 
-/// Both components of a vector with one prefix: `(1.5, -0.02) mm`. What is rounding beside the other is 0.
+/// Formats both components of a vector with one prefix: `(1.5, -0.02) mm`. A component at rounding level of the other
+/// is 0.
 ///
 /// ```
 /// use warpbeam::words::engineering_pair;
@@ -203,15 +206,15 @@ pub fn engineering_pair(values: [f64; 2], unit: &str) -> String {
     format!("({}, {}) {symbol}{unit}", significant(scaled(x, power), DIGITS), significant(scaled(y, power), DIGITS))
 }
 
-/// A value in units of a power of ten.
+/// Converts a value to units of a power of ten.
 fn scaled(value: f64, power: i32) -> f64 {
     if power < 0 { value * 10f64.powi(-power) } else { value / 10f64.powi(power) }
 }
 
-/// So many significant digits, trailing zeros dropped; with an exponent where that is shorter.
+/// Formats with `digits` significant digits and without trailing zeros, with an exponent where [`number`] uses one.
 fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
-        // No -0.
+        // Avoids "-0".
         return if value == 0.0 { "0".to_owned() } else { value.to_string() };
     }
     let text = format!("{value:.*e}", digits as usize - 1);

@@ -1,9 +1,9 @@
-//! Affine maps from the corners of a triangle before and after (article eqs. 4–15).
+//! Affine maps from the corners of a triangle before and after deformation (article eqs. 4–15).
 
 use nalgebra::{Matrix2, Matrix3, Vector2};
 use thiserror::Error;
 
-/// Why no affine map can be found.
+/// Reason why there is no affine map.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum AffineError {
     /// The three rest corners lie on a line: the matrix P of eq. (15) is singular.
@@ -21,11 +21,11 @@ pub enum AffineError {
     NotFinite,
 }
 
-/// Area over squared length below which corners count as degenerate: a few hundred
-/// roundings. It trades slivers that could still be solved against maps whose digits are all rounding.
+/// Lower bound of area over squared length: a few hundred rounding errors. It rejects slivers whose maps would consist
+/// of rounding errors, at the cost of some that could still be solved.
 pub const DEGENERATE: f64 = 1e-13;
 
-/// x ↦ M x + d in the plane (eqs. 4–9).
+/// Affine map x ↦ M x + d in the plane (eqs. 4–9).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine2 {
     /// M: rotation, shear, stretch (eq. 5).
@@ -35,10 +35,10 @@ pub struct Affine2 {
 }
 
 impl Affine2 {
-    /// The map that takes the corners `rest` to `deformed`: the solution of P a = y, eqs. (12)–(15).
+    /// Computes the map of the corners `rest` to `deformed`: the solution of P a = y, eqs. (12)–(15).
     ///
-    /// P is block diagonal, so the six unknowns come from the edge vectors by one 2×2 inverse. The deformed corners may
-    /// be collinear (the article's example 3): the map then is singular, but found.
+    /// P is block diagonal, so the six unknowns follow from the edge vectors by one 2×2 inverse. The deformed corners
+    /// may be collinear (the article's example 3); the map is then singular.
     ///
     /// # Errors
     /// [`AffineError::CollinearCorners`] for a rest triangle without area, [`AffineError::NotFinite`].
@@ -48,7 +48,7 @@ impl Affine2 {
         }
         let (e1, e2) = (rest[1] - rest[0], rest[2] - rest[0]);
         let longest = e1.norm().max(e2.norm()).max((e2 - e1).norm());
-        // Divided by their length, edges of any size neither overflow nor underflow in the product.
+        // Dividing edges by their length avoids overflow and underflow of the product.
         let edges = Matrix2::from_columns(&[e1 / longest, e2 / longest]);
         let doubled = edges.determinant();
         let collinear =
@@ -62,13 +62,13 @@ impl Affine2 {
         Ok(Self { linear, translation: deformed[0] - linear * rest[0] })
     }
 
-    /// M x + d.
+    /// Returns M x + d.
     #[must_use]
     pub fn apply(&self, x: Vector2<f64>) -> Vector2<f64> {
         self.linear * x + self.translation
     }
 
-    /// The homogeneous matrix of eq. (9); it is translation times linear part, eq. (28).
+    /// Returns the homogeneous matrix of eq. (9), which is translation times linear part, eq. (28).
     #[must_use]
     pub fn homogeneous(&self) -> Matrix3<f64> {
         let (m, d) = (&self.linear, &self.translation);

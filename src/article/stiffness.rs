@@ -1,4 +1,4 @@
-//! An element's stiffness written out, as the article does it: Ke, R Ke, R Ke Rᵀ and R Ke X (eqs. 1–3).
+//! Stiffness of an element as in the article: Ke, R Ke, R Ke Rᵀ and R Ke X (eqs. 1–3).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,7 +6,7 @@ use crate::element::QuadraturePoint;
 use crate::material::Lame;
 use crate::rotation::Rotation;
 
-/// The matrices of one element. The solver never forms them one element at a time.
+/// Matrices of one element. The solver never forms them one element at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementStiffness {
     /// Ke, 2N×2N, N/m; unknowns x₁ y₁ x₂ y₂ ….
@@ -14,7 +14,8 @@ pub struct ElementStiffness {
 }
 
 impl ElementStiffness {
-    /// Ke = ∫ Bᵀ C B t dA (eqs. 1, 3), summed over quadrature points; the moduli are times the thickness t, N/m.
+    /// Computes Ke = ∫ Bᵀ C B t dA (eqs. 1, 3), summed over quadrature points; the moduli are times the thickness t,
+    /// N/m.
     #[must_use]
     pub fn new<const N: usize>(points: &[QuadraturePoint<N>], moduli: Lame) -> Self {
         let mut ke = DMatrix::zeros(2 * N, 2 * N);
@@ -33,19 +34,19 @@ impl ElementStiffness {
         turn
     }
 
-    /// R Ke, the article's m_cMatRK.
+    /// Returns R Ke, the article's m_cMatRK.
     #[must_use]
     pub fn rk(&self, r: Rotation) -> DMatrix<f64> {
         self.turn(r) * &self.ke
     }
 
-    /// R Ke Rᵀ, the article's m_cMatRKRT.
+    /// Returns R Ke Rᵀ, the article's m_cMatRKRT.
     #[must_use]
     pub fn rkrt(&self, r: Rotation) -> DMatrix<f64> {
         self.rk(r) * self.turn(r).transpose()
     }
 
-    /// The force offset R Ke X, N, for rest positions X of the element's nodes.
+    /// Returns the force offset R Ke X, N, for rest positions X of the element's nodes.
     #[must_use]
     pub fn force_offset(&self, r: Rotation, rest: &DVector<f64>) -> DVector<f64> {
         self.rk(r) * rest

@@ -1,4 +1,4 @@
-//! Named edges: how a traction is shared out among their nodes, and how far they have turned.
+//! Named edges: distribution of a traction among their nodes, and rotation angle.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::words::{engineering, number};
 /// Nodes with a weight each.
 pub type NodeWeights = Vec<(u32, f64)>;
 
-/// A named edge of a mesh.
+/// Named edge of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edge {
     name: String,
@@ -23,7 +23,7 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// All edges of a mesh, by name.
+    /// Returns all edges of a mesh, by name.
     pub(super) fn of(mesh: &Mesh) -> Vec<Self> {
         mesh.edges().keys().map(|name| Self::new(mesh, name)).collect()
     }
@@ -43,36 +43,37 @@ impl Edge {
         Self { name: name.to_owned(), weights, arms, direction }
     }
 
-    /// Its name.
+    /// Returns the name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Nodes with their part of a uniform traction, ∫ Nₐ ds over the edge's length; the parts sum to 1.
+    /// Returns the nodes with their fraction of a uniform traction, ∫ Nₐ ds over the edge's length; the fractions sum
+    /// to 1.
     #[must_use]
     pub fn weights(&self) -> &[(u32, f64)] {
         &self.weights
     }
 
-    /// Whether it is straight at rest: only then has it one direction, and can carry a moment.
+    /// Returns `true` if the edge is straight at rest: only then does it have a direction and can carry a moment.
     #[must_use]
     pub fn is_straight(&self) -> bool {
         !self.arms.is_empty()
     }
 
-    /// Nodes with their weight cⱼ, 1/m, in the edge's direction d = Σ cⱼ xⱼ, which has length 1 at rest; none where the
-    /// edge is not straight.
+    /// Returns the nodes with their weight cⱼ, 1/m, in the edge's direction d = Σ cⱼ xⱼ, which has length 1 at rest;
+    /// empty if the edge is not straight.
     pub(super) fn arms(&self) -> &[(u32, f64)] {
         &self.arms
     }
 
-    /// d = d₀ + Σ cⱼ uⱼ.
+    /// Returns d = d₀ + Σ cⱼ uⱼ.
     pub(super) fn direction(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
         self.direction + self.sum(u)
     }
 
-    /// The direction that loads on the edge have: that at rest in linear theory, else the present one.
+    /// Returns the direction used for loads on the edge: the rest direction in linear theory, else the current one.
     pub(super) fn direction_in(&self, u: &[Vector2<f64>], kinematics: Kinematics) -> Vector2<f64> {
         match kinematics {
             Kinematics::Corotated => self.direction(u),
@@ -84,8 +85,8 @@ impl Edge {
         self.arms.iter().map(|&(node, c)| u[node as usize] * c).sum()
     }
 
-    /// The angle between the edge's direction now and at rest that is nearest to `previous`, rad; `previous` where the
-    /// edge has shrunk to a point.
+    /// Returns the angle between the edge's rest and current directions, rad, chosen nearest to `previous` among
+    /// multiples of 2π; `previous` if the edge has shrunk to a point.
     pub(super) fn turn(&self, u: &[Vector2<f64>], previous: f64) -> f64 {
         use std::f64::consts::TAU;
         let now = self.direction(u);
@@ -94,17 +95,17 @@ impl Edge {
         if now == Vector2::zeros() || !(angle + TAU * turns).is_finite() { previous } else { angle + TAU * turns }
     }
 
-    /// The angle of linear theory, which knows no other direction than that at rest, rad.
+    /// Returns the rotation angle of linear theory, rad, which is linear in the displacement.
     pub(super) fn linear_turn(&self, u: &[Vector2<f64>]) -> f64 {
         self.direction.perp(&self.sum(u))
     }
 }
 
-/// The weights cⱼ and the direction at rest of a straight edge; `None` where it is not straight.
+/// Returns the weights cⱼ and the rest direction of a straight edge; `None` if it is not straight.
 ///
-/// cⱼ is a node's part of the edge times its distance from the edge's middle, normalised.
+/// cⱼ is a node's fraction of the edge times its distance from the edge's middle, normalised.
 fn arms(mesh: &Mesh, weights: &[(u32, f64)]) -> Option<(NodeWeights, Vector2<f64>)> {
-    /// Distance from the line, over the edge's size, that counts as straight.
+    /// Largest distance from the line, relative to the edge's size, that counts as straight.
     const STRAIGHT: f64 = 1e-6;
     let middle: Vector2<f64> = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
     let from_middle = |node: u32| mesh.node(node) - middle;
@@ -124,8 +125,8 @@ fn arms(mesh: &Mesh, weights: &[(u32, f64)]) -> Option<(NodeWeights, Vector2<f64
     direction.iter().all(|v| v.is_finite()).then_some((arms, direction))
 }
 
-/// The node nearest to a point that the scene's table `key` names; refused where it is farther away than one of its elements
-/// is large.
+/// Returns the node nearest to a point in the scene's table `key`; an error if it is farther away than the size of its
+/// elements.
 pub(super) fn node_at(mesh: &Mesh, at: [f64; 2], key: &str) -> Result<u32, Invalid> {
     let node = mesh.nearest_node(at.into());
     let nearest = mesh.node(node);
@@ -135,7 +136,8 @@ pub(super) fn node_at(mesh: &Mesh, at: [f64; 2], key: &str) -> Result<u32, Inval
         from_node.fold(0.0, f64::max)
     });
     let size = sizes.fold(0.0, f64::max);
-    // Written so that NaN is refused too. Where elements differ much in size, the nearest node may not be the element's own.
+    // The comparison is `false` for NaN. Where elements differ much in size, the nearest node may belong to a smaller
+    // element than the one that contains the point.
     if distance <= size || mesh.locate(at.into()).is_some() {
         return Ok(node);
     }
@@ -152,7 +154,7 @@ pub(super) fn node_at(mesh: &Mesh, at: [f64; 2], key: &str) -> Result<u32, Inval
     Err(Invalid::new(format!("{key}.at"), message))
 }
 
-/// The complaint of a scene's table `key` that names an edge that is not there.
+/// Returns the error for a scene's table `key` that names an edge that does not exist.
 pub(super) fn no_such_edge(mesh: &Mesh, name: &str, key: &str) -> Invalid {
     if mesh.edges().is_empty() {
         let message = format!(

@@ -1,20 +1,20 @@
-//! A hand: a damped spring from a material point of the body to where the pointer is.
+//! Mouse spring: a damped spring from a material point of the body to the pointer.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::{Matrix, NodeWeights, System};
 use crate::mesh::MaterialPoint;
 
-/// The part of the body's size from which on a hand pulls no harder.
+/// Elongation beyond which the force is capped, relative to the body's size.
 const REACH: f64 = 0.25;
 
-/// A hold on a material point. Its force k (p − x + τ (ṗ − ẋ)) grows up to a cap, smoothly (Huber 1964), so that its
-/// tangent is never negative and nothing a pointer can do is too much for a step.
+/// Mouse spring at a material point. Its force k (p − x + τ (ṗ − ẋ)) is capped smoothly (Huber 1964), so that its
+/// tangent is never negative and no pointer motion exerts more force than a time step can handle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hand {
     point: MaterialPoint,
     weights: NodeWeights,
-    /// Where the blocks of its tangent go.
+    /// Indices of its tangent's blocks in the stiffness matrix.
     slots: Vec<u32>,
     rest: Vector2<f64>,
     stiffness: f64,
@@ -25,7 +25,7 @@ pub struct Hand {
     target_velocity: Vector2<f64>,
 }
 
-/// A straight way of the pointer: from where, to where (m), and when (s).
+/// Straight path of the pointer: start and end points (m) and times (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Path {
     points: [Vector2<f64>; 2],
@@ -33,8 +33,8 @@ struct Path {
 }
 
 impl Hand {
-    /// A hold on a point of a body, which pulls it to where it is at rest until it is told where to; `None` where there
-    /// is no such point. `stiffness` is k, N/m; `delay` is τ, s: the damper over the spring.
+    /// Returns a spring at a point of a body, whose target is the point's rest position until [`Self::lead`] is called;
+    /// `None` if there is no such point. `stiffness` is k, N/m; `delay` is τ, s: damper over spring constant.
     pub(crate) fn new(system: &System, point: MaterialPoint, stiffness: f64, delay: f64) -> Option<Self> {
         let mesh = system.mesh();
         let weights = mesh.weights(point)?;
@@ -54,37 +54,37 @@ impl Hand {
         })
     }
 
-    /// The same hold on a system with the same mesh.
+    /// Returns the same spring on another system with the same mesh.
     pub(super) fn adapt(&self, system: &System) -> Self {
         let nodes: Vec<u32> = self.weights.iter().map(|&(node, _)| node).collect();
         Self { slots: system.pattern().block_slots(&nodes), ..self.clone() }
     }
 
-    /// The material point that is held.
+    /// Returns the material point that the spring is attached to.
     #[must_use]
     pub fn point(&self) -> MaterialPoint {
         self.point
     }
 
-    /// k, N/m.
+    /// Returns k, N/m.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
-    /// The largest force it pulls with, N.
+    /// Returns the largest force, N.
     #[must_use]
     pub fn largest_force(&self) -> f64 {
         self.stiffness * self.reach
     }
 
-    /// Lets the pointer go from where it is to a point, m, within a time, s; `now` is the time it begins.
+    /// Moves the target along a straight path to a point, m, within a time, s; `now` is the start time.
     pub(crate) fn lead(&mut self, to: Vector2<f64>, now: f64, within: f64) {
         self.path = Path { points: [self.target, to], times: [now, now + within] };
         self.set_time(now);
     }
 
-    /// Puts the pointer where it is at a time, s.
+    /// Sets the target to its position at a time, s.
     pub(super) fn set_time(&mut self, time: f64) {
         let Path { points: [from, to], times: [begin, end] } = self.path;
         let within = end - begin;
@@ -93,29 +93,29 @@ impl Hand {
         } else {
             self.target = to;
         }
-        // At the very end it still moves: steps look back on what was.
+        // The velocity is still nonzero at the very end, because time steps use the past interval.
         let moves = within > 0.0 && time <= end;
         self.target_velocity = if moves { (to - from) / within } else { Vector2::zeros() };
     }
 
-    /// The mean of a nodal field at the point.
+    /// Interpolates a nodal field at the point.
     pub(crate) fn mean(&self, nodal: &[Vector2<f64>]) -> Vector2<f64> {
         self.weights.iter().map(|&(node, w)| nodal[node as usize] * w).sum()
     }
 
-    /// Where the point is for this displacement, m.
+    /// Returns the position of the point for this displacement, m.
     #[must_use]
     pub fn position(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
         self.rest + self.mean(u)
     }
 
-    /// Where it is pulled to, m.
+    /// Returns the target position, m.
     #[must_use]
     pub fn target(&self) -> Vector2<f64> {
         self.target
     }
 
-    /// p − x + τ (ṗ − ẋ) for a displacement and a velocity of the point.
+    /// Returns p − x + τ (ṗ − ẋ) for a displacement and a velocity of the point.
     fn pull(&self, u: Vector2<f64>, v: Vector2<f64>, delay: f64) -> Vector2<f64> {
         self.target - self.rest - u + (self.target_velocity - v) * delay
     }
@@ -124,16 +124,17 @@ impl Hand {
         pull * (stiffness * (self.reach / pull.norm()).min(1.0))
     }
 
-    /// The force on the point for its displacement, m, and velocity, m/s, N.
+    /// Returns the force on the point, N, for its displacement, m, and velocity, m/s.
     #[must_use]
     pub fn force(&self, u: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
         self.capped(self.pull(u, v, self.delay), self.stiffness)
     }
 
-    /// [`Self::force`] of a hand that is as soft as an explicit step of length h, s, can bear where masses, kg, are
-    /// lumped on the nodes.
+    /// Computes [`Self::force`] with stiffness and delay reduced to what is stable in an explicit step of length h, s,
+    /// with masses, kg, lumped at the nodes.
     pub(crate) fn softened_force(&self, u: Vector2<f64>, v: Vector2<f64>, lumped: &[f64], h: f64) -> Vector2<f64> {
-        /// h² k and h k τ over the mass that moves with the point; beyond about 1 the step would overshoot.
+        /// Upper bound of h² k and of h k τ over the mass that moves with the point; beyond about 1 the step would
+        /// overshoot.
         const SOFT: f64 = 0.25;
         let mobility: f64 = self.weights.iter().map(|&(node, w)| w * w / lumped[node as usize]).sum();
         let stiffness = self.stiffness.min(SOFT / (mobility * h * h));
@@ -141,13 +142,13 @@ impl Hand {
         self.capped(self.pull(u, v, delay), stiffness)
     }
 
-    /// The force on the point of a body at rest, N.
+    /// Returns the force on the point of a body at rest, N.
     #[must_use]
     pub fn force_at_rest(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
         self.force(self.mean(u), self.target_velocity)
     }
 
-    /// Energy of the spring of a body at rest, J.
+    /// Returns the energy of the spring of a body at rest, J.
     pub(super) fn energy(&self, u: &[Vector2<f64>]) -> f64 {
         let d = self.pull(self.mean(u), self.target_velocity, 0.0).norm();
         if d <= self.reach {
@@ -164,14 +165,14 @@ impl Hand {
         }
     }
 
-    /// Adds the spring's stiffness as it is below the cap, N/m, times `factor`. The true one is never larger, so that a
-    /// search with this one never overshoots, however far away the pointer is.
+    /// Adds the spring's stiffness below the cap, N/m, times `factor`. The actual stiffness is never larger, so that a
+    /// step with this one does not overshoot, however far away the pointer is.
     pub(super) fn add_largest_stiffness(&self, factor: f64, matrix: &mut Matrix) {
         matrix.add_blocks(&self.slots, &self.weights, &(Matrix2::identity() * (factor * self.stiffness)));
     }
 
-    /// Adds the derivative of minus the force with respect to the displacement, N/m, times `factor`; the velocity
-    /// depends on the displacement with this rate, 1/s.
+    /// Adds the derivative of minus the force with respect to the displacement, N/m, times `factor`; `rate`, 1/s, is
+    /// the derivative of the velocity with respect to the displacement.
     pub(crate) fn add_stiffness(&self, u: Vector2<f64>, v: Vector2<f64>, rate: f64, factor: f64, matrix: &mut Matrix) {
         let pull = self.pull(u, v, self.delay);
         let length = pull.norm();

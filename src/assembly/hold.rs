@@ -1,4 +1,4 @@
-//! The unknowns that supports fix, and the rigid motions that they leave.
+//! Unknowns fixed by supports, and remaining rigid motions.
 
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
@@ -6,7 +6,7 @@ use super::edge::{no_such_edge, node_at};
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, Axis, Invalid, Place, Support};
 use crate::words::number;
-/// The unknowns (2 · node + axis) that supports fix.
+/// Returns the unknowns (2 · node + axis) that supports fix: `true` for fixed ones.
 pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bool>, Invalid> {
     let mut fixed = vec![false; 2 * mesh.nodes().len()];
     for (i, support) in supports.iter().enumerate() {
@@ -22,7 +22,7 @@ pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bo
     Ok(fixed)
 }
 
-/// The nodes of a support; `key` is its table in the scene.
+/// Returns the nodes of a support; `key` is its table in the scene.
 pub(super) fn nodes_of(support: &Support, mesh: &Mesh, key: &str) -> Result<Vec<u32>, Invalid> {
     match &support.place {
         Place::Edge(name) => mesh.edge_nodes(name).ok_or_else(|| no_such_edge(mesh, name, key)),
@@ -30,23 +30,23 @@ pub(super) fn nodes_of(support: &Support, mesh: &Mesh, key: &str) -> Result<Vec<
     }
 }
 
-/// The axes, x and y, that a support fixes.
+/// Returns the axes, x and y, that a support fixes: `true` for fixed ones.
 pub(super) fn axes(support: &Support) -> [bool; 2] {
     [Axis::X, Axis::Y].map(|axis| support.fix.contains(&axis))
 }
 
-/// How the supports hold a body.
+/// Rigid motions that the supports leave to a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Hold {
-    /// Parts that share no nodes.
+    /// Number of parts that share no nodes.
     parts: usize,
-    /// Parts that can still move freely.
+    /// Number of parts that can still move freely.
     loose: usize,
-    /// A node at which a part hangs that can turn about it.
+    /// Hinge node about which a part can rotate.
     hinge: Option<u32>,
 }
 
-/// Refuses to look for the equilibrium of a body that is not held; in motion it may be free.
+/// Rejects a static scene whose body can move freely; dynamic scenes are not restricted.
 pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<(), Invalid> {
     if analysis == Analysis::Dynamic {
         return Ok(());
@@ -78,7 +78,7 @@ pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<
 }
 
 impl Hold {
-    /// `is_grid` for a rectangle of cells, which has no hinges.
+    /// Determines the rigid motions; `is_grid` for a rectangle of cells, which has no hinges.
     pub(super) fn of(mesh: &Mesh, fixed: &[bool], is_grid: bool) -> Self {
         let (parts, part_of) = mesh.parts();
         let mut held_nodes = vec![Vec::new(); parts];
@@ -95,14 +95,14 @@ impl Hold {
     }
 }
 
-/// A hinge between parts that can move against each other although supports hold the body: the Gram matrix of the constraints
-/// that supports and hinges put on the parts' rigid motions is singular. Of the nodes at which parts meet, the one about which
-/// they turn most.
+/// Returns the hinge between parts that can move relative to each other although supports hold the body: the Gram
+/// matrix of the constraints of supports and hinges on the parts' rigid motions is singular. Of the nodes at which
+/// parts meet, returns the one about which they rotate most.
 fn loose_hinge(mesh: &Mesh, fixed: &[bool], parts: usize, of_node: &[Vec<u32>]) -> Option<u32> {
     const SINGULAR: f64 = 1e-10;
     let (low, high) = mesh.bounds();
     let (centre, size) = ((low + high) * 0.5, (high - low).norm());
-    // The displacement of a node by the two translations and the rotation of a part.
+    // Displacements of a node by the two translations and the rotation of a part.
     let modes = |node: usize| {
         let arm = (mesh.nodes()[node] - centre) / size;
         [Vector3::new(1.0, 0.0, -arm.y), Vector3::new(0.0, 1.0, arm.x)]
@@ -141,11 +141,11 @@ fn loose_hinge(mesh: &Mesh, fixed: &[bool], parts: usize, of_node: &[Vec<u32>]) 
     hinges.max_by(|a, b| turns(a).total_cmp(&turns(b))).map(|node| node as u32)
 }
 
-/// `true` if the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of the three
-/// rigid modes, restricted to them, is regular.
+/// Returns `true` if the fixed unknowns of these nodes leave no translation and no small rotation: the Gram matrix of
+/// the three rigid modes, restricted to them, is regular.
 fn is_held(nodes: &[(Vector2<f64>, &[bool])]) -> bool {
     const SINGULAR: f64 = 1e-12;
-    // Seen from the fixed nodes themselves: a clamp stays a clamp however long the body.
+    // Relative to the fixed nodes themselves, so that the result does not depend on the length of the body.
     if nodes.is_empty() {
         return false;
     }

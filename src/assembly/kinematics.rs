@@ -1,10 +1,10 @@
-//! Measures of strain.
+//! Strain measures.
 
-/// How a state is seen.
+/// Strain measure of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinematics {
-    /// Strains are measured after turning elements back.
+    /// Strains in the rotated frames of the elements.
     Corotated,
-    /// Strains are those of linear theory.
+    /// Strains of linear theory.
     Linear,
 }

@@ -1,7 +1,7 @@
-//! What pulls: dead forces, and moments that turn with their edges; always, or as pulses in time.
+//! Loads: dead forces, and moments that rotate with their edges; constant, or pulses in time.
 //!
-//! In the plane such a moment is conservative: its potential is −M θ, θ the angle its edge has turned, and its nodal
-//! forces are M ∇θ.
+//! In the plane such a moment is conservative: its potential is −M θ, θ the rotation of its edge, and its nodal forces
+//! are M ∇θ.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -14,34 +14,34 @@ use crate::state::State;
 /// Forces on some nodes, N.
 type NodalForces = Vec<(u32, Vector2<f64>)>;
 
-/// The loads of a scene on its nodes, at a time.
+/// Nodal loads of a scene at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loads {
-    /// Dead forces that act always, N.
+    /// Constant dead forces, N.
     constant: Vec<Vector2<f64>>,
-    /// Dead forces in time.
+    /// Dead forces with pulses.
     pulses: Vec<(Pulse, NodalForces)>,
     moments: Vec<Moment>,
-    /// All dead forces at the present time, N.
+    /// All dead forces at the current time, N.
     dead: Vec<Vector2<f64>>,
 }
 
 /// A moment on a straight edge.
 #[derive(Clone, Debug, PartialEq)]
 struct Moment {
-    /// The edge's number.
+    /// Index of the edge.
     edge: usize,
-    /// Its full size, N m, positive counter-clockwise.
+    /// Full size, N m, positive counter-clockwise.
     moment: f64,
     pulse: Option<Pulse>,
-    /// Its size at the present time, N m.
+    /// Size at the current time, N m.
     now: f64,
-    /// Where the blocks of its tangent go.
+    /// Indices of its tangent's blocks in the stiffness matrix.
     slots: Vec<u32>,
 }
 
 impl Moment {
-    /// Adds M ∇θ at the present size times `factor`, N.
+    /// Adds M ∇θ at the current size times `factor`, N.
     fn add_force(
         &self,
         system: &System,
@@ -51,7 +51,7 @@ impl Moment {
     ) {
         let edge = &system.edges()[self.edge];
         let turned = gradient(edge, self.edge) * (factor * self.now);
-        // Where the edge has shrunk to a point θ has no gradient, and none is added.
+        // If the edge has shrunk to a point, θ has no gradient and nothing is added.
         if turned.iter().all(|v| v.is_finite()) {
             for &(node, c) in edge.arms() {
                 force[node as usize] += turned * c;
@@ -61,7 +61,7 @@ impl Moment {
 }
 
 impl Loads {
-    /// The loads of a scene on a system that couples the edges of its moments, at time 0.
+    /// Returns the loads of a scene at time 0; the pattern of `system` must couple the nodes of edges with moments.
     pub(super) fn new(loads: &[Load], material: &Material, system: &System) -> Result<Self, Invalid> {
         let nodes = system.mesh().nodes().len();
         let mut result = Self {
@@ -106,13 +106,13 @@ impl Loads {
         Ok(result)
     }
 
-    /// Sets pulses to their size at a time, s.
+    /// Sets pulses to their factor at a time, s.
     pub fn set_time(&mut self, time: f64) {
         self.set_pulses(&|pulse| pulse.factor(time));
     }
 
-    /// Sets every pulse to a factor of its full size: in a time step its mean over the step, so that the step has exactly the
-    /// pulse's impulse.
+    /// Sets every pulse to a factor of its full size: in a time step, to its mean over the step, so that the step
+    /// applies exactly the pulse's impulse.
     pub(crate) fn set_pulses(&mut self, factor: &dyn Fn(&Pulse) -> f64) {
         if !self.pulses.is_empty() {
             self.dead.copy_from_slice(&self.constant);
@@ -126,7 +126,7 @@ impl Loads {
         }
     }
 
-    /// Adds the nodal forces of pulses alone at their present size, N, times `factor`.
+    /// Adds the nodal forces of pulses alone at their current size, N, times `factor`.
     pub(crate) fn add_pulse_force(
         &self,
         system: &System,
@@ -145,15 +145,15 @@ impl Loads {
         }
     }
 
-    /// When the last pulse is over, s; `None` where there is none.
+    /// Returns the end of the last pulse, s; `None` if there are no pulses.
     #[must_use]
     pub fn last_pulse_end(&self) -> Option<f64> {
         let moments = self.moments.iter().filter_map(|m| m.pulse);
         self.pulses.iter().map(|(pulse, _)| *pulse).chain(moments).map(|p| p.end()).reduce(f64::max)
     }
 
-    /// The work of the pulses from one state to another, each at the time it has, J: the mean of their forces over that time
-    /// times the change of displacement.
+    /// Returns the work of the pulses from one state to another at a later time, J: the mean of their forces over that
+    /// time times the change of displacement.
     #[must_use]
     pub(crate) fn pulse_work(&self, [before, after]: [&State; 2]) -> f64 {
         let mean = |pulse: &Pulse| pulse.mean(before.time, after.time);
@@ -169,18 +169,18 @@ impl Loads {
         forces.chain(moments).sum()
     }
 
-    /// Nodal force of the dead loads at present, N.
+    /// Returns the nodal forces of the dead loads at the current time, N.
     #[must_use]
     pub fn dead_force(&self) -> &[Vector2<f64>] {
         &self.dead
     }
 
-    /// Number of every edge that carries a moment, with its size at present, N m.
+    /// Iterates over the indices of edges with a moment and the moments at the current time, N m.
     pub fn moments(&self) -> impl Iterator<Item = (usize, f64)> {
         self.moments.iter().map(|m| (m.edge, m.now))
     }
 
-    /// The external nodal force f_ext at this load factor, N. Linear theory knows the directions at rest only.
+    /// Computes the external nodal force f_ext at this load factor, N. Linear theory uses the edges' rest directions.
     pub fn force(
         &self,
         system: &System,
@@ -192,7 +192,7 @@ impl Loads {
         self.sum(system, factor, force, |edge, _| turn_gradient(edge.direction_in(u, kinematics)));
     }
 
-    /// Adds to `bound` what rounding can at most have changed in the part of moments in an external force, N. Dead forces
+    /// Adds to `bound` an upper bound of the rounding error of the moments' part of an external force, N. Dead forces
     /// count as exact.
     pub(super) fn add_rounding(
         &self,
@@ -206,7 +206,7 @@ impl Loads {
             let direction = edge.direction(u);
             let terms = edge.arms().iter().map(|&(node, c)| (u[node as usize] * c).abs()).sum::<Vector2<f64>>();
             let off = (terms + direction.abs()) * (edge.arms().len() as f64 + 1.0) * UNIT;
-            // The gradient of the turn is J d/|d|²: its error is at most three times that of d, relatively.
+            // The gradient of the angle is J d/|d|²: its relative error is at most three times that of d.
             let relative = 3.0 * off.norm() / direction.norm() + 8.0 * UNIT;
             if relative.is_finite() {
                 for &(node, _) in edge.arms() {
@@ -216,10 +216,10 @@ impl Loads {
         }
     }
 
-    /// The discrete gradient of the loads between two states, N: its work from one to the other is exactly that of the
-    /// loads (Gonzalez 1996, for the angle of an edge).
+    /// Computes the discrete gradient of the loads between two states, N: its work from one to the other is exactly
+    /// that of the loads (Gonzalez 1996, for the angle of an edge).
     pub fn force_between(&self, system: &System, [before, after]: [&State; 2], force: &mut [Vector2<f64>]) {
-        /// Relative size of a turn whose angle is all rounding.
+        /// Relative change of an edge's direction below which its angle is only rounding error.
         const NO_TURN: f64 = 1e-10;
         self.sum(system, 1.0, force, |edge, number| {
             let (d0, d1) = (edge.direction(&before.displacement), edge.direction(&after.displacement));
@@ -234,7 +234,8 @@ impl Loads {
         });
     }
 
-    /// Dead forces, and moments along the gradients of their edges' turns with respect to their directions.
+    /// Adds up dead forces and moments, which act along the gradients of their edges' angles with respect to their
+    /// directions.
     fn sum(
         &self,
         system: &System,
@@ -263,8 +264,8 @@ impl Loads {
         }
     }
 
-    /// Potential of the loads relative to rest at this load factor, J: minus the work that those that act always have
-    /// done at full size. Pulses have none.
+    /// Returns the potential of the loads relative to rest at this load factor, J: minus the work of the constant loads
+    /// at full size. Pulses have no potential.
     #[must_use]
     pub fn potential(&self, state: &State, factor: f64) -> f64 {
         let dead: f64 = self.constant.iter().zip(&state.displacement).map(|(f, u)| f.dot(u)).sum();
@@ -274,7 +275,7 @@ impl Loads {
     }
 }
 
-/// ∇θ with respect to an edge's direction d: a quarter turn of it over its squared length.
+/// Returns ∇θ with respect to an edge's direction d: d rotated by 90°, over its squared length.
 fn turn_gradient(d: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-d.y, d.x) / d.norm_squared()
 }

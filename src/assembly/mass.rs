@@ -1,16 +1,16 @@
-//! The mass matrix: consistent, and lumped on the nodes.
+//! Mass matrix: consistent, and lumped at the nodes.
 
 use nalgebra::Vector2;
 
 use super::{Matrix, System};
 
-/// Mass of a body on its nodes, kg.
+/// Nodal masses of a body, kg.
 #[derive(Clone, Debug)]
 pub struct Mass {
-    /// Σ ∫ ρ t NₐN_b dA of nodes b ≤ a that share an element, sorted.
+    /// Σ ∫ ρ t NₐN_b dA for nodes b ≤ a that share an element, sorted.
     entries: Vec<Entry>,
-    /// A mass a node: the consistent diagonal of every element, scaled to its whole mass (Hinton, Rock and Zienkiewicz
-    /// 1976). Unlike row sums it is positive for every element.
+    /// Lumped mass of every node: the consistent diagonal of every element, scaled to its whole mass (Hinton, Rock and
+    /// Zienkiewicz 1976). Unlike row sums it is positive for every element.
     lumped: Vec<f64>,
     total: f64,
 }
@@ -19,12 +19,12 @@ pub struct Mass {
 struct Entry {
     nodes: [u32; 2],
     mass: f64,
-    /// Where the x and y entries of the pair go in the stiffness matrix.
+    /// Indices of the pair's x and y entries in the stiffness matrix.
     slots: [u32; 2],
 }
 
 impl Mass {
-    /// The mass of a system's body at this mass per area, kg/m².
+    /// Returns the mass of a system's body for a mass per area, kg/m².
     #[must_use]
     pub fn new(system: &System, area_density: f64) -> Self {
         let mesh = system.mesh();
@@ -73,19 +73,19 @@ impl Mass {
         Self { entries, lumped, total }
     }
 
-    /// Mass of the whole body, kg.
+    /// Returns the mass of the whole body, kg.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.total
     }
 
-    /// The lumped mass of every node, kg.
+    /// Returns the lumped mass of every node, kg.
     #[must_use]
     pub fn lumped(&self) -> &[f64] {
         &self.lumped
     }
 
-    /// result = M v over the nodes.
+    /// Computes result = M v over the nodes.
     pub fn multiply(&self, v: &[Vector2<f64>], result: &mut [Vector2<f64>]) {
         result.fill(Vector2::zeros());
         for Entry { nodes: [a, b], mass, .. } in &self.entries {
@@ -97,7 +97,7 @@ impl Mass {
         }
     }
 
-    /// v M v.
+    /// Returns v M v.
     #[must_use]
     pub fn energy_product(&self, v: &[Vector2<f64>]) -> f64 {
         let term = |Entry { nodes: [a, b], mass, .. }: &Entry| {

@@ -1,4 +1,4 @@
-//! The values of a sparse symmetric matrix.
+//! Values of a sparse symmetric matrix.
 
 use nalgebra::Matrix2;
 
@@ -7,12 +7,12 @@ use super::Pattern;
 /// Values of a symmetric matrix over the free unknowns: the lower triangle, in the order of a [`Pattern`].
 #[derive(Clone, Debug)]
 pub struct Matrix {
-    /// One slot longer than the pattern: what belongs to fixed unknowns is added there and never read.
+    /// One slot more than the pattern: entries of fixed unknowns are added there and never read.
     values: Vec<f64>,
 }
 
 impl Matrix {
-    /// Zero.
+    /// Returns the zero matrix.
     #[must_use]
     pub fn new(pattern: &Pattern) -> Self {
         Self { values: vec![0.0; pattern.entries() + 1] }
@@ -23,18 +23,18 @@ impl Matrix {
         self.values.fill(0.0);
     }
 
-    /// The stored values.
+    /// Returns the stored values.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values[..self.values.len() - 1]
     }
 
-    /// Where sums are made: slots are those of [`Pattern::slot`].
+    /// Returns the values for summation, indexed by slots as in [`Pattern::slot`].
     pub(crate) fn slots(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
-    /// Adds wᵢ wⱼ B for weighted nodes i, j, where [`Pattern::block_slots`] says; B is symmetric.
+    /// Adds wᵢ wⱼ B for weighted nodes i, j at the slots of [`Pattern::block_slots`]; B is symmetric.
     pub(super) fn add_blocks(&mut self, slots: &[u32], weights: &[(u32, f64)], block: &Matrix2<f64>) {
         let mut slots = slots.iter();
         let mut add = |value: f64| {
@@ -50,13 +50,13 @@ impl Matrix {
         }
     }
 
-    /// The diagonal.
+    /// Iterates over the diagonal.
     pub(crate) fn diagonal<'a>(&'a self, pattern: &'a Pattern) -> impl Iterator<Item = f64> + 'a {
-        // Rows are sorted, so that the diagonal comes first in every column of the lower triangle.
+        // Rows are sorted, so the diagonal is the first entry of every column of the lower triangle.
         pattern.column_starts()[..pattern.dofs()].iter().map(|&start| self.values[start])
     }
 
-    /// y = K x.
+    /// Computes y = K x.
     pub fn multiply(&self, pattern: &Pattern, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         for (column, bounds) in pattern.column_starts().windows(2).enumerate() {

@@ -1,8 +1,8 @@
-//! A scene as equations.
+//! Equations of a scene.
 //!
-//! - [`System`]: what is found once for a mesh and its supports, and shared: elements, free unknowns, sparsity, the
-//!   order of elimination.
-//! - [`Loads`]: what pulls, as nodal forces and moments.
+//! - [`System`]: data computed once for a mesh and its supports, and shared: elements, free unknowns, sparsity,
+//!   elimination order.
+//! - [`Loads`]: nodal forces and moments.
 //! - [`Problem`]: a system with its material, loads and probes; forces, tangents and energies of a state.
 
 mod edge;

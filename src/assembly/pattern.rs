@@ -1,32 +1,32 @@
-//! The sparsity of the stiffness matrix over the free unknowns: found once, filled every iteration.
+//! Sparsity of the stiffness matrix over the free unknowns, computed once.
 
 use nalgebra::Vector2;
 
 use crate::displacement::Displacement;
 use crate::mesh::Mesh;
 
-/// Marks a fixed unknown.
+/// Marker of a fixed unknown.
 const FIXED: u32 = u32::MAX;
 
-/// The lower triangle of a symmetric matrix over the free unknowns, in compressed columns with sorted rows.
+/// Lower triangle of a symmetric matrix over the free unknowns, in compressed columns with sorted rows.
 ///
-/// An unknown is 2 · node + axis. Those that supports fix are eliminated (the article's 24 → 20).
+/// An unknown is 2 · node + axis. Fixed unknowns are eliminated (the article's 24 → 20).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     column_starts: Vec<usize>,
     row_indices: Vec<usize>,
     free: Vec<u32>,
-    /// The free number of each unknown, or [`FIXED`].
+    /// Free number of each unknown, or [`FIXED`].
     free_of: Vec<u32>,
     /// 1 for free components of nodal vectors, 0 for fixed ones.
     mask: Vec<Vector2<f64>>,
-    /// The nodes that are free to move anywhere, with the free number of their first component.
+    /// Nodes with two free components, with the free number of the first.
     free_nodes: Vec<(u32, u32)>,
 }
 
 impl Pattern {
-    /// The pattern of a mesh whose unknowns `fixed` are eliminated. `groups` are nodes that are coupled though no
-    /// element has them all.
+    /// Returns the pattern of a mesh whose unknowns `fixed` are eliminated. `groups` are sets of nodes that are coupled
+    /// although no element contains all of them.
     pub(super) fn new(mesh: &Mesh, fixed: &[bool], groups: &[Vec<u32>]) -> Self {
         let mut free = Vec::new();
         let mut free_of = vec![FIXED; fixed.len()];
@@ -49,7 +49,7 @@ impl Pattern {
         let mut column_starts = vec![0];
         let mut row_indices = Vec::new();
         for (column, &unknown) in free.iter().enumerate() {
-            // Sorted neighbours have sorted unknowns, and these sorted free numbers.
+            // Sorted neighbours have sorted unknowns, and these have sorted free numbers.
             let rows = neighbours[unknown as usize / 2].iter().flat_map(|&n| [2 * n, 2 * n + 1]);
             let rows = rows.map(|unknown| free_of[unknown as usize]).filter(|&row| row != FIXED);
             row_indices.extend(rows.map(|row| row as usize).filter(|&row| row >= column));
@@ -61,56 +61,55 @@ impl Pattern {
         Self { column_starts, row_indices, free, free_of, mask: mask.collect(), free_nodes }
     }
 
-    /// Number of free unknowns.
+    /// Returns the number of free unknowns.
     #[must_use]
     pub fn dofs(&self) -> usize {
         self.free.len()
     }
 
-    /// Number of stored entries.
+    /// Returns the number of stored entries.
     #[must_use]
     pub fn entries(&self) -> usize {
         self.row_indices.len()
     }
 
-    /// Start of each column in [`Self::row_indices`], and the end of the last.
+    /// Returns the start of each column in [`Self::row_indices`], and the end of the last.
     #[must_use]
     pub fn column_starts(&self) -> &[usize] {
         &self.column_starts
     }
 
-    /// Row of every entry.
+    /// Returns the row of every entry.
     #[must_use]
     pub fn row_indices(&self) -> &[usize] {
         &self.row_indices
     }
 
-    /// The unknown (2 · node + axis) behind each free one.
+    /// Returns the unknown (2 · node + axis) of each free number.
     #[must_use]
     pub fn free(&self) -> &[u32] {
         &self.free
     }
 
-    /// 1 for free components of nodal vectors, 0 for fixed ones.
+    /// Returns 1 for free components of nodal vectors, 0 for fixed ones.
     #[must_use]
     pub fn mask(&self) -> &[Vector2<f64>] {
         &self.mask
     }
 
-    /// The nodes that are free to move anywhere, with the free number of their first component; that of the second
-    /// follows.
+    /// Returns the nodes with two free components, with the free number of the first; the second has the next number.
     #[must_use]
     pub fn free_nodes(&self) -> &[(u32, u32)] {
         &self.free_nodes
     }
 
-    /// Whether both components of a node, x and y, are fixed.
+    /// Returns `true` for each component of a node, x and y, that is fixed.
     #[must_use]
     pub fn fixed(&self, node: u32) -> [bool; 2] {
         [0, 1].map(|axis| self.free_of.get(2 * node as usize + axis).is_none_or(|&f| f == FIXED))
     }
 
-    /// Whether a displacement leaves all fixed unknowns where they are at rest.
+    /// Returns `true` if a displacement is zero at all fixed unknowns.
     #[must_use]
     pub fn are_fixed_at_rest(&self, u: &[Vector2<f64>]) -> bool {
         u.iter().zip(&self.mask).all(|(u, m)| (m.x > 0.0 || u.x == 0.0) && (m.y > 0.0 || u.y == 0.0))
@@ -121,40 +120,41 @@ impl Pattern {
         nodal.iter_mut().zip(&self.mask).for_each(|(v, m)| v.component_mul_assign(m));
     }
 
-    /// Takes a nodal vector's free components.
+    /// Copies a nodal vector's free components.
     pub fn restrict(&self, nodal: &[Vector2<f64>], free: &mut [f64]) {
         for (value, &unknown) in free.iter_mut().zip(&self.free) {
             *value = nodal[unknown as usize / 2][unknown as usize % 2];
         }
     }
 
-    /// Adds `factor` times a vector over the free unknowns to a nodal one. What supports fix does not move.
+    /// Adds `factor` times a vector over the free unknowns to a nodal vector. Fixed components do not change.
     pub fn add_free(&self, free: &[f64], factor: f64, nodal: &mut [Vector2<f64>]) {
         for (value, &unknown) in free.iter().zip(&self.free) {
             nodal[unknown as usize / 2][unknown as usize % 2] += factor * value;
         }
     }
 
-    /// Moves a body by `factor` times a vector over the free unknowns, m. What supports fix does not move.
+    /// Adds `factor` times a vector over the free unknowns to the displacement, m. Fixed components do not change.
     pub(crate) fn advance(&self, free: &[f64], factor: f64, u: &mut Displacement) {
         for (value, &unknown) in free.iter().zip(&self.free) {
             u.advance(unknown as usize / 2, unknown as usize % 2, factor * value);
         }
     }
 
-    /// The product of a nodal vector and one over the free unknowns.
+    /// Returns the dot product of a nodal vector and a vector over the free unknowns.
     #[must_use]
     pub fn dot(&self, nodal: &[Vector2<f64>], free: &[f64]) -> f64 {
         free.iter().zip(&self.free).map(|(value, &u)| value * nodal[u as usize / 2][u as usize % 2]).sum()
     }
 
-    /// The Euclidean norm of a nodal vector's free components, whatever their size; not finite where one of them is not.
+    /// Returns the Euclidean norm of a nodal vector's free components, without overflow; not finite if one of them is
+    /// not.
     #[must_use]
     pub fn norm(&self, nodal: &[Vector2<f64>]) -> f64 {
         let free = || nodal.iter().zip(&self.mask).map(|(v, m)| v.zip_map(m, |v, m| if m > 0.0 { v } else { 0.0 }));
         let squares = |scale: f64| free().map(|v| (v * scale).norm_squared()).sum::<f64>();
         let plain = squares(1.0);
-        // Squares of ordinary numbers stay in range; others are scaled first.
+        // Squares of ordinary numbers stay in range; other vectors are scaled first.
         if (1e-200..1e200).contains(&plain) || plain.is_nan() {
             return plain.sqrt();
         }
@@ -163,8 +163,8 @@ impl Pattern {
         if scale.is_normal() { largest * squares(scale).sqrt() } else { largest }
     }
 
-    /// Where the entries of one element's matrix go: node blocks (a, b), b ≤ a, row by row; the four entries of a block,
-    /// of a diagonal block the three of its lower triangle.
+    /// Returns the indices of the entries of one element's matrix: node blocks (a, b), b ≤ a, row by row; the four
+    /// entries of a block, or the three of the lower triangle of a diagonal block.
     pub(super) fn block_slots(&self, nodes: &[u32]) -> Vec<u32> {
         let mut slots = Vec::with_capacity(nodes.len() * (2 * nodes.len() + 1));
         for (i, &a) in nodes.iter().enumerate() {
@@ -180,7 +180,7 @@ impl Pattern {
         slots
     }
 
-    /// Where the entry of two unknowns is; the slot after the last where one is fixed.
+    /// Returns the index of the entry of two unknowns; the extra index after the last if one of them is fixed.
     pub(super) fn slot(&self, i: u32, j: u32) -> u32 {
         let (i, j) = (self.free_of[i as usize], self.free_of[j as usize]);
         if i == FIXED || j == FIXED {

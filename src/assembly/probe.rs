@@ -1,23 +1,23 @@
-//! Probes of a scene, put on the nodes of its mesh.
+//! Probes of a scene on the nodes of its mesh.
 
 use nalgebra::Vector2;
 
 use super::{NodeWeights, System};
 use crate::scene::{Invalid, Place, Probe};
 
-/// A probe as weights on nodes; the weights sum to 1.
+/// Probe as weights on nodes; the weights sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodalProbe {
-    /// What it is called.
+    /// Name in results.
     pub name: String,
-    /// Where the scene puts it.
+    /// Place in the scene.
     pub place: Place,
-    /// Node and weight.
+    /// Nodes and weights.
     pub weights: NodeWeights,
 }
 
 impl NodalProbe {
-    /// A scene's probes.
+    /// Returns the probes of a scene.
     pub(super) fn of(probes: &[Probe], system: &System) -> Result<Vec<Self>, Invalid> {
         probes.iter().enumerate().map(|(i, probe)| Self::new(probe, system, &format!("probe.{i}"))).collect()
     }
@@ -36,7 +36,7 @@ impl NodalProbe {
         Ok(Self { name: probe.name.clone(), place: probe.place.clone(), weights })
     }
 
-    /// The weighted mean of a nodal field.
+    /// Returns the weighted mean of a nodal field.
     #[must_use]
     pub fn mean(&self, field: &[Vector2<f64>]) -> Vector2<f64> {
         self.weights.iter().map(|&(node, weight)| field[node as usize] * weight).sum()

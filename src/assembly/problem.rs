@@ -1,4 +1,4 @@
-//! A system with its numbers: material, loads, probes.
+//! System with its material, loads and probes.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use crate::rotation::Rotation;
 use crate::scene::{Load, Material, Pulse, Scene, Support};
 use crate::state::State;
 
-/// The discrete problem of a scene.
+/// Discrete problem of a scene.
 #[derive(Clone, Debug)]
 pub struct Problem {
     system: Arc<System>,
     material: Material,
-    /// What the scene says of its loads, to see what an edit changes.
+    /// Loads as in the scene, to detect changes.
     scene_loads: Vec<Load>,
     loads: Loads,
     scene_supports: Vec<Support>,
@@ -25,37 +25,37 @@ pub struct Problem {
     hand: Option<Hand>,
 }
 
-/// What an edit has changed, each more than the one before.
+/// Extent of a change of the scene; each variant includes the ones before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Change {
-    /// At most loads, probes and where supports take their places: forces within the body are what they were.
+    /// At most loads, probes and prescribed displacements; the internal forces of a state are unchanged.
     Loads,
-    /// The stiffness too; states are still states of the body.
+    /// The stiffness too; states remain valid.
     Stiffness,
     /// The free unknowns or their couplings too.
     Unknowns,
-    /// The mesh.
+    /// The mesh too.
     Mesh,
 }
 
 /// Nodal forces of a state, N.
 #[derive(Clone, Debug)]
 pub struct Forces {
-    /// f_int, of the elements.
+    /// f_int, internal force of the elements.
     pub(crate) internal: Vec<Vector2<f64>>,
-    /// Σ|fₑ|: the sum of the elements' absolute forces, by component.
+    /// Σ|fₑ|, sum of the elements' absolute forces, by component.
     pub(crate) magnitude: Vec<Vector2<f64>>,
-    /// f_ext, of the loads.
+    /// f_ext, external force of the loads.
     pub(crate) external: Vec<Vector2<f64>>,
-    /// The residual force f_ext − f_int. On fixed unknowns it is minus the reaction.
+    /// Residual force f_ext − f_int; on fixed unknowns it is minus the reaction.
     pub(crate) residual: Vec<Vector2<f64>>,
-    /// The relative residual and the bound of what rounding leaves of it, where supports move the body and the residual is
-    /// within that bound: [`Problem::balance`] returns 0 then.
+    /// The relative residual and the bound of its rounding error, if supports move the body and the residual is within
+    /// that bound; [`Problem::balance`] then returns 0.
     pub(crate) below_rounding: Option<[f64; 2]>,
 }
 
 impl Forces {
-    /// Room for the forces on so many nodes.
+    /// Allocates the forces of `nodes` nodes.
     #[must_use]
     pub fn new(nodes: usize) -> Self {
         let zero = vec![Vector2::zeros(); nodes];
@@ -68,19 +68,19 @@ impl Forces {
         }
     }
 
-    /// f_ext − f_int of every node, N.
+    /// Returns f_ext − f_int of every node, N.
     #[must_use]
     pub fn residual(&self) -> &[Vector2<f64>] {
         &self.residual
     }
 
-    /// f_int of every node, N.
+    /// Returns f_int of every node, N.
     #[must_use]
     pub fn internal(&self) -> &[Vector2<f64>] {
         &self.internal
     }
 
-    /// f_ext of every node, N.
+    /// Returns f_ext of every node, N.
     #[must_use]
     pub fn external(&self) -> &[Vector2<f64>] {
         &self.external
@@ -88,10 +88,10 @@ impl Forces {
 }
 
 impl Problem {
-    /// The problem of a scene on a system made for it.
+    /// Returns the problem of a scene on a system.
     ///
     /// # Errors
-    /// The key that is wrong and what was expected there.
+    /// The invalid key and the expected value.
     pub fn new(scene: &Scene, system: Arc<System>) -> Result<Self, SystemError> {
         let system = system.adapt(scene)?;
         Ok(Self {
@@ -106,10 +106,11 @@ impl Problem {
         })
     }
 
-    /// Takes another scene on, at the price of what has changed. A hand keeps its hold where the mesh is kept.
+    /// Changes to another scene, recomputing only what has changed. A mouse spring stays attached if the mesh is the
+    /// same.
     ///
     /// # Errors
-    /// As [`Self::new`]; the problem is unchanged then.
+    /// Same errors as [`Self::new`]; the problem is then unchanged.
     pub fn update(&mut self, scene: &Scene) -> Result<Change, SystemError> {
         let system = self.system.adapt(scene)?;
         let same_mesh = system.shares_mesh(&self.system);
@@ -160,36 +161,36 @@ impl Problem {
         Ok(change)
     }
 
-    /// The equations.
+    /// Returns the system.
     #[must_use]
     pub fn system(&self) -> &Arc<System> {
         &self.system
     }
 
-    /// The material of the whole body.
+    /// Returns the material of the whole body.
     #[must_use]
     pub fn material(&self) -> &Material {
         &self.material
     }
 
-    /// What pulls.
+    /// Returns the nodal loads.
     #[must_use]
     pub fn loads(&self) -> &Loads {
         &self.loads
     }
 
-    /// The loads of the scene.
+    /// Returns the loads of the scene.
     pub(crate) fn scene_loads(&self) -> &[Load] {
         &self.scene_loads
     }
 
-    /// What holds, and where it takes what it holds.
+    /// Returns the supports, with their prescribed displacements.
     #[must_use]
     pub fn supports(&self) -> &Supports {
         &self.supports
     }
 
-    /// The hand that holds the body, if one does.
+    /// Returns the mouse spring, if there is one.
     #[must_use]
     pub fn hand(&self) -> Option<&Hand> {
         self.hand.as_ref()
@@ -199,12 +200,12 @@ impl Problem {
         &mut self.hand
     }
 
-    /// Takes loads and pointer to another time, s.
+    /// Sets loads and mouse spring to a time, s.
     pub(crate) fn set_time(&mut self, time: f64) {
         self.set_stage(time, &|pulse| pulse.factor(time));
     }
 
-    /// Takes the pointer to another time, s, and sets every pulse to a factor of its full size; see [`Loads::set_pulses`].
+    /// Sets the mouse spring to a time, s, and every pulse to a factor of its full size; see [`Loads::set_pulses`].
     pub(crate) fn set_stage(&mut self, time: f64, factor: &dyn Fn(&Pulse) -> f64) {
         self.loads.set_pulses(factor);
         if let Some(hand) = &mut self.hand {
@@ -217,17 +218,17 @@ impl Problem {
         self.loads.set_pulses(factor);
     }
 
-    /// What is measured.
+    /// Returns the probes.
     #[must_use]
     pub fn probes(&self) -> &[NodalProbe] {
         &self.probes
     }
 
-    /// One sweep over the elements: the warped force f_int = Σ R Ke (Rᵀ x − X), its magnitude, and, where one is wanted,
-    /// a tangent of the elements over the free unknowns.
+    /// Computes the warped force f_int = Σ R Ke (Rᵀ x − X) and its magnitude in one loop over the elements, and, if
+    /// requested, a tangent of the elements over the free unknowns.
     ///
-    /// f_int is A x − R K X, the article's system (eq. 2) with everything on one side; written with the strain, so that
-    /// it vanishes exactly at rest.
+    /// f_int is A x − R K X, the article's system (eq. 2) with all terms on one side; it is computed from the strain,
+    /// so that it vanishes exactly at rest.
     pub fn linearize(&self, state: &State, forces: &mut Forces, tangent: Option<(Tangent, &mut Matrix)>) {
         self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
             let rotations = Rotations::Given(&state.rotations);
@@ -235,7 +236,7 @@ impl Problem {
         });
     }
 
-    /// [`System::follow`] and [`Self::linearize`] in the same sweep: for a state whose displacement is new.
+    /// Performs [`System::follow`] and [`Self::linearize`] in the same loop, for a state with a new displacement.
     pub fn follow_and_linearize(
         &self,
         state: &mut State,
@@ -257,7 +258,7 @@ impl Problem {
         });
     }
 
-    /// [`Self::linearize`] with the discrete gradient of the elastic energy between two states; see
+    /// Computes as [`Self::linearize`] the discrete gradient of the elastic energy between two states; see
     /// [`Elements::linearize_between`].
     pub(crate) fn linearize_between(
         &self,
@@ -286,8 +287,8 @@ impl Problem {
         work(self.system.elements(), self.material.membrane(), internal, magnitude, matrix);
     }
 
-    /// Adds to a tangent of the elements, N/m, what loads at this load factor have to do with the displacement of a body
-    /// at rest: a hand's spring where A is in it, moments' own part where it is exact.
+    /// Adds the loads' part, at this load factor and for a body at rest, to a tangent of the elements, N/m: the mouse
+    /// spring if the tangent contains A, the moments if it is exact.
     pub(crate) fn add_load_stiffness(&self, state: &State, tangent: Tangent, load_factor: f64, matrix: &mut Matrix) {
         if tangent.is_exact() {
             let factor = load_factor * tangent.geometric;
@@ -298,9 +299,10 @@ impl Problem {
         }
     }
 
-    /// f_ext and the residual force beside the internal force of the last [`Self::linearize`], the body at rest; returns
-    /// the relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ over the free unknowns. Where the elements carry nothing yet it is
-    /// relative to the load. Where supports move the body it is 0 below what rounding leaves; see [`Forces`].
+    /// Computes f_ext and the residual force for the internal force of the last [`Self::linearize`], for a body at
+    /// rest; returns the relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ over the free unknowns. If the element forces
+    /// vanish, the residual is relative to the load. If supports move the body, it is 0 within the rounding error; see
+    /// [`Forces`].
     pub fn balance(&self, state: &State, kinematics: Kinematics, load_factor: f64, forces: &mut Forces) -> f64 {
         let Forces { internal, magnitude, external, residual, below_rounding } = forces;
         *below_rounding = None;
@@ -326,9 +328,9 @@ impl Problem {
         residual / scale
     }
 
-    /// A bound of what rounding has changed in the relative residual of the last [`Self::balance`], to first order in the
-    /// unit roundoff: below it the forces balance as well as double precision can tell. `None` where a hand pulls.
-    /// `scratch` is a nodal vector to work in.
+    /// Returns a bound of the rounding error of the relative residual of the last [`Self::balance`], to first order in
+    /// the unit roundoff: residuals below it are as good as double precision allows. `None` if a mouse spring is
+    /// attached. `scratch` is a nodal work vector.
     pub fn residual_floor(&self, state: &State, forces: &Forces, scratch: &mut [Vector2<f64>]) -> Option<f64> {
         if self.hand.is_some() {
             return None;
@@ -349,13 +351,14 @@ impl Problem {
         bound.is_finite().then_some(bound)
     }
 
-    /// Elastic energy, J.
+    /// Returns the elastic energy, J.
     #[must_use]
     pub fn elastic_energy(&self, state: &State) -> f64 {
         self.system.elements().energy(self.material.membrane(), state.compensated(), &state.rotations)
     }
 
-    /// Elastic energy and the potential of loads and hand at this load factor, J: what an equilibrium makes stationary.
+    /// Returns the elastic energy plus the potential of loads and mouse spring at this load factor, J; equilibria are
+    /// its stationary points.
     #[must_use]
     pub fn energy(&self, state: &State, load_factor: f64) -> f64 {
         let hand = self.hand.as_ref().map_or(0.0, |hand| hand.energy(&state.displacement));

@@ -1,4 +1,4 @@
-//! The unknowns that supports fix, and where they take them.
+//! Supports on nodes, with their prescribed displacements.
 
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::TAU;
@@ -15,20 +15,21 @@ use crate::scene::{Invalid, Material, Place, Support};
 use crate::state::State;
 use crate::words::number;
 
-/// A support on the nodes of a mesh: what it holds, and where it takes it.
+/// Support on the nodes of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodalSupport {
-    /// Where the scene puts it.
+    /// Place in the scene.
     pub place: Place,
-    /// The nodes it holds, and whether it holds them along x and y. What several supports fix is the first one's.
+    /// Fixed nodes; for x and y, `true` if the component is fixed. A component fixed by several supports belongs to the
+    /// first.
     pub nodes: Vec<(u32, [bool; 2])>,
-    /// Nodes with their part of the place: the middle of an edge is their weighted mean.
+    /// Nodes with their weights: the middle of an edge is their weighted mean.
     pub weights: NodeWeights,
-    /// Where it takes the place at full load, m.
+    /// Prescribed displacement at full load, m.
     pub displacement: Vector2<f64>,
-    /// How far it turns it about its middle, rad.
+    /// Prescribed rotation about the middle, rad.
     pub turn: f64,
-    /// The middle at rest, m.
+    /// Middle at rest, m.
     pub middle: Vector2<f64>,
 }
 
@@ -37,9 +38,9 @@ impl NodalSupport {
         self.turn != 0.0 || self.displacement != Vector2::zeros()
     }
 
-    /// Where it takes a point that is at `x` at rest, as a displacement, m: u = (R(λφ) − I)(X − M) + λd, the angle and
-    /// the way growing with the load factor λ. Linear theory knows no finite turn: there u = λ(φ × (X − M) + d), so that a turn
-    /// of all supports makes no strain of it.
+    /// Returns the prescribed displacement of a point at rest position `x`, m: u = (R(λφ) − I)(X − M) + λd; angle and
+    /// displacement grow with the load factor λ. In linear theory u = λ(φ × (X − M) + d), so that a common rotation of
+    /// all supports causes no strain in it.
     fn take(&self, x: Vector2<f64>, factor: f64, kinematics: Kinematics) -> Vector2<f64> {
         if !self.moves() {
             return Vector2::zeros();
@@ -49,7 +50,7 @@ impl NodalSupport {
         let turned = match kinematics {
             Kinematics::Linear => Vector2::new(-arm.y, arm.x) * angle,
             Kinematics::Corotated => {
-                // cos − 1 = −2 sin² of half the angle keeps the digits of small turns.
+                // cos − 1 = −2 sin² of half the angle keeps the digits of small angles.
                 let (s, versine) = (angle.sin(), -2.0 * (0.5 * angle).sin().powi(2));
                 Vector2::new(versine * arm.x - s * arm.y, s * arm.x + versine * arm.y)
             }
@@ -58,17 +59,17 @@ impl NodalSupport {
     }
 }
 
-/// The supports of a scene on the nodes of its mesh.
+/// Supports of a scene on the nodes of its mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Supports {
     all: Vec<NodalSupport>,
     moves: bool,
     largest_load_step: f64,
-    /// Diagonal of the stiffness at rest over the free unknowns, N/m, of supports that move.
+    /// Diagonal of the stiffness at rest over the free unknowns, N/m, if supports move.
     diagonal: Vec<f64>,
 }
 
-/// A motion of the body as a whole: a turn about a point, and a way.
+/// Rigid motion: a rotation about `from` followed by the translation from `from` to `to`.
 #[derive(Clone, Copy, Debug)]
 struct RigidMotion {
     from: Vector2<f64>,
@@ -76,12 +77,12 @@ struct RigidMotion {
     angle: f64,
 }
 
-/// The largest angle by which a support may turn against the others in a load step, rad: elements beside it are turned by
-/// it in one go, and fold over where it is a right angle or more.
+/// Largest angle by which a support may rotate relative to the others in a load step, rad: the adjacent elements rotate
+/// by it in one step, and fold over at a right angle or more.
 pub(crate) const LARGEST_TURN: f64 = 0.5;
 
 impl Supports {
-    /// The supports of a scene on its system.
+    /// Returns the supports of a scene on a system.
     pub(super) fn new(supports: &[Support], material: &Material, system: &System) -> Result<Self, Invalid> {
         let mesh = system.mesh();
         let mut owner: HashMap<(u32, usize), usize> = HashMap::new();
@@ -126,7 +127,7 @@ impl Supports {
         Ok(result)
     }
 
-    /// Takes another material on.
+    /// Recomputes the stiffness for another material.
     pub(super) fn set_stiffness(&mut self, material: &Material, system: &System) {
         if !self.moves {
             return;
@@ -141,34 +142,34 @@ impl Supports {
         self.diagonal = matrix.diagonal(system.pattern()).collect();
     }
 
-    /// One for every support of the scene.
+    /// Returns the supports, in the order of the scene.
     #[must_use]
     pub fn all(&self) -> &[NodalSupport] {
         &self.all
     }
 
-    /// Whether any is taken somewhere else than it is at rest.
+    /// Returns `true` if any displacement or rotation is prescribed.
     #[must_use]
     pub fn move_the_body(&self) -> bool {
         self.moves
     }
 
-    /// The largest part of the way that may be made in one load step from rest.
+    /// Returns the largest fraction of the prescribed motion that may be applied in one load step from rest.
     pub(crate) fn largest_load_step(&self) -> f64 {
         self.largest_load_step
     }
 
-    /// What rounding leaves of forces that balance, N, for this displacement of supports that move: a body that is only
-    /// carried elsewhere has no forces to compare a residual with.
+    /// Returns the rounding error of forces in balance, N, for this displacement: a body that is only moved rigidly by
+    /// its supports has no element forces to compare a residual with.
     pub(super) fn rounding(&self, system: &System, u: &[Vector2<f64>]) -> f64 {
-        /// A few roundings.
+        /// A few times the unit roundoff.
         const ROUNDING: f64 = 2e-15;
         let free = self.diagonal.iter().zip(system.pattern().free());
         let squares = free.map(|(k, &unknown)| (k * u[unknown as usize / 2][unknown as usize % 2]).powi(2));
         ROUNDING * squares.sum::<f64>().sqrt()
     }
 
-    /// Every component that is fixed, as a node and an axis, with its displacement at this load factor, m.
+    /// Iterates over the fixed components, as node and axis, with their displacement at this load factor, m.
     fn targets(&self, mesh: &Mesh, factor: f64, kinematics: Kinematics) -> impl Iterator<Item = (u32, usize, f64)> {
         self.all.iter().flat_map(move |support| {
             support.nodes.iter().flat_map(move |&(node, own)| {
@@ -178,20 +179,20 @@ impl Supports {
         })
     }
 
-    /// Puts the fixed components of a displacement where the supports take them at this load factor.
+    /// Sets the fixed components of a displacement to their values at this load factor.
     pub(crate) fn put(&self, mesh: &Mesh, factor: f64, kinematics: Kinematics, u: &mut Displacement) {
         for (node, axis, target) in self.targets(mesh, factor, kinematics) {
             u.put(node, axis, target);
         }
     }
 
-    /// Whether the fixed components of a displacement are exactly where [`Self::put`] puts them. Exactly: after a full
-    /// turn they are at rest again but for rounding, and the body is not.
+    /// Returns `true` if the fixed components of a displacement are exactly those of [`Self::put`]. The comparison is
+    /// exact because after a full rotation they equal the rest position up to rounding, but the body is not at rest.
     pub(crate) fn are_at(&self, mesh: &Mesh, factor: f64, kinematics: Kinematics, u: &[Vector2<f64>]) -> bool {
         self.targets(mesh, factor, kinematics).all(|(node, axis, target)| u[node as usize][axis] == target)
     }
 
-    /// Whether the fixed components of a displacement are those at rest.
+    /// Returns `true` if the fixed components of a displacement are zero.
     pub(crate) fn are_at_rest(&self, u: &[Vector2<f64>]) -> bool {
         self.fixed().all(|(node, axis)| u[node as usize][axis] == 0.0)
     }
@@ -201,8 +202,8 @@ impl Supports {
         nodes.flat_map(|&(node, own)| (0..2).filter(move |&axis| own[axis]).map(move |axis| (node, axis)))
     }
 
-    /// The rigid motion that comes nearest to what takes the fixed components from this displacement to where they are at
-    /// a load factor (least squares; the angle in closed form, as that of a polar factor).
+    /// Returns the rigid motion that best approximates the motion of the fixed components from this displacement to
+    /// their positions at a load factor (least squares; the angle in closed form, as that of a polar factor).
     fn rigid_motion(&self, mesh: &Mesh, factor: f64, u: &[Vector2<f64>]) -> RigidMotion {
         let mut ways: BTreeMap<u32, [Vector2<f64>; 2]> = BTreeMap::new();
         for (node, axis, target) in self.targets(mesh, factor, Kinematics::Corotated) {
@@ -219,7 +220,7 @@ impl Supports {
         RigidMotion { from, to, angle: if angle.is_finite() { angle } else { 0.0 } }
     }
 
-    /// The turns of the edges that are held in both directions, rad.
+    /// Iterates over the prescribed rotations of edges that are fixed in both directions, rad.
     fn turns(&self) -> impl Iterator<Item = f64> {
         let is_held = |s: &&NodalSupport| s.nodes.len() > 1 && s.nodes.iter().any(|(_, own)| *own == [true; 2]);
         self.all.iter().filter(is_held).map(|s| s.turn)
@@ -229,7 +230,8 @@ impl Supports {
         self.turns().sum::<f64>() / self.turns().count().max(1) as f64
     }
 
-    /// The largest part of the way from rest in which no support turns by more than `angle` against the body as a whole.
+    /// Returns the largest fraction of the motion from rest in which no support rotates by more than `angle` relative
+    /// to the body as a whole.
     fn load_step_within(&self, mesh: &Mesh, angle: f64) -> f64 {
         let rest = vec![Vector2::zeros(); mesh.nodes().len()];
         let whole = self.rigid_motion(mesh, 1.0, &rest).angle;
@@ -238,15 +240,15 @@ impl Supports {
         if largest > angle { angle / largest } else { 1.0 }
     }
 
-    /// Carries the body along as a whole, as near as a rigid motion comes to the way of the supports from where they are
-    /// to a load factor; supports are left where that takes them. Returns whether it turned.
+    /// Moves the body by the rigid motion that best approximates the supports' motion to a load factor; the supports
+    /// move with the body. Returns `true` if it rotated the body.
     pub(crate) fn carry(&self, mesh: &Mesh, factor: f64, state: &mut State) -> bool {
-        /// A turn by less is made good by linear theory of the small.
+        /// Smallest angle, rad; smaller rotations are left to the solution of the equations.
         const SMALL: f64 = 1e-2;
         let at_rest = self.are_at_rest(&state.displacement);
         let RigidMotion { from, to, mut angle } = self.rigid_motion(mesh, factor, &state.displacement);
         if at_rest {
-            // From rest they may go round several times; afterwards their steps are small.
+            // From rest the supports may make several full rotations; later steps are small.
             angle += TAU * ((factor * self.mean_turn() - angle) / TAU).round();
         }
         if angle.abs() < SMALL {
@@ -264,9 +266,10 @@ impl Supports {
     }
 }
 
-/// `true` if two supports take a component of a node that both fix to the same place on all of their path.
+/// Returns `true` if two supports that both fix a component of a node prescribe the same displacement over their whole
+/// motion.
 fn agree(first: &NodalSupport, second: &NodalSupport, x: Vector2<f64>, axis: usize, size: f64) -> bool {
-    /// Rounding, over the size of the body.
+    /// Rounding error relative to the size of the body.
     const SAME: f64 = 1e-12;
     [0.5, 1.0].iter().all(|&factor| {
         let [a, b] = [first, second].map(|support| support.take(x, factor, Kinematics::Corotated)[axis]);

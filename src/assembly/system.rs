@@ -1,4 +1,4 @@
-//! What is found once for a mesh and its supports, and shared by all who solve on it.
+//! Data computed once for a mesh and its supports, and shared by all solvers on it.
 
 use std::sync::{Arc, OnceLock};
 
@@ -15,31 +15,31 @@ use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
 use crate::solver::Symbolic;
 use crate::state::{State, StateError};
 
-/// Why a scene gives no equations.
+/// Reason why a scene has no equations.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SystemError {
-    /// The scene asks for something that is not there.
+    /// The scene refers to something that does not exist.
     #[error(transparent)]
     Scene(#[from] Invalid),
-    /// The factor of its matrix does not fit.
+    /// The factor of the matrix does not fit in memory.
     #[error("the factor of {unknowns} unknowns does not fit in memory; expected a coarser mesh")]
     TooLarge {
-        /// Free unknowns.
+        /// Number of free unknowns.
         unknowns: usize,
     },
 }
 
-/// Where a mesh came from.
+/// Origin of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 enum Origin {
-    /// Given by the caller: it belongs to whatever scene is solved on it.
+    /// Given by the caller; used for every scene solved on it.
     Given,
     Beam(Beam),
     File(MeshFile),
 }
 
-/// A mesh with what is known of it apart from supports.
+/// Mesh with derived data that does not depend on supports.
 #[derive(Debug)]
 struct Body {
     origin: Origin,
@@ -47,9 +47,9 @@ struct Body {
     elements: Box<dyn Elements>,
     edges: Vec<Edge>,
     nodal_areas: Vec<f64>,
-    /// The most elements that share a node.
+    /// Largest number of elements that share a node.
     valence: u32,
-    /// Made when it is first asked for.
+    /// Computed on first use.
     recovery: OnceLock<Recovery>,
     strip: OnceLock<[f64; 2]>,
     size: f64,
@@ -82,15 +82,15 @@ impl Body {
     }
 }
 
-/// The equations of a mesh with its supports, without the numbers in them: elements, free unknowns, sparsity, the order
-/// of elimination. Made once, and shared.
+/// Equations of a mesh with its supports, without numerical values: elements, free unknowns, sparsity, elimination
+/// order. Computed once, and shared.
 #[derive(Debug)]
 pub struct System {
     body: Arc<Body>,
     supports: Vec<Support>,
-    /// Whether the supports leave no rigid motion.
+    /// Rigid motions that the supports leave.
     hold: Hold,
-    /// Numbers of the edges whose nodes are coupled, for moments.
+    /// Indices of edges whose nodes are coupled, for moments.
     coupled: Vec<usize>,
     pattern: Pattern,
     slots: Vec<u32>,
@@ -101,7 +101,7 @@ impl System {
     /// Meshes a scene and sets up its equations. The scene is validated first.
     ///
     /// # Errors
-    /// The key that is wrong and what was expected there, or that the mesh is too large.
+    /// The invalid key and the expected value, or that the mesh is too large.
     pub fn new(scene: &Scene) -> Result<Self, SystemError> {
         scene.validate()?;
         let origin = match (&scene.beam, &scene.mesh) {
@@ -112,10 +112,10 @@ impl System {
         Self::of_body(Arc::new(Body::new(origin, Self::mesh_of(scene)?)), scene)
     }
 
-    /// Meshes a scene that has been validated.
+    /// Meshes a validated scene.
     ///
     /// # Errors
-    /// The key that is wrong and what was expected there.
+    /// The invalid key and the expected value.
     pub(crate) fn mesh_of(scene: &Scene) -> Result<Mesh, Invalid> {
         match (&scene.beam, &scene.mesh) {
             (Some(beam), _) => Mesh::beam(beam).map_err(|e| Invalid::new("beam", e.to_string())),
@@ -131,21 +131,21 @@ impl System {
         }
     }
 
-    /// [`Self::new`] on a mesh of the caller's, which has the edges that the scene names. The scene's own `[beam]` or
-    /// `[mesh]`, if it has one, is not read.
+    /// Sets up the equations as [`Self::new`] on a given mesh, which must have the edges that the scene names. The
+    /// scene's own `[beam]` or `[mesh]`, if any, is not read.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Same errors as [`Self::new`].
     pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, SystemError> {
         scene.validate_all_but_geometry()?;
         Self::of_body(Arc::new(Body::new(Origin::Given, mesh)), scene)
     }
 
-    /// The system of another scene: this one where it serves, one that shares its mesh where only supports differ or a
-    /// moment needs more couplings, else a new one. A mesh of the caller's is kept whatever the scene.
+    /// Returns the system of another scene: this one if it fits, one that shares its mesh if only supports differ or a
+    /// moment needs more couplings, else a new one. A mesh given by the caller is always kept.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Same errors as [`Self::new`].
     pub fn adapt(self: &Arc<Self>, scene: &Scene) -> Result<Arc<Self>, SystemError> {
         let same_mesh = match &self.body.origin {
             Origin::Given => true,
@@ -188,62 +188,62 @@ impl System {
         moment_edges(&self.body.edges, scene)
     }
 
-    /// The rest mesh.
+    /// Returns the rest mesh.
     #[must_use]
     pub fn mesh(&self) -> &Mesh {
         &self.body.mesh
     }
 
-    /// The loops over its elements.
+    /// Returns the loops over the elements.
     #[must_use]
     pub fn elements(&self) -> &dyn Elements {
         self.body.elements.as_ref()
     }
 
-    /// Free unknowns and sparsity.
+    /// Returns free unknowns and sparsity.
     #[must_use]
     pub fn pattern(&self) -> &Pattern {
         &self.pattern
     }
 
-    /// Where every element's matrix goes; see [`crate::element::MatrixSum`].
+    /// Returns the indices of every element's matrix entries; see [`crate::element::MatrixSum`].
     #[must_use]
     pub fn slots(&self) -> &[u32] {
         &self.slots
     }
 
-    /// The order of elimination.
+    /// Returns the symbolic factorization, with the elimination order.
     #[must_use]
     pub fn symbolic(&self) -> &Symbolic {
         &self.symbolic
     }
 
-    /// The named edges, by name.
+    /// Returns the named edges, by name.
     #[must_use]
     pub fn edges(&self) -> &[Edge] {
         &self.body.edges
     }
 
-    /// ∫ Nₐ dA of every node, m².
+    /// Returns ∫ Nₐ dA of every node, m².
     #[must_use]
     pub fn nodal_areas(&self) -> &[f64] {
         &self.body.nodal_areas
     }
 
-    /// The most elements that share a node.
+    /// Returns the largest number of elements that share a node.
     #[must_use]
     pub(super) fn valence(&self) -> u32 {
         self.body.valence
     }
 
-    /// From quadrature points to nodes: made when it is first asked for, and shared.
+    /// Returns the recovery matrix from quadrature points to nodes, computed on first use and shared.
     #[must_use]
     pub fn recovery(&self) -> &Recovery {
         self.body.recovery.get_or_init(|| Recovery::new(&self.body.mesh))
     }
 
-    /// Length and height, m, of the straight strip that has the body's area and perimeter at rest: those of a beam, and
-    /// what they would be of a body that is bent or curved.
+    /// Returns the length and height, m, of the straight strip with the body's area and perimeter at rest: those of a
+    /// beam, and approximately those of a bent or curved strip.
     #[must_use]
     pub fn strip(&self) -> [f64; 2] {
         *self.body.strip.get_or_init(|| {
@@ -252,54 +252,54 @@ impl System {
                 |nodes: &[u32]| nodes.windows(2).map(|w| (mesh.node(w[1]) - mesh.node(w[0])).norm()).sum::<f64>();
             let quarter = 0.25 * mesh.outline().iter().map(|side| along(side.nodes())).sum::<f64>();
             let area: f64 = self.nodal_areas().iter().sum();
-            // Of a body rounder than a square: those of a square.
+            // A body rounder than a square gets the size of a square.
             let apart = (quarter * quarter - area).max(0.0).sqrt();
             [quarter + apart, quarter - apart]
         })
     }
 
-    /// Size of the body at rest: the diagonal of the box around it, m.
+    /// Returns the size of the body at rest: the diagonal of its bounding box, m.
     #[must_use]
     pub fn size(&self) -> f64 {
         self.body.size
     }
 
-    /// Number of free unknowns.
+    /// Returns the number of free unknowns.
     #[must_use]
     pub fn dofs(&self) -> usize {
         self.pattern.dofs()
     }
 
-    /// Whether both have the same mesh: states of one are states of the other.
+    /// Returns `true` if both have the same mesh, so that states of one are valid for the other.
     #[must_use]
     pub(crate) fn shares_mesh(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.body, &other.body)
     }
 
-    /// A named edge and its number; `key` blames the scene's table that names it.
+    /// Returns a named edge and its index; an error refers to the scene's table `key`.
     pub(super) fn edge(&self, name: &str, key: &str) -> Result<(usize, &Edge), Invalid> {
         let edges = self.body.edges.iter().enumerate();
         edges.into_iter().find(|(_, e)| e.name() == name).ok_or_else(|| no_such_edge(self.mesh(), name, key))
     }
 
-    /// The body at rest.
+    /// Returns the state at rest.
     #[must_use]
     pub fn at_rest(&self) -> State {
         State::at_rest(self.mesh().nodes().len(), self.elements().rotation_count(), self.edges().len())
     }
 
-    /// The state with this displacement, m, one vector a node of the mesh, at rest otherwise.
+    /// Returns the state with displacement `u`, m, one vector per node; other values as at rest.
     ///
     /// # Errors
-    /// [`StateError`] where there are not as many vectors as nodes, or one is not finite.
+    /// [`StateError`] if the number of vectors differs from the number of nodes, or one is not finite.
     pub fn state_of(&self, u: &[Vector2<f64>]) -> Result<State, StateError> {
         let mut state = self.at_rest().with_displacement(u.to_vec())?;
         self.follow(&mut state, Kinematics::Corotated);
         Ok(state)
     }
 
-    /// Sets rotations and turns of edges to those of the displacement. An edge is taken to have turned to the nearest
-    /// angle from where it was, so that full turns are kept.
+    /// Sets rotations and edge angles to those of the displacement. Of the possible angles of an edge the one nearest
+    /// to its previous angle is taken, so that full rotations are counted.
     pub fn follow(&self, state: &mut State, kinematics: Kinematics) {
         let State { displacement: u, rotations, .. } = state;
         match kinematics {
@@ -309,7 +309,7 @@ impl System {
         self.turn_edges(state, kinematics);
     }
 
-    /// Sets turns of edges to those of the displacement.
+    /// Sets edge angles to those of the displacement.
     pub(super) fn turn_edges(&self, state: &mut State, kinematics: Kinematics) {
         let State { displacement: u, turns, .. } = state;
         for (edge, turn) in self.edges().iter().zip(turns).filter(|(edge, _)| edge.is_straight()) {
@@ -321,7 +321,7 @@ impl System {
     }
 }
 
-/// Numbers of the edges on which a scene puts moments; names that are not there are left to be complained of later.
+/// Returns the indices of straight edges on which a scene has moments; unknown names are reported later.
 fn moment_edges(edges: &[Edge], scene: &Scene) -> Vec<usize> {
     let carries = |edge: &Edge| {
         scene.loads.iter().any(|load| matches!(load, Load::Moment { edge: name, .. } if name == edge.name()))

@@ -1,4 +1,4 @@
-//! What can be typed after `warpbeam`.
+//! Command line arguments of `warpbeam`.
 
 use std::path::PathBuf;
 
@@ -45,68 +45,68 @@ pub(super) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Open the window. Without a display: solve the scene, write a picture, exit 0.
+    /// Open the window. Without a display: solve the scene, write an image, exit 0.
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Run {
         #[command(flatten)]
         scene: SceneArgs,
-        /// The picture written where there is no display.
+        /// Image file written if there is no display.
         #[arg(short, long, value_name = "OUT.png", default_value = DEFAULT_PICTURE)]
         output: PathBuf,
     },
     /// List the built-in scenes.
     Scenes,
-    /// Find the equilibrium of a scene, or take a scene in motion to the end of its duration.
+    /// Compute the equilibrium of a static scene, or the motion of a dynamic one to the end of its duration.
     #[command(after_help = format!("{SOLVE_FILES}\n{EXIT_CODES}"))]
     Solve(SolveArgs),
-    /// Print the load path of a scene: its equilibria as loads are put on and supports taken on their way, where they lose
-    /// their stability under force control, and where the body jumps. Of a cantilever: linear theory, the exact beam,
-    /// every method, and where linear theory leaves the exact beam by 3, 5 and 10 percent.
+    /// Print the load path of a scene: its equilibria as loads and prescribed displacements grow, where they lose their
+    /// stability under force control, and where the body jumps. For a cantilever also: linear theory, the exact beam,
+    /// every method, and the loads at which linear theory differs from the exact beam by 3, 5 and 10 percent.
     Curve(CurveArgs),
     /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
-    /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt). Of a scene in motion: the
-    /// error of the first probe's path against the time of computing a simulated second, for every integrator and time
-    /// step too, with what becomes of the energy.
+    /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt). For a dynamic scene:
+    /// the error of the first probe's path against the computing time per simulated second, also for every integrator
+    /// and time step, with the energy drift.
     Study {
         #[command(flatten)]
         scene: SceneArgs,
         #[command(flatten)]
         out: FolderArgs,
-        /// Instead: the time of an iteration of a scene at rest and the memory it takes over 100 to 200 000 unknowns, for
+        /// Measure instead the time and memory of an iteration of a static scene with 100 to 200 000 unknowns, for
         /// every element, with fitted exponents (scaling.csv, .svg, .png, .txt).
         #[arg(long)]
         scaling: bool,
     },
-    /// Choose element, mesh and method of a scene at rest for an error and a time: measure finer and finer meshes on this machine until
-    /// both are met, and print what was chosen and why.
+    /// Choose element, mesh and method of a static scene for a required error and time: measure finer and finer meshes
+    /// on this machine until both are met, and print the choice and the reason.
     #[command(
         after_help = "Exit codes: 0 both are met, 1 nothing meets them (the closest is printed), 2 bad input or usage."
     )]
     Tune(TuneArgs),
-    /// Solve at the extremes of load, stiffness, Poisson ratio, slenderness, cells and starting state, and on mesh files,
-    /// and count how each method ends: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary. The same
-    /// of every integrator in motion, at the extremes of stiffness, time step and weight: extremes-motion.csv, .svg and
-    /// .png.
+    /// Solve at extremes of load, stiffness, Poisson ratio, slenderness, cells and initial state, and on mesh files,
+    /// and count the outcomes of each method: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary.
+    /// The same for every integrator in motion, at extremes of stiffness, time step and weight: extremes-motion.csv,
+    /// .svg and .png.
     Extremes {
         #[command(flatten)]
         out: FolderArgs,
     },
-    /// Draw the picture the window shows into a PNG file, without a window.
+    /// Write the image shown in the window to a PNG file, without a window.
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Shot(ShotArgs),
-    /// Draw the moving picture of a scene in motion, or of the way of a static one to its equilibrium (an iteration a
-    /// picture), without a window: an animated GIF, or numbered pictures.
+    /// Record a dynamic scene, or the iterations of a static one (one per frame), without a window: an animated GIF, or
+    /// numbered images.
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),
-    /// Print a scene as a Rust program, which builds it with the library and solves it.
+    /// Print a scene as a Rust program that builds and solves it with the library.
     Rust(RequiredSceneArgs),
-    /// Print the completions of a shell.
+    /// Print shell completions.
     #[command(after_help = "bash: warpbeam completions bash > ~/.local/share/bash-completion/completions/warpbeam")]
     Completions {
-        /// The shell.
+        /// Shell.
         shell: clap_complete::Shell,
     },
     /// Print the manual page: `warpbeam man | man -l -`.
@@ -120,20 +120,20 @@ pub(super) struct SolveArgs {
     /// Print one JSON object, and nothing else, on standard output.
     #[arg(long)]
     pub json: bool,
-    /// Also write a table (.csv), the mesh with its fields (.vtu) or, of a motion, a series of them (.pvd); see below.
+    /// Also write a table (.csv), the mesh with its fields (.vtu) or, for a motion, a series of them (.pvd); see below.
     #[arg(long, value_name = "FILE.csv|.vtu|.pvd")]
     pub out: Option<PathBuf>,
-    /// Look for the reference solution that errors are measured against: on meshes of up to about 10,000 unknowns, in a second
-    /// or two; on meshes as fine as an own error of 0.01 % takes; or not at all.
+    /// Reference solution that errors are measured against: on meshes of up to about 10,000 unknowns, in a second or
+    /// two; on meshes fine enough for an error of 0.01 %; or none.
     #[arg(long, value_enum, default_value_t = ReferenceEffort::Bounded)]
     pub reference: ReferenceEffort,
-    /// The same as --reference none.
+    /// Same as --reference none.
     #[arg(long, hide = true, conflicts_with = "reference")]
     pub no_truth: bool,
-    /// Certify the result, however large the scene is: its stability, ρ, and jumps on the way to it.
+    /// Certify the result, whatever the size of the scene: stability, ρ, and jumps on the load path to it.
     #[arg(long)]
     pub certificate: bool,
-    /// Do not certify the result. That takes some solves, and is left out beyond 100,000 unknowns anyway.
+    /// Do not certify the result. Certification takes some solves, and is omitted beyond 100,000 unknowns anyway.
     #[arg(long, conflicts_with = "certificate")]
     pub no_certificate: bool,
 }
@@ -147,7 +147,7 @@ pub(super) enum ReferenceEffort {
 }
 
 impl SolveArgs {
-    /// Effort for the reference solution; `None` where none is wanted.
+    /// Returns the effort for the reference solution; `None` for no reference.
     pub fn effort(&self) -> Option<Effort> {
         match self.reference {
             _ if self.no_truth => None,
@@ -165,22 +165,23 @@ pub(super) struct CurveArgs {
     /// Also write the curve as a table.
     #[arg(long, value_name = "FILE.csv")]
     pub out: Option<PathBuf>,
-    /// Also draw the load path: over the way of the support that moves, or over the load; what is unstable is dashed.
+    /// Also draw the load path: over the displacement of the moving support, or over the load; unstable states are
+    /// dashed.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub picture: Option<PathBuf>,
-    /// Quantity in the picture: `PROBE.x` or `PROBE.y` for a component of a probe's displacement, `PROBE.path` for one over the
-    /// other, `PROBE` for its length, or `support.N` for the reaction of a support. Else the reaction of the support that moves, or
-    /// the larger component of the first probe.
+    /// Quantity in the figure: `PROBE.x` or `PROBE.y` for a component of a probe's displacement, `PROBE.path` for one
+    /// over the other, `PROBE` for its length, or `support.N` for the reaction of a support. Default: the reaction of
+    /// the moving support, or the larger component of the first probe.
     #[arg(long, value_name = "NAME", requires = "picture")]
     pub of: Option<String>,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct FolderArgs {
-    /// The folder to write to; made if it is not there.
+    /// Folder to write to; created if necessary.
     #[arg(long = "out", value_name = "DIR")]
     pub folder: PathBuf,
-    /// Without the dearer part: coarser meshes, fewer cases.
+    /// Omit the expensive part: coarser meshes, fewer cases.
     #[arg(long)]
     pub quick: bool,
 }
@@ -189,13 +190,13 @@ pub(super) struct FolderArgs {
 pub(super) struct TuneArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
-    /// The largest error, percent of the true displacement of the first probe: 1% or 1. Without --time and --error: 1%.
+    /// Largest error, percent of the exact displacement of the first probe: 1% or 1. Without --time and --error: 1%.
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
     pub error: Option<f64>,
-    /// The longest time of a solve from rest: 0.5ms, 200us, 2s, or milliseconds.
+    /// Longest time of a solve from rest: 0.5ms, 200us, 2s, or milliseconds.
     #[arg(long, value_name = "TIME", value_parser = parse_milliseconds)]
     pub time: Option<f64>,
-    /// Save the scene with what was chosen.
+    /// Save the scene with the chosen setting.
     #[arg(long, value_name = "FILE.toml")]
     pub write: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! The commands that need no window.
+//! Commands without a window.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -24,7 +24,7 @@ use crate::words::count;
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let began = Instant::now();
-    // A wrong file name is reported before the work, not after.
+    // Report a wrong file name before solving.
     let format = args.out.as_deref().map(Format::of).transpose()?;
     let effort = args.effort();
     let SolveArgs { scene, json, out, certificate, no_certificate, .. } = args;
@@ -104,7 +104,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         spent: &spent,
     };
     text::print(&if json { json::solution(&solved) } else { text::solution(&solved) })?;
-    // The result is printed also where its file could not be written.
+    // Print the result even if its file could not be written.
     written?;
     match (interrupted, &solution.status) {
         (true, Status::Stopped(reason)) => eprintln!("warpbeam: {reason}"),
@@ -114,7 +114,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     Ok(if interrupted { ExitCode::from(NOT_CONVERGED) } else { exit_code(&solution.status) })
 }
 
-/// Takes a motion to its end, or to where it is called off; the file, if there is one, has the steps up to there.
+/// Computes a motion to its end, or until cancelled; the file, if any, then contains the steps so far.
 fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &Watch) -> Result<(), ExportError> {
     let duration = simulation.scene().dynamics.duration;
     let mut written = Ok(());
@@ -133,7 +133,7 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &
     written
 }
 
-/// Sentences about what limits a result, whatever it is compared with.
+/// Returns sentences about limitations of a result that do not depend on a reference.
 fn limits_of(simulation: &Simulation, stress: &StressResult) -> Vec<String> {
     let mut limits: Vec<String> = Vec::new();
     limits.extend(strain_warning(Deformation::of(simulation.problem(), simulation.state()).max_strain));
@@ -147,7 +147,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let CurveArgs { scene, out, picture, of } = args;
     let source = scene::Source::from(scene);
     let (scene, _) = simulate(&source)?;
-    // What cannot be drawn is said before the work.
+    // Report invalid names before computing the path.
     let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
     let is_png = |path: &Path| {
         check_suffix(path, &[".svg", ".png"], ".svg or .png")?;
@@ -164,7 +164,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     drop(watch);
     let (words, table) = match (&beam, &path) {
         (Some(curve), path) => {
-            // A path without events tells nothing that the curve does not.
+            // A path without events adds nothing to the curve.
             let path = path.as_ref().filter(|path| !text::events(path).is_empty());
             let own = path.map(|path| format!("\n{}", text::path(&scene, path))).unwrap_or_default();
             (text::curve(&scene, curve) + &own, text::curve_table(curve))
@@ -184,7 +184,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     Ok(if path.is_none_or(|path| path.end.is_none()) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
 }
 
-/// What a name on the command line asks to be drawn.
+/// Parses the name of the quantity to be drawn.
 fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
     for (i, probe) in scene.probes.iter().enumerate() {
         match name.strip_prefix(&probe.name) {
@@ -247,7 +247,7 @@ pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCo
     Ok(ended(study.is_partial, "finer meshes have not been measured"))
 }
 
-/// The exit code of a command that may have been interrupted, and then says what is missing.
+/// Returns the exit code of a command that may have been interrupted; prints what is missing if it was.
 fn ended(interrupted: bool, missing: &str) -> ExitCode {
     if !interrupted {
         return ExitCode::SUCCESS;
@@ -284,11 +284,12 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     Ok(if tuning.met { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
 }
 
-/// The scene with what was chosen, to be written to `path`.
+/// Returns the scene with the chosen setting, to be written to `path`.
 fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) -> Scene {
     let mut tuned = tuning.chosen.setting.apply(scene);
     if let (Some(mesh), false) = (&mut tuned.mesh, source.built_in().is_some()) {
-        // The mesh is named relative to the scene file, which is another one now. The folder of a bare name is the present one.
+        // The mesh path is relative to the scene file, which changes. The folder of a bare file name is the current
+        // one.
         let folder = |path: &Path| path.parent().and_then(|folder| std::path::absolute(folder.join(".")).ok());
         let old = folder(&source.name);
         if let Some(old) = old.filter(|old| Some(old) != folder(path).as_ref()) {

@@ -1,4 +1,4 @@
-//! What can be typed after the commands that draw.
+//! Command line arguments of the commands that draw.
 
 use std::path::PathBuf;
 
@@ -11,49 +11,49 @@ use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;
 use crate::scene::limits::{DURATION, PLAYBACK_SPEED};
 
-/// The picture written where there is no display.
+/// Default image file if there is no display.
 pub(super) const DEFAULT_PICTURE: &str = "warpbeam.png";
 
 #[derive(Debug, Args)]
 pub(super) struct ShotArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
-    /// The picture to write.
+    /// Image file to write.
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
-    /// Its size in pixels, 64x64 to 8192x8192.
+    /// Size in pixels, 64x64 to 8192x8192.
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = parse_size)]
     pub size: [u32; 2],
-    /// Only the view, without panel and bars.
+    /// Draw only the view, without panel and bars.
     #[arg(long)]
     pub no_panel: bool,
-    /// With the load–deflection curve.
+    /// Add the load–deflection curve.
     #[arg(long)]
     pub curve: bool,
-    /// With error against time, measured now.
+    /// Add the plot of error against time, measured now.
     #[arg(long, conflicts_with = "curve")]
     pub study: bool,
-    /// A card of the window's mode Learn, from 1: each shows the article's beam, whatever the scene. The last one with --study
-    /// has its table.
+    /// Show a card of the window's Learn mode, numbered from 1: each shows the article's beam, whatever the scene. With
+    /// --study the last one contains its table.
     #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(app::card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "motion"])]
     pub learn: Option<u8>,
-    /// Of a scene in time: with the plot of its energy, and the same motion under other integrators beside.
+    /// For a dynamic scene: add the plot of its energy, and show the same motion with other integrators side by side.
     #[arg(long, value_name = "INTEGRATOR", num_args = 0.., value_parser = parse_integrator, conflicts_with_all = ["curve", "study"])]
     pub motion: Option<Vec<IntegratorKind>>,
-    /// Two to four panes beside each other under one load. A pane is a method, an element, cells or most iterations, or
-    /// several of these between colons, in any order; the rest is as in the scene: linear,warped,newton or
-    /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene as it is.
+    /// Show two to four panes side by side under one load. A pane is a method, an element, cells or an iteration limit,
+    /// or several of these separated by colons, in any order; the rest is as in the scene: linear,warped,newton or
+    /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene unchanged.
     #[arg(long, value_name = "PANE,PANE", value_parser = parse_panes, conflicts_with_all = ["curve", "study", "motion"])]
     pub compare: Option<Panes>,
-    /// Light or dark.
+    /// Colour theme.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
-    /// English or Chinese.
+    /// Language.
     #[arg(long, value_enum, default_value_t = app::Language::English)]
     pub language: app::Language,
 }
 
-/// Panes that are compared: one value of an option.
+/// Panes of a comparison: one value of an option.
 #[derive(Clone, Debug)]
 pub(super) struct Panes(pub Vec<app::PaneSetting>);
 
@@ -61,7 +61,7 @@ fn parse_panes(text: &str) -> Result<Panes, app::PaneSettingError> {
     app::parse_panes(text).map(Panes)
 }
 
-/// What `record --help` says of files.
+/// Notes about files in `record --help`.
 pub(super) const RECORD_NOTES: &str = "\
 OUT.gif loops for ever, in one palette of 256 colours. A GIF counts in hundredths of a second: where --fps is no such \
 rate, the nearest is taken, and said.
@@ -76,33 +76,33 @@ Ctrl-C leaves a shorter, valid recording, and exit code 1.
 pub(super) struct RecordArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
-    /// The file, or the folder, to write.
+    /// File or folder to write.
     #[arg(short, long, value_name = "OUT.gif|FOLDER")]
     pub output: PathBuf,
-    /// How much of a motion is recorded: 2, 2s or 500ms. Else the scene's dynamics.duration.
+    /// Duration to record: 2, 2s or 500ms. Default: the scene's dynamics.duration.
     #[arg(long, value_name = "TIME", value_parser = parse_seconds)]
     pub seconds: Option<f64>,
-    /// Seconds of the motion in a second of the picture: 0.1 is slow motion.
+    /// Playback speed, simulated seconds per second: 0.1 is slow motion.
     #[arg(long, value_name = "FACTOR", value_parser = parse_speed)]
     pub speed: Option<f64>,
-    /// Pictures a second, 1 to 100. Else 25, and 4 of the way to an equilibrium.
+    /// Frames per second, 1 to 100. Default: 25, or 4 for the iterations of a static scene.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
     pub fps: Option<u16>,
-    /// Its size in pixels, 64x64 to 8192x8192.
+    /// Size in pixels, 64x64 to 8192x8192.
     #[arg(long, value_name = "WxH", default_value = "800x500", value_parser = parse_size)]
     pub size: [u32; 2],
-    /// Replace the numbered pictures that the folder has.
+    /// Replace existing numbered images in the folder.
     #[arg(long)]
     pub overwrite: bool,
-    /// Light or dark.
+    /// Colour theme.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
-    /// English or Chinese.
+    /// Language.
     #[arg(long, value_enum, default_value_t = app::Language::English)]
     pub language: app::Language,
 }
 
-/// A name that is no integrator's.
+/// Error for an unknown integrator name.
 #[derive(Debug, Error)]
 #[error("expected one of {}", INTEGRATORS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "))]
 struct NoIntegrator;
@@ -119,7 +119,7 @@ fn parse_speed(text: &str) -> Result<f64, NumberError> {
     parse_number(text, PLAYBACK_SPEED)
 }
 
-/// A size that is none, or is out of range.
+/// Error for an invalid image size, or one out of range.
 #[derive(Debug, Error)]
 #[error("expected WIDTHxHEIGHT, each from 64 to {}, as in 1280x800", app::MAX_SHOT_SIDE)]
 struct SizeError;

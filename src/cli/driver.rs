@@ -1,12 +1,12 @@
-//! A graphics driver that complains where there is no desktop.
+//! Workaround for a graphics driver that prints errors without a desktop session.
 
-/// Mesa's own switch for its layer that chooses between graphics devices.
+/// Environment variable that disables Mesa's device selection layer.
 #[cfg(target_os = "linux")]
 const NO_DEVICE_SELECTION: &str = "NODEVICE_SELECT";
 
-/// Where nobody is logged in to a desktop, Mesa's layer that chooses between graphics devices prints an error of its own for
-/// every picture. Only the environment of a new process can switch it off, so the program replaces itself by itself, once.
-/// Where that fails the program goes on, and the error is printed.
+/// Restarts the program once with Mesa's device selection layer disabled, if there is no desktop session: the layer
+/// would print an error for every image, and only the environment of a new process can disable it. If the restart
+/// fails, the program continues, and the error is printed.
 #[cfg(target_os = "linux")]
 pub(super) fn silence() {
     use std::os::unix::process::CommandExt;
@@ -22,6 +22,6 @@ pub(super) fn silence() {
     }
 }
 
-/// Other systems' drivers say nothing.
+/// Does nothing; drivers of other systems do not print such errors.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn silence() {}

@@ -1,4 +1,4 @@
-//! What commands print for programs: the object of the documented contract.
+//! JSON output of commands, as documented.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::simulation::{MotionResult, ProbeResult, ProbeStress, SupportReaction}
 use crate::stress::PlaneTensor;
 use crate::study::{ProbeReference, Reference};
 
-/// A result.
+/// Formats a result.
 pub(super) fn solution(solved: &Solved<'_>) -> String {
     let Solved { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
     let references = reference.map_or(&[][..], Reference::probes);
@@ -58,7 +58,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
             "elastic": number(solution.energy.elastic),
             "external": number(solution.energy.external),
             "supports": solution.energy.supports.map(number),
-            // A body at rest has neither.
+            // Present for motions only.
             "kinetic": solution.motion.map(|m| number(m.ledger.kinetic)),
             "dissipated": solution.motion.map(|m| number(m.ledger.dissipated)),
         },
@@ -66,7 +66,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         "supports": supports,
         "time_us": time_us,
     });
-    // Only where it decided: everyone else gets the documented object and nothing more.
+    // Only present for `auto`; other methods give the documented object without additions.
     if let Some(auto) = &solution.auto {
         object["auto"] = json!({
             "decision": auto.decision.id(),
@@ -81,7 +81,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
     format!("{object:#}\n")
 }
 
-/// What the object of a body in motion has beside.
+/// Adds the values of a motion to the object.
 fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
     let MotionResult { time, counts, ledger, momentum, critical_step, auto, .. } = motion;
     object["integrator"] = json!(scene.dynamics.integrator.id());
@@ -128,13 +128,13 @@ fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, reference: Option<&
         "reference_source": source.map(|source| source.to_string()),
         "reference_error_percent": reference.map(|r| number(r.own_error_percent)),
         "error_percent": reference.and_then(|r| r.error_percent(result)).map(number),
-        // The names of version 0.1, for one more version.
+        // Deprecated names of version 0.1, kept for one more version.
         "truth_u": u,
         "truth_source": source.map(|source| source.to_string()),
     })
 }
 
-/// A support and its reaction; the moment is about the middle of its edge.
+/// Formats a support and its reaction; the moment is about the middle of its edge.
 fn support(support: &Support, reaction: &SupportReaction) -> Value {
     let mut object = Map::new();
     match &support.place {
@@ -156,7 +156,7 @@ fn microseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e6
 }
 
-/// A number, or `null` for one that JSON cannot hold.
+/// Returns a number, or `null` if it is not finite.
 fn number(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }

@@ -1,4 +1,4 @@
-//! What shells and `man` are told of the command line, from its own description.
+//! Shell completions and manual page, generated from the command line definition.
 
 use std::process::ExitCode;
 
@@ -8,7 +8,7 @@ use clap_mangen::Man;
 use super::args::Cli;
 use super::{CliError, text};
 
-/// Prints the completions of a shell.
+/// Prints shell completions.
 pub(super) fn completions(shell: clap_complete::Shell) -> Result<ExitCode, CliError> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "warpbeam", &mut script);
@@ -39,7 +39,7 @@ fn render(page: &mut Vec<u8>) -> std::io::Result<()> {
     for command in commands {
         page.extend_from_slice(format!(".SH COMMAND {}\n", command.get_name().to_uppercase()).as_bytes());
         let man = Man::new(command);
-        // Sections of a section.
+        // Convert sections of a command to subsections.
         for section in [Man::render_synopsis_section, Man::render_description_section, Man::render_options_section] {
             let mut inner = Vec::new();
             section(&man, &mut inner)?;

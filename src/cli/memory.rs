@@ -1,15 +1,15 @@
-//! The memory of the process, as Linux tells it.
+//! Memory of the process on Linux.
 
 use crate::study::MemoryMeter;
 
-/// Linux's `VmHWM`, the most memory that the process has held since it was set back, over what it held at first.
+/// Meter based on Linux's `VmHWM`, the peak memory since its last reset, minus the memory at the start.
 pub(super) struct PeakMemory {
-    /// MiB.
+    /// Memory at the start, MiB.
     before: f64,
 }
 
 impl PeakMemory {
-    /// `None` where the system does not tell.
+    /// Creates the meter; `None` if the system does not report memory.
     pub(super) fn watch() -> Option<Self> {
         let memory = Self { before: status_mib("VmRSS:")? };
         set_back().then_some(memory)
@@ -26,12 +26,12 @@ impl MemoryMeter for PeakMemory {
     }
 }
 
-/// Sets `VmHWM` to what is held now; `true` if the system lets it.
+/// Resets `VmHWM` to the current memory; returns `true` if the system allows it.
 fn set_back() -> bool {
     std::fs::write("/proc/self/clear_refs", "5").is_ok()
 }
 
-/// A size in `/proc/self/status`, MiB.
+/// Reads a size from `/proc/self/status`, MiB.
 fn status_mib(key: &str) -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix(key))?;

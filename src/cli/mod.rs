@@ -1,9 +1,8 @@
-//! The commands: `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `rust`,
-//! `completions`, `man`.
-//! Without the feature `app`, those that need no window and no GPU.
+//! Commands `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `rust`, `completions` and
+//! `man`; without the feature `app`, those that need no window and no GPU.
 //!
-//! Exit codes: 0 done and converged, 1 ran but did not converge or was interrupted, 2 bad input or usage, or a result that
-//! could not be written, 3 no graphics adapter.
+//! Exit codes: 0 done and converged, 1 ran but did not converge or was interrupted, 2 bad input or usage, or a result
+//! that could not be written, 3 no graphics adapter.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -37,15 +36,15 @@ mod text;
 #[cfg(feature = "app")]
 mod window;
 
-/// Ran, but did not converge, or not to the end.
+/// Exit code: ran, but did not converge, or was interrupted.
 const NOT_CONVERGED: u8 = 1;
-/// Bad input or usage.
+/// Exit code: bad input or usage.
 const BAD_INPUT: u8 = 2;
-/// No usable graphics adapter.
+/// Exit code: no usable graphics adapter.
 #[cfg(feature = "app")]
 const NO_ADAPTER: u8 = 3;
 
-/// Anything that ends a command early.
+/// Error that ends a command early.
 #[derive(Debug, thiserror::Error)]
 enum CliError {
     #[error(transparent)]
@@ -90,7 +89,7 @@ impl CliError {
     }
 }
 
-/// Runs the command that the process was started with.
+/// Runs the command given by the process arguments.
 #[must_use]
 pub fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error,wgpu_hal=off")).init();
@@ -102,7 +101,7 @@ pub fn main() -> ExitCode {
     let result = match command {
         #[cfg(feature = "app")]
         None => window::run_default(),
-        // clap has asked for a command.
+        // Unreachable: clap requires a command.
         #[cfg(not(feature = "app"))]
         None => Ok(ExitCode::from(BAD_INPUT)),
         #[cfg(feature = "app")]
@@ -128,7 +127,7 @@ pub fn main() -> ExitCode {
     })
 }
 
-/// Refuses a file name with another suffix than those expected, which are in lower case and with their dots.
+/// Rejects a file name whose suffix is not one of `known`, which are in lower case and include the dot.
 fn check_suffix(path: &Path, known: &[&str], expected: &'static str) -> Result<(), CliError> {
     let suffix = path.extension().and_then(|e| e.to_str()).map(|e| format!(".{}", e.to_ascii_lowercase()));
     match suffix.is_some_and(|suffix| known.contains(&suffix.as_str())) {
@@ -137,7 +136,7 @@ fn check_suffix(path: &Path, known: &[&str], expected: &'static str) -> Result<(
     }
 }
 
-/// Refuses an option that is given for a scene whose analysis it does not fit.
+/// Rejects an option for a scene whose analysis it does not support.
 fn check_fit(
     (source, scene): (&scene::Source, &Scene),
     (option, given): (&'static str, bool),
@@ -161,14 +160,14 @@ fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
     Ok((scene, simulation))
 }
 
-/// What a scene is called in messages.
+/// Returns the name of a scene in messages.
 fn named(source: &scene::Source) -> String {
     source.name.display().to_string()
 }
 
-/// Says so where a mesh file seems to be in millimetres: `size` is the body's, m. Nothing is changed.
+/// Prints a warning if a mesh file seems to be in millimetres; `size` is the body's, m.
 fn warn_of_millimetres(scene: &Scene, size: f64) {
-    /// Larger than the parts that are meshed, m.
+    /// Size above which a body is suspicious, m.
     const LARGE: f64 = 50.0;
     if let Some(mesh) = scene.mesh.as_ref().filter(|mesh| mesh.scale.is_none() && size > LARGE) {
         let size = number(size.round());

@@ -11,19 +11,19 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use crate::simulation::{Simulation, Status};
 use crate::study::Progress;
 
-/// Steps of a full bar.
+/// Number of steps of a full bar.
 const FULL: u64 = 10_000;
-/// Time from one drawing of the bar to the next.
+/// Interval between drawings of the bar.
 const REDRAW: Duration = Duration::from_millis(100);
-/// Time after which a command counts as long: until then no bar is drawn.
+/// Time before the bar is first drawn.
 const LONG: Duration = Duration::from_millis(400);
-/// Fraction of the work from which on the rest of the time can be told.
+/// Completed fraction from which on the remaining time is estimated.
 const TELLING: f64 = 0.02;
-/// Exit code of a process that a second Ctrl-C has ended, as shells have it.
+/// Exit code after a second Ctrl-C, as used by shells.
 const KILLED_BY_INTERRUPT: i32 = 130;
 
-/// Progress bar on standard error, if that is a terminal, and handler of Ctrl-C, SIGTERM and SIGHUP: the first signal asks the
-/// command to end with the result it has, the second ends the process.
+/// Progress bar on standard error, if that is a terminal, and handler of Ctrl-C, SIGTERM and SIGHUP: the first signal
+/// makes the command end with its partial result, the second ends the process.
 #[derive(Debug)]
 pub(super) struct Watch {
     bar: ProgressBar,
@@ -33,7 +33,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Starts to handle signals. A process can have one watch.
+    /// Installs the signal handler. A process can have one watch.
     pub(super) fn new() -> Self {
         let called_off = Arc::new(AtomicBool::new(false));
         let heard = called_off.clone();
@@ -45,7 +45,7 @@ impl Watch {
         if let Err(error) = listening {
             log::warn!("Ctrl-C ends the process without its result: {error}");
         }
-        // Not drawn where standard error is no terminal.
+        // The bar is hidden if standard error is not a terminal.
         let bar = ProgressBar::new(FULL);
         if let Ok(style) = ProgressStyle::with_template("{msg}  {wide_bar} {prefix}") {
             bar.set_style(style);
@@ -53,17 +53,17 @@ impl Watch {
         Self { bar, began: Instant::now(), drawn: Cell::new(None), called_off }
     }
 
-    /// `true` if the command is to end with the result it has.
+    /// Returns `true` if the command should end with its partial result.
     pub(super) fn is_called_off(&self) -> bool {
         self.called_off.load(Ordering::Relaxed)
     }
 
-    /// [`ControlFlow::Break`] if the command is to end with the result it has.
+    /// Returns [`ControlFlow::Break`] if the command should end with its partial result.
     pub(super) fn flow(&self) -> ControlFlow<()> {
         if self.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Shows a message and the fraction that is done, 0 to 1.
+    /// Shows a message and the completed fraction, 0 to 1.
     pub(super) fn show(&self, fraction: f64, message: impl FnOnce() -> String) {
         let now = Instant::now();
         let spent = now.duration_since(self.began);
@@ -81,7 +81,7 @@ impl Watch {
         });
     }
 
-    /// Iterates a search until its status is final, or it is called off.
+    /// Iterates a search until its status is final, or it is cancelled.
     pub(super) fn solve(&self, simulation: &mut Simulation) {
         let tolerance = simulation.scene().solver.tolerance;
         while *simulation.status() == Status::Running {
@@ -98,13 +98,13 @@ impl Watch {
         }
     }
 
-    /// Shows the time that a motion has reached, s.
+    /// Shows the current time of a motion, s.
     pub(super) fn show_time(&self, time: f64, duration: f64) {
         let rate = || time / self.began.elapsed().as_secs_f64().max(1e-9);
         self.show(time / duration, || format!("{time:.3} of {duration} s, {:.3} s a second", rate()));
     }
 
-    /// Shows the progress of a study; calls it off where the command is to end.
+    /// Shows the progress of a study; returns [`ControlFlow::Break`] if the command should end.
     pub(super) fn observe(&self, progress: &Progress<'_>) -> ControlFlow<()> {
         if !progress.now.is_empty() {
             self.show(progress.fraction, || progress.now.to_owned());

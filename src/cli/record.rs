@@ -1,4 +1,4 @@
-//! The command `record`.
+//! Command `record`.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -46,7 +46,7 @@ fn words(progress: &RecordProgress) -> String {
     }
 }
 
-/// What was written, and at which rate.
+/// Describes the written file and its frame rate.
 fn summary(recorded: &Recorded, asked: Option<u16>, output: &Path) -> String {
     let Recorded { pictures, rate, .. } = recorded;
     let rounded = number((100.0 * rate).round() / 100.0);

@@ -1,4 +1,4 @@
-//! Arguments that commands share: a scene with its assignments, and numbers with units.
+//! Arguments shared by commands: a scene with assignments, and numbers with units.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::scene::units::{self, UnitError};
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
-    /// A built-in scene (see `warpbeam scenes`) or a scene file; `-` reads it from standard input.
+    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
     #[arg(default_value = scene::registry::DEFAULT)]
     pub scene: PathBuf,
     #[command(flatten)]
@@ -20,7 +20,7 @@ pub(super) struct SceneArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct RequiredSceneArgs {
-    /// A built-in scene (see `warpbeam scenes`) or a scene file; `-` reads it from standard input.
+    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
     pub scene: PathBuf,
     #[command(flatten)]
     pub set: SetArgs,
@@ -46,7 +46,7 @@ impl From<RequiredSceneArgs> for scene::Source {
     }
 }
 
-/// Why a number on the command line is refused.
+/// Reason why a number on the command line is rejected.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub(super) enum NumberError {
     #[error(transparent)]
@@ -55,7 +55,7 @@ pub(super) enum NumberError {
     OutOfRange(#[from] OutOfRange),
 }
 
-/// A number within the limit, in its unit or with another of the same kind.
+/// Parses a number within the limit, in its unit or with another unit of the same dimension.
 pub(super) fn parse_number(text: &str, limit: Limit) -> Result<f64, NumberError> {
     let value = units::parse(text, limit.unit)?;
     limit.check(value)?;

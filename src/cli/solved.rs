@@ -1,4 +1,4 @@
-//! The result of the command `solve`, which the JSON object and the printed text render.
+//! Result of the command `solve`, formatted as JSON or text.
 
 use std::time::Duration;
 
@@ -10,30 +10,30 @@ use crate::timings::Timings;
 
 /// Durations of the parts of a solve.
 pub(super) struct Spent {
-    /// The whole, by the clock.
+    /// Wall clock time of the whole command.
     pub wall: Duration,
-    /// Reading, meshing, the order of elimination.
+    /// Reading, meshing and ordering.
     pub set_up: Duration,
-    /// The solve.
+    /// Stages of the solve.
     pub stages: Timings,
-    /// Recovering stresses, and estimating the mesh's error from them.
+    /// Recovery of stresses, and estimate of the mesh's error.
     pub stress: Duration,
-    /// Finding the reference solution.
+    /// Computation of the reference solution.
     pub reference: Duration,
 }
 
 impl Spent {
-    /// The whole, by the clock.
+    /// Returns the wall clock time of the whole command.
     pub(super) fn wall(&self) -> Duration {
         self.wall
     }
 
-    /// The four stages of the solve.
+    /// Returns the time of the solve, without certification.
     pub(super) fn solve(&self) -> Duration {
         self.stages.total().saturating_sub(self.stages.certify)
     }
 
-    /// The parts that sum to the whole, each with the name it has in JSON.
+    /// Returns the parts, which sum to the whole, with their names in JSON.
     pub(super) fn parts(&self) -> [(&'static str, Duration); 9] {
         let Self { wall, set_up, stages, stress, reference } = *self;
         let Timings { rotate, assemble, factorize, solve, certify } = stages;
@@ -52,16 +52,16 @@ impl Spent {
     }
 }
 
-/// A result with everything that `solve` finds out about it.
+/// Result of `solve` with all further information about it.
 pub(super) struct Solved<'a> {
     pub scene: &'a Scene,
     pub mesh: &'a Mesh,
     pub solution: &'a Solution,
     pub stress: &'a StressResult,
-    /// Jumps and buckling on the load path to the result; `None` where that is not known.
+    /// Jumps and buckling on the load path to the result; `None` if unknown.
     pub path: Option<PathSummary>,
     pub reference: Option<&'a Reference>,
-    /// Sentences about what limits the result.
+    /// Sentences about limitations of the result.
     pub warnings: &'a [String],
     pub spent: &'a Spent,
 }

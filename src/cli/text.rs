@@ -1,4 +1,4 @@
-//! What commands print for people.
+//! Text output of commands.
 
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
@@ -14,7 +14,7 @@ use crate::simulation::{MotionResult, Solution, Status};
 use crate::study::{LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_words};
 use crate::words::{count, engineering, engineering_pair, prefix};
 
-/// Prints to standard output. A reader that went away, such as `head`, is no error.
+/// Prints to standard output. A closed pipe, as after `head`, is not an error.
 pub(super) fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -23,11 +23,11 @@ pub(super) fn print(text: &str) -> Result<(), CliError> {
     }
 }
 
-/// The list of built-in scenes.
+/// Formats the list of built-in scenes.
 pub(super) fn scenes() -> String {
     let mut text = String::new();
     for built_in in registry::BUILT_IN {
-        // The registry's own files are checked by a test; one that did not read would still be listed.
+        // A test checks the built-in files; an invalid one would still be listed.
         let (name, about) = Scene::from_toml(built_in.toml)
             .map_or_else(|error| (error.to_string(), String::new()), |scene| (scene.name, scene.about));
         let _ = writeln!(text, "{:<12} {name}\n{:12} {about}", built_in.id, "");
@@ -35,7 +35,7 @@ pub(super) fn scenes() -> String {
     text
 }
 
-/// A result.
+/// Formats a result.
 pub(super) fn solution(solved: &Solved<'_>) -> String {
     let Solved { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
     let mut text = format!(
@@ -143,7 +143,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         Some(percent) => writeln!(text, "mesh error {percent:.2} % (estimate: energy norm)"),
         None => writeln!(text, "mesh error: no estimate (nothing is strained, or q4 has a single row of cells)"),
     };
-    // Where supports move, what they do together may be nothing but rounding.
+    // If supports move, the sum of their reactions may be only rounding error.
     if !moved(scene) {
         let _ = writeln!(
             text,
@@ -185,7 +185,7 @@ fn moved(scene: &Scene) -> bool {
     scene.supports.iter().any(Support::moves)
 }
 
-/// The reaction of each support, where there are several or one moves.
+/// Formats the reaction of each support, if there are several or one moves.
 fn reactions(scene: &Scene, solution: &Solution) -> String {
     let mut text = String::new();
     if solution.supports.len() < 2 && !moved(scene) {
@@ -216,7 +216,7 @@ fn joules(energy: f64) -> String {
     engineering(energy, "J")
 }
 
-/// What finds the state: a method, or an integrator with its theory where that is not the corotational one.
+/// Describes the method, or the integrator with its theory if that is linear.
 fn solver_words(scene: &Scene) -> String {
     match scene.analysis {
         Analysis::Static => format!("method {}", scene.solver.method.id()),
@@ -227,7 +227,7 @@ fn solver_words(scene: &Scene) -> String {
     }
 }
 
-/// Where the energy of a motion went, and its momentum.
+/// Formats energies and momentum of a motion.
 fn books(motion: &MotionResult) -> String {
     let MotionResult { counts, ledger, momentum, critical_step, .. } = motion;
     let mut text = format!(
@@ -253,9 +253,9 @@ fn books(motion: &MotionResult) -> String {
     text
 }
 
-/// A load–deflection curve for people.
+/// Formats a load–deflection curve for display.
 pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
-    // One prefix for the whole table.
+    // The whole table uses one prefix.
     let tips = curve.samples.iter().flat_map(|s| [s.linear.x, s.linear.y, s.truth.x, s.truth.y]);
     let (power, symbol) = prefix(&tips.collect::<Vec<_>>(), "m");
     let scale = 10f64.powi(-power);
@@ -302,7 +302,7 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     text
 }
 
-/// A load–deflection curve as CSV.
+/// Formats a load–deflection curve as CSV.
 pub(super) fn curve_table(curve: &LoadCurve) -> String {
     let mut text =
         String::from("load_factor,linear_x,linear_y,truth_x,truth_y,linear_error_percent,tip_rotation_deg,strain\n");
@@ -323,7 +323,7 @@ pub(super) fn curve_table(curve: &LoadCurve) -> String {
     text
 }
 
-/// A load path for people: where it turns round, and where it jumps.
+/// Formats a load path for display, with its changes of stability and jumps.
 pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
     let mut text = format!(
         "{}: load path on the scene's own mesh, {}\n\n",
@@ -365,14 +365,14 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
     text
 }
 
-/// Changes of stability and jumps on a load path, and where it ends.
+/// Lists changes of stability and jumps on a load path, and its end.
 pub(super) fn events(path: &LoadPath) -> String {
     let bifurcations = path.bifurcations.iter().map(ToString::to_string);
     let (jump, end) = (path.jump.map(|jump| jump.to_string()), path.end.map(|end| end.to_string()));
     bifurcations.chain(jump).chain(end).map(|sentence| sentence + "\n").collect()
 }
 
-/// The way of the support that moves, and its reaction along it.
+/// Formats the motion of the moving support, and its reaction along it.
 fn driven_words(scene: &Scene, path: &LoadPath, state: &PathState) -> Option<[String; 2]> {
     let [way, force] = path.driven_pair(scene, state)?;
     let turns = scene.supports.get(path.driven?)?.displacement == [0.0; 2];
@@ -382,7 +382,7 @@ fn driven_words(scene: &Scene, path: &LoadPath, state: &PathState) -> Option<[St
     })
 }
 
-/// A load path as CSV.
+/// Formats a load path as CSV.
 pub(super) fn path_table(scene: &Scene, path: &LoadPath) -> String {
     let mut text = String::from("load_factor");
     let mut add = |name: &str, columns: &[&str]| {

@@ -1,4 +1,4 @@
-//! The commands that draw: `run` and `shot`.
+//! Commands `run` and `shot`.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -54,7 +54,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     Ok(exit_code(&status))
 }
 
-/// `warpbeam` without a command.
+/// Runs `warpbeam` without a command.
 pub(super) fn run_default() -> Result<ExitCode, CliError> {
     let source = scene::Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
     run(source, Path::new(DEFAULT_PICTURE))
@@ -64,7 +64,7 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
     check_suffix(output, &[".png"], ".png")?;
     let scene = scene::open(&source)?;
     let simulation = || Ok::<_, CliError>(simulate(&source)?.1);
-    // A window does not wait for a large mesh; what is wrong with a small one is said without a window.
+    // A window opens without waiting for a large mesh; errors of a small one are reported before opening a window.
     let small = if app::opens_beside(&scene) { None } else { Some(simulation()?) };
     match app::Display::open() {
         Ok(display) => app::run(display, source, scene, small)?,

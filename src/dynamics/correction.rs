@@ -1,8 +1,8 @@
-//! The linear equations of a stage: from a residual force to a correction of the displacement.
+//! Solution of the linear equations of a stage: from a residual force to a correction of the displacement.
 //!
-//! `auto` keeps the factor of an earlier matrix while it serves. It preconditions conjugate gradients on the present
-//! matrix, turned along with the body: with Q the nodes' rotations since the factor was made, Q L Lᵀ Qᵀ differs from
-//! the matrix only by how much elements have bent and stretched (the warp preconditioner of Courtecuisse, Allard,
+//! `auto` keeps the factor of an earlier matrix while it converges fast. The factor preconditions conjugate gradients
+//! on the current matrix, rotated with the body: with Q the nodes' rotations since the factorization, Q L Lᵀ Qᵀ differs
+//! from the matrix only by the bending and stretching of elements (the warp preconditioner of Courtecuisse, Allard,
 //! Duriez and Cotin 2010, *Asynchronous preconditioners for efficient solving of non-linear deformations*).
 
 use nalgebra::Vector2;
@@ -12,22 +12,22 @@ use crate::rotation::Rotation;
 use crate::solver::{Factor, SolverError};
 use crate::state::State;
 
-/// Inertia and stiffness that differ relatively by less than this are the same but for rounding.
+/// Relative difference of inertia or stiffness that counts as rounding error.
 const SAME: f64 = 1e-9;
 
-/// A matrix over the free unknowns with its factor.
+/// Matrix over the free unknowns with a factor.
 #[derive(Debug)]
 pub(crate) struct Corrector {
     pub matrix: Matrix,
     pub factor: Factor,
-    /// A vector over the free unknowns.
+    /// Vector over the free unknowns.
     pub free: Vec<f64>,
-    /// What the factor is of, where that is a constant matrix.
+    /// Weights of the factorized matrix, if it is constant.
     pub constant: Option<Weights>,
     kept: Kept,
 }
 
-/// The parts of a stage's matrix.
+/// Weights of mass and stiffness in a stage's matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weights {
     /// Factor of the mass, 1/s².
@@ -37,40 +37,40 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// Whether they are the same but for rounding.
+    /// Returns `true` if both are equal up to rounding.
     pub fn are_about(&self, other: &Self) -> bool {
         let close = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs();
         close(self.inertia, other.inertia) && close(self.stiffness, other.stiffness)
     }
 }
 
-/// How exact a correction must be.
+/// Required accuracy of a correction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accuracy {
-    /// Of the norm of the error, to that of the whole correction.
+    /// Norm of the error relative to that of the whole correction.
     pub relative: f64,
-    /// Whether what is left is seen in the residual of the state it leads to: then what steps with this factor have left
-    /// before may be trusted.
+    /// `true` if the residual of the resulting state is computed later: the reduction observed in earlier steps with
+    /// this factor may then be relied on.
     pub is_checked: bool,
 }
 
-/// What is known of the factor of an earlier matrix.
+/// Factor of an earlier matrix and its observed convergence.
 #[derive(Debug, Default)]
 struct Kept {
-    /// What it is of; `None` where there is no factor that could serve.
+    /// Weights of its matrix; `None` if there is no usable factor.
     weights: Option<Weights>,
-    /// Every node's rotation when the factor was made …
+    /// Rotation of every node at the factorization.
     then: Vec<Rotation>,
-    /// … and since then.
+    /// Rotation of every node since the factorization.
     since: Vec<Rotation>,
-    /// Stages that were solved with this factor, and the back substitutions they took: all, …
+    /// Number of stages solved with this factor (`stages`) and of their back substitutions (`solves`).
     stages: u32,
     solves: u32,
-    /// … the last one, …
+    /// Back substitutions of the last stage.
     last: u32,
-    /// … and the present one until now.
+    /// Back substitutions of the current stage so far.
     present: u32,
-    /// What a step was last seen to leave of the squared norm of the error.
+    /// Last observed ratio of the squared error norms after and before a step.
     shrinks: f64,
     vectors: [Vec<f64>; 4],
 }
@@ -86,28 +86,28 @@ impl Corrector {
         })
     }
 
-    /// Forgets a factor of equations that have changed.
+    /// Discards factors of equations that have changed.
     pub fn forget(&mut self) {
         self.constant = None;
         self.kept.weights = None;
     }
 
-    /// Forgets that a factor was of a constant matrix: another one has it now.
+    /// Records that the factor is no longer that of a constant matrix.
     pub fn matrix_changes(&mut self) {
         self.constant = None;
     }
 
-    /// Keeps the factor just made of this state's matrix for later ones.
+    /// Keeps the factor just computed for this state's matrix for later stages.
     pub fn keep(&mut self, weights: Weights, system: &System, state: &State) {
         let Kept { then, .. } = &mut self.kept;
         nodal_rotations(system, state, then);
         self.kept.weights = Some(weights);
         (self.kept.stages, self.kept.solves, self.kept.last, self.kept.present) = (0, 0, 0, 1);
-        // A step with the factor of the very matrix leaves nothing.
+        // A step with the factor of the matrix itself leaves no error.
         self.kept.shrinks = 0.0;
     }
 
-    /// A stage begins: what the one before has taken is known.
+    /// Begins a stage: adds the back substitutions of the previous one to the statistics.
     pub fn begin_stage(&mut self) {
         let Kept { stages, solves, last, present, .. } = &mut self.kept;
         if *present > 0 {
@@ -117,23 +117,24 @@ impl Corrector {
         }
     }
 
-    /// Whether the factor that is kept is worth another try for a matrix with these weights.
+    /// Returns `true` if the kept factor should be tried for a matrix with these weights.
     ///
-    /// The price of a stage is least over the factor's life where it is given up once a stage takes more than all have
-    /// on average, its making included.
+    /// The cost per stage is minimal if a factor is given up once a stage costs more than the average of its stages,
+    /// including the factorization.
     fn serves(&self, weights: Weights) -> bool {
         let Kept { weights: kept, stages, solves, last, .. } = &self.kept;
         let price = self.factor.price() + f64::from(*solves);
         kept.is_some_and(|kept| kept.are_about(&weights)) && f64::from(*last) * f64::from(*stages) <= price
     }
 
-    /// Replaces the vector over the free unknowns, a residual force, by the correction it needs, to a relative accuracy
-    /// in the norm of the matrix, with the factor that is kept. Gives the back substitutions taken, and whether that
-    /// was enough: if not, the vector is what it was. Where there is a guess of the correction, m, the accuracy is
-    /// relative to what that leaves.
+    /// Replaces the vector over the free unknowns, a residual force, by the correction, to a relative accuracy in the
+    /// norm of the matrix, with the kept factor. Returns the number of back substitutions, and `true` if the accuracy
+    /// was reached; if not, the vector is unchanged. If a guess of the correction, m, is given, the accuracy is
+    /// relative to the remaining correction.
     ///
-    /// Preconditioned conjugate gradients (Hestenes and Stiefel 1952); √(r·P⁻¹r) stands for the norm of the error. The
-    /// last preconditioned residual is added as it is: it is as good as another iteration where the factor is.
+    /// Preconditioned conjugate gradients (Hestenes and Stiefel 1952); √(r·P⁻¹r) is used as the norm of the error. The
+    /// last preconditioned residual is added without a further step length: with a good factor this is as good as
+    /// another iteration.
     pub fn correct_with_kept(
         &mut self,
         weights: Weights,
@@ -162,7 +163,7 @@ impl Corrector {
             }
             None => x.fill(0.0),
         }
-        // More than these and a new factor would have cost less.
+        // With more back substitutions a new factor would be cheaper.
         let most = factor.price().ceil() as u32;
         let (mut first, mut before) = (0.0, 0.0);
         for solves in 1..=most {
@@ -177,7 +178,7 @@ impl Corrector {
             if solves == 1 {
                 first = now;
             }
-            // What this step leaves is less of it than the step before has left of the one before that.
+            // The previous step's ratio of errors is taken as an upper bound for this step.
             let shrinks = if solves > 1 { now / before } else { kept.shrinks };
             if solves == 2 {
                 kept.shrinks = shrinks;
@@ -212,7 +213,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Turns the vectors of nodes that are free to move anywhere, forth (1) or back (−1).
+/// Rotates the vectors of nodes with two free components, forwards (1) or back (−1).
 fn turn(pattern: &Pattern, rotations: &[Rotation], direction: f64, free: &mut [f64]) {
     for &(node, first) in pattern.free_nodes() {
         let (Some(r), Some([x, y])) = (rotations.get(node as usize), free.get_mut(first as usize..first as usize + 2))
@@ -224,7 +225,7 @@ fn turn(pattern: &Pattern, rotations: &[Rotation], direction: f64, free: &mut [f
     }
 }
 
-/// The mean rotation of the elements around every node.
+/// Computes the mean rotation of the elements around every node.
 fn nodal_rotations(system: &System, state: &State, rotations: &mut Vec<Rotation>) {
     let (mesh, elements) = (system.mesh(), system.elements());
     rotations.clear();
@@ -240,7 +241,7 @@ fn nodal_rotations(system: &System, state: &State, rotations: &mut Vec<Rotation>
     }
     for r in rotations {
         let length = (r.c * r.c + r.s * r.s).sqrt();
-        // Rotations that cancel have no mean.
+        // Rotations that cancel have no mean; the identity is used.
         *r = if length > 0.0 { Rotation { c: r.c / length, s: r.s / length } } else { Rotation::IDENTITY };
     }
 }

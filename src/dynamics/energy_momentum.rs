@@ -2,8 +2,8 @@
 //!
 //! Simo and Tarnow 1992, *The discrete energy–momentum method*; Gonzalez 2000, *Exact energy and momentum conserving
 //! algorithms for general models in nonlinear elasticity*. For the corotated energy the discrete gradient has a closed
-//! form: [`crate::element::Elements::linearize_between`]. Energy, momentum and angular momentum are kept as exactly as
-//! the step is solved; each half of a step that is halved keeps them too.
+//! form: [`crate::element::Elements::linearize_between`]. Energy, momentum and angular momentum are conserved up to the
+//! residual of the step; the halves of a halved step conserve them too.
 
 use super::stage::{Stage, Step};
 use super::step::{Booking, Solves, StepError, combine};
@@ -25,7 +25,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
 fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let Step { solver, h, start, state, books, .. } = step;
     let h = *h;
-    // What counted solves leave would be added to the energy, and grow.
+    // With a fixed number of solves the remaining residual would add energy, which grows.
     if let Solves::Times(_) = solver.solves {
         solver.solves = Solves::Tolerance(solver.tolerance);
     }
@@ -39,7 +39,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
         from_start: false,
         start_force: None,
         between: true,
-        // Half of A + G at the mean rotation is about the derivative with respect to the end.
+        // Half of A + G at the mean rotation approximates the derivative with respect to the end state.
         tangent: Tangent { warped: 0.5, geometric: 0.5, definite: false },
         rate: 1.0 / h,
         others: &[(-1.0 / h, &start.displacement)],

@@ -1,4 +1,4 @@
-//! Where the energy goes.
+//! Energy ledger of a motion.
 
 use nalgebra::Vector2;
 
@@ -7,40 +7,40 @@ use super::step::Booking;
 use crate::assembly::{Mass, Problem};
 use crate::state::State;
 
-/// The energies of a motion, J, and what has been added and taken since its start. They sum to what was there at the
-/// start: [`Self::imbalance`] is what rounding leaves.
+/// Energies of a motion, J, and the energy added and removed since its start. Their sum is the energy at the start;
+/// [`Self::imbalance`] is the rounding error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Ledger {
-    /// ½ v M v.
+    /// Kinetic energy ½ v M v.
     pub kinetic: f64,
-    /// Stored in the body.
+    /// Elastic energy of the body.
     pub elastic: f64,
-    /// Potential of the loads that act always, relative to rest.
+    /// Potential of the constant loads, relative to rest.
     pub potential: f64,
-    /// Taken by damping.
+    /// Energy removed by damping.
     pub dissipated: f64,
-    /// Taken by the integrator; negative where it has added energy.
+    /// Energy removed by the integrator; negative if it has added energy.
     pub integrator: f64,
-    /// Work of loads in time.
+    /// Work of pulses.
     pub pulses: f64,
-    /// Work of hands.
+    /// Work of mouse springs.
     pub hands: f64,
-    /// Put in by edits of the scene in mid-motion.
+    /// Energy added by edits of the scene during the motion.
     pub edits: f64,
     /// Kinetic, elastic and potential energy at the start.
     pub start: f64,
-    /// The largest kinetic energy so far.
+    /// Largest kinetic energy since the start.
     pub largest_kinetic: f64,
-    /// All that was ever turned from one kind into another.
+    /// Sum of all energy converted from one kind into another.
     pub throughput: f64,
-    /// The most energy that the body has been given since the start, J: its kinetic and elastic energy then, and the work of
-    /// loads, hands, supports and edits, less the work that it has done on them.
+    /// Largest energy given to the body since the start, J: its kinetic and elastic energy at the start, and the work
+    /// of loads, mouse springs, supports and edits on it, minus the work done by it.
     pub put_in: f64,
 }
 
 impl Ledger {
-    /// That of a state at the start of a motion.
+    /// Returns the ledger of a state at the start of a motion.
     pub(crate) fn open(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
         let mut ledger = Self::default();
         ledger.measure(problem, mass, inertia, state);
@@ -49,7 +49,7 @@ impl Ledger {
         ledger
     }
 
-    /// Raises [`Self::put_in`] to what has been given now: all that is left of it, and all that was taken from it.
+    /// Raises [`Self::put_in`] to the current value: the energy in the body plus all energy removed from it.
     fn note_put_in(&mut self) {
         self.put_in = self.put_in.max(self.kinetic + self.elastic + self.dissipated + self.integrator);
     }
@@ -61,7 +61,7 @@ impl Ledger {
         self.largest_kinetic = self.largest_kinetic.max(self.kinetic);
     }
 
-    /// Books a step that has led to `state`.
+    /// Records a step that ended in `state`.
     pub(crate) fn book(&mut self, booking: &Booking, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
         let before = *self;
         self.measure(problem, mass, inertia, state);
@@ -78,15 +78,15 @@ impl Ledger {
         self.note_put_in();
     }
 
-    /// Whether the integrator has added more, since an earlier ledger, than this part of the energy there was then and
-    /// of the work done since.
+    /// Returns `true` if the integrator has added more energy since `before` than the fraction `part` of the energy at
+    /// that time plus the work done since.
     pub(crate) fn has_gained_since(&self, before: &Self, part: f64) -> bool {
         let work = (self.pulses - before.pulses).abs() + (self.hands - before.hands).abs();
         let there = before.kinetic + before.elastic + (self.potential - before.potential).abs();
         before.integrator - self.integrator > part * (there + work)
     }
 
-    /// Books an edit that leaves the state where it is.
+    /// Records an edit that leaves the state unchanged.
     pub(crate) fn edit(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
         let before = self.total();
         self.measure(problem, mass, inertia, state);
@@ -95,7 +95,8 @@ impl Ledger {
         self.note_put_in();
     }
 
-    /// Books that the state is seen under another theory from now on: what it differs by is the integrator's.
+    /// Records that the state's energy is computed by another theory from now on; the difference counts as energy of
+    /// the integrator.
     pub(crate) fn change_theory(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
         let before = self.total();
         self.measure(problem, mass, inertia, state);
@@ -103,27 +104,28 @@ impl Ledger {
         self.throughput += (self.total() - before).abs();
     }
 
-    /// Kinetic, elastic and potential energy, J.
+    /// Returns the sum of kinetic, elastic and potential energy, J.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.potential
     }
 
-    /// What the sum of all entries lacks, J: rounding, where every entry is right.
+    /// Returns the deviation of the sum of all entries from the energy at the start, J: rounding error, if every entry
+    /// is right.
     #[must_use]
     pub fn imbalance(&self) -> f64 {
         self.total() - self.start + self.dissipated + self.integrator - self.pulses - self.hands - self.edits
     }
 
-    /// The energy that the integrator has added, over the largest kinetic energy; 0 where nothing has moved.
+    /// Returns the energy added by the integrator relative to the largest kinetic energy; 0 if nothing has moved.
     #[must_use]
     pub fn drift(&self) -> f64 {
         let drift = -self.integrator / self.largest_kinetic;
         if drift.is_finite() { drift } else { 0.0 }
     }
 
-    /// The energy that the integrator has added, over [`Self::put_in`]; negative where it has lost energy, down to −1, and 0
-    /// where nothing was put in.
+    /// Returns the energy added by the integrator relative to [`Self::put_in`]; negative if it has lost energy, down to
+    /// −1, and 0 if no energy was put in.
     #[must_use]
     pub fn drift_of_input(&self) -> f64 {
         let drift = -self.integrator / self.put_in;
@@ -131,7 +133,7 @@ impl Ledger {
     }
 }
 
-/// ½ v M v, J.
+/// Returns ½ v M v, J.
 fn kinetic_energy(mass: &Mass, inertia: Inertia, state: &State) -> f64 {
     0.5 * match inertia {
         Inertia::Consistent => mass.energy_product(&state.velocity),
@@ -139,7 +141,7 @@ fn kinetic_energy(mass: &Mass, inertia: Inertia, state: &State) -> f64 {
     }
 }
 
-/// Momentum of a body.
+/// Momentum and angular momentum of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Momentum {
     /// Σ M v, kg m/s.
@@ -149,7 +151,7 @@ pub struct Momentum {
 }
 
 impl Momentum {
-    /// Of a state.
+    /// Computes the momentum of a state.
     #[must_use]
     pub fn of(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
         let mut nodal = state.velocity.clone();
@@ -166,8 +168,8 @@ impl Momentum {
 mod tests {
     use super::Ledger;
 
-    /// What an integrator has added counts against the energy there was, by how much the potential has changed, and the
-    /// work done since; a loss never does.
+    /// Energy added by the integrator is compared with the energy at the earlier time, the change of the potential, and
+    /// the work since; losses never count.
     #[test]
     fn a_gain_is_measured_by_what_was_there_and_done() {
         let before = Ledger {
@@ -179,7 +181,7 @@ mod tests {
             hands: -2.0,
             ..Ledger::default()
         };
-        // There were 3 + 2 J, and 2.5 J of potential have come; the works since are 1.5 J and 3 J.
+        // The energy was 3 + 2 J, the potential changes by 2.5 J, and the works since are 1.5 J and 3 J.
         let after = |added: f64| Ledger {
             kinetic: 40.0,
             elastic: 50.0,

@@ -1,4 +1,4 @@
-//! Whether linear theory is good enough for a motion.
+//! Decides whether linear theory is accurate enough for a motion.
 
 use nalgebra::Vector2;
 
@@ -9,49 +9,51 @@ use crate::rotation::Rotation;
 use crate::solver::{Factor, SolverError};
 use crate::state::State;
 
-/// The fraction of the asked error that linear theory may use up: the rest is for what the estimate leaves out.
+/// Fraction of the requested error that linear theory may reach; the rest is a margin for what the estimate omits.
 const USABLE: f64 = 0.25;
-/// What linear theory does not see of a turn by θ is θ²/2 of a length that moves by θ: so much of the displacement.
+/// Error of linear theory relative to the displacement, per rotation angle θ: a length that rotates by θ moves by θ and
+/// shortens by θ²/2, which linear theory neglects.
 const SHORTENING: f64 = 0.5;
-/// Having refused, it is asked again where the body has turned by less than this fraction of what it allows: else it
-/// would come and go with every swing.
+/// Hysteresis: after a rejection, linear theory is tried again below this fraction of the rotation limit; otherwise it
+/// would alternate with every oscillation.
 const AGAIN: f64 = 0.5;
-/// Stability is checked at this many times the stress …
+/// Multiple of the stress at which stability is checked.
 const CHECK_AHEAD: f64 = 2.0;
-/// … every so many steps, and where the elastic energy has grown by the square of that.
+/// Number of steps between stability checks; a check is also made when the elastic energy has grown by
+/// [`CHECK_AHEAD`]².
 const CHECK_EVERY: u32 = 16;
-/// A step whose elastic energy is smaller than this fraction of the body's is rounding.
+/// Smallest elastic energy of a step, relative to the body's, that is not rounding error.
 const NO_WAY: f64 = 1e-12;
 
-/// What linear theory has been found to be worth in a motion.
+/// State of the decision for or against linear theory in a motion.
 ///
-/// Its error is, at an instant, what it does not see of a turn; and over time, that the body is a little stiffer or
-/// softer than it says. Over a step Δ the corotated body's stiffness is Δ·(f₁ − f₀)/Δ², and half of what linear theory is
-/// off by is what a frequency is off by; a vibration's phase by the sum of this over the angles it runs through. What
-/// that sum has used up does not come back. Buckling it does not see at all: the tangent must be positive definite under
-/// more than the present stress.
+/// Linear theory has two errors: at an instant, the neglected shortening by rotations; over time, a slightly different
+/// stiffness. Over a step Δ the stiffness of the corotated body is Δ·(f₁ − f₀)/Δ². Half the relative error of the
+/// stiffness is the relative error of a frequency; the phase error of a vibration is its sum over the phase angles
+/// passed. This phase error accumulates. Linear theory does not detect buckling: the tangent must be positive definite
+/// under more than the current stress.
 #[derive(Debug, Default)]
 pub(crate) struct LinearTheory {
-    /// Whether the present state is linear theory's.
+    /// `true` if the current state is that of linear theory.
     in_use: bool,
-    /// It has refused, and not been tried again since.
+    /// `true` if linear theory was rejected and not tried again since.
     refused: bool,
-    /// Angle by which the phase may be off, rad.
+    /// Estimated phase error, rad.
     phase: f64,
-    /// Steps since stability was checked, and the elastic energy then, J.
+    /// Steps since the last stability check, and the elastic energy at that check, J.
     checked: Option<(u32, f64)>,
     scratch: Option<Box<Scratch>>,
 }
 
-/// What is measured on the way, made once for a system.
+/// Work memory, allocated once per system.
 #[derive(Debug)]
 struct Scratch {
-    /// The end of a step, seen corotated.
+    /// Corotated state at the end of a step.
     seen: State,
-    /// The step itself, seen linearly.
+    /// Displacement of the step, as a state of linear theory.
     way: State,
     forces: Forces,
-    /// Corotated internal force where the step began, N.
+    /// Corotated internal force at the start of the step, N.
     before: Vec<Vector2<f64>>,
     matrix: Matrix,
     factor: Factor,
@@ -71,7 +73,7 @@ impl Scratch {
         })
     }
 
-    /// Whether the body seen is stable, and would be under [`CHECK_AHEAD`] times its stress.
+    /// Returns `true` if the body in the state `seen` is stable at [`CHECK_AHEAD`] times its stress.
     fn is_stable(&mut self, problem: &Problem) -> bool {
         let tangent = Tangent { geometric: CHECK_AHEAD, ..Tangent::EXACT };
         problem.linearize(&self.seen, &mut self.forces, Some((tangent, &mut self.matrix)));
@@ -81,18 +83,20 @@ impl Scratch {
 }
 
 impl LinearTheory {
-    /// Whether the present state is linear theory's.
+    /// Returns `true` if the current state is that of linear theory.
     pub fn is_in_use(&self) -> bool {
         self.in_use
     }
 
-    /// Whether to try it for a step from a state, whose rotations tell if it is not in use.
+    /// Returns `true` if linear theory should be tried for a step from `state`; `asked` is the requested error. The
+    /// rotations of the state decide if linear theory is not in use.
     pub fn is_worth_a_try(&self, state: &State, asked: f64) -> bool {
         let most = if self.refused { AGAIN } else { 1.0 } * largest_turn(asked);
         self.phase <= USABLE * asked && (self.in_use || largest_rotation(&state.rotations) <= most)
     }
 
-    /// Whether its step of h from a state to another is within the asked error; if so it is in use from now on.
+    /// Returns `true` if the linear step of length h from one state to another is within the requested error; linear
+    /// theory is then in use.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -123,7 +127,7 @@ impl LinearTheory {
         let off = if stiffness > NO_WAY * stored { (corotated / stiffness - 1.0).abs() } else { 0.0 };
         before.copy_from_slice(&forces.internal);
         let length = mass.energy_product(&end.displacement);
-        // Where the displacement passes zero the angle has no bound, but is no more than one.
+        // Where the displacement passes zero the estimated angle is unbounded; it is limited to 1 rad.
         let angle = if length > 0.0 { h * (mass.energy_product(&end.velocity) / length).sqrt() } else { 0.0 };
         let phase = self.phase + 0.5 * off * angle.min(1.0);
         let mut accepted = largest_rotation(&seen.rotations) <= largest_turn(asked) && off.max(phase) <= USABLE * asked;
@@ -140,33 +144,33 @@ impl LinearTheory {
         Ok(accepted)
     }
 
-    /// Sets that the present state is linear theory's, or that it is not.
+    /// Sets whether the current state is that of linear theory.
     pub fn set_in_use(&mut self, in_use: bool) {
         self.in_use = in_use;
     }
 
-    /// The present state is no longer linear theory's.
+    /// Records that the current state is no longer that of linear theory.
     pub fn leave(&mut self) {
         self.in_use = false;
     }
 
-    /// Forgets what was found of another motion.
+    /// Resets everything but the work memory, for another motion.
     pub fn forget(&mut self) {
         *self = Self { scratch: self.scratch.take(), ..Self::default() };
     }
 
-    /// Forgets the system too.
+    /// Resets everything, for another system.
     pub fn forget_system(&mut self) {
         *self = Self::default();
     }
 }
 
-/// The largest turn of a part of the body that is within the asked error, rad.
+/// Returns the largest rotation of a part of the body that is within the requested error, rad.
 fn largest_turn(asked: f64) -> f64 {
     USABLE * asked / SHORTENING
 }
 
-/// The sine of the largest rotation, or 1 from a quarter turn on.
+/// Returns the sine of the largest rotation, or 1 for rotations of 90° and more.
 fn largest_rotation(rotations: &[Rotation]) -> f64 {
     rotations.iter().map(|r| if r.c > 0.0 { r.s.abs() } else { 1.0 }).fold(0.0, f64::max)
 }

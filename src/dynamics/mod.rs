@@ -1,10 +1,11 @@
-//! Time: integrators, which take a body one step further, and the energy ledger that judges them.
+//! Time integration: integrators, which compute time steps, and the energy ledger.
 //!
-//! An integrator is a file beside this one and a line in [`INTEGRATORS`]. The implicit ones solve stages, all of one form:
+//! To add an integrator, write a file in this folder and a line in [`INTEGRATORS`]. The implicit ones solve stages of a
+//! common form:
 //!
-//! f_ext − f_int(u) − f_d − α M (u − û) = 0, û where the body would fly freely, with a tangent of f_int beside α M.
+//! f_ext − f_int(u) − f_d − α M (u − û) = 0, û the displacement in free flight, with a tangent of f_int plus α M.
 //!
-//! They share the equations, the factor and the state with statics.
+//! Equations, factor and state are the same as in statics.
 
 use crate::scene::IntegratorKind;
 
@@ -28,38 +29,38 @@ pub(crate) use stage::{StageSolver, Step};
 pub(crate) use step::{Booking, Memory, Solves};
 pub use step::{Counts, StepError, StopReason};
 
-/// Which mass matrix an integrator moves.
+/// Mass matrix of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inertia {
-    /// ∫ ρ t NₐN_b dA.
+    /// Consistent, ∫ ρ t NₐN_b dA.
     Consistent,
-    /// A mass a node.
+    /// Lumped, one mass per node.
     Lumped,
 }
 
-/// An entry of the registry.
+/// Entry of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct IntegratorEntry {
-    /// What scene files name.
+    /// Integrator in scene files.
     pub kind: IntegratorKind,
-    /// The name scene files use.
+    /// Name in scene files.
     pub id: &'static str,
     /// One sentence for lists and tooltips.
     pub about: &'static str,
-    /// The power of the step that its error goes with.
+    /// Order of accuracy: the error is proportional to this power of the step.
     pub order: u32,
-    /// Stages a step, each of one solve or more; 0 for an explicit integrator, which solves nothing.
+    /// Number of stages per step, each of one solve or more; 0 for explicit integrators.
     pub stages: u32,
-    /// Whether it iterates to the tolerance, whatever number of solves it is asked for.
+    /// `true` if stages are always iterated to the tolerance, whatever number of solves is requested.
     pub always_iterates: bool,
-    /// The mass matrix it moves.
+    /// Mass matrix.
     pub inertia: Inertia,
-    /// Takes a step.
+    /// Function that computes a step.
     pub(crate) step: fn(&mut Step<'_>) -> Result<Booking, StepError>,
 }
 
 impl IntegratorEntry {
-    /// Whether it solves nothing, and is stable below a critical step only.
+    /// Returns `true` for an explicit integrator, which solves no equations and is stable below a critical step only.
     #[must_use]
     pub fn is_explicit(&self) -> bool {
         self.stages == 0
@@ -68,11 +69,11 @@ impl IntegratorEntry {
 
 macro_rules! registry {
     ($($kind:ident => $entry:path),* $(,)?) => {
-        /// Every integrator there is.
+        /// All integrators.
         pub static INTEGRATORS: &[&IntegratorEntry] = &[$(&$entry),*];
 
         impl IntegratorKind {
-            /// Its entry in the registry.
+            /// Returns the registry entry.
             #[must_use]
             pub fn entry(self) -> &'static IntegratorEntry {
                 match self {
@@ -91,7 +92,7 @@ registry! {
 }
 
 impl IntegratorKind {
-    /// The name scene files use.
+    /// Returns the name in scene files.
     #[must_use]
     pub fn id(self) -> &'static str {
         self.entry().id

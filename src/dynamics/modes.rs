@@ -1,4 +1,4 @@
-//! Natural frequencies of a body about its rest, and the step that an explicit integrator can take.
+//! Natural frequencies of a body at rest, and the critical step of explicit integration.
 
 use nalgebra::Vector2;
 
@@ -8,14 +8,14 @@ use crate::scene::Damping;
 use crate::solver::Factor;
 use crate::solver::lanczos::extreme_eigenvalues;
 
-/// Lanczos steps for the lowest frequency, which stands well apart from the next …
+/// Lanczos steps for the lowest frequency, which is well separated from the next.
 const LOWEST: usize = 24;
-/// … and for the highest, which does not.
+/// Lanczos steps for the highest frequency, which is not well separated.
 const HIGHEST: usize = 60;
-/// The highest frequency that so many steps find falls short of the true one by less than this fraction.
+/// Upper bound of the relative error with which [`HIGHEST`] steps underestimate the highest frequency.
 const SHORT: f64 = 0.01;
 
-/// K at rest.
+/// Assembles K at rest.
 fn stiffness(problem: &Problem) -> Matrix {
     let system = problem.system();
     let mut matrix = Matrix::new(system.pattern());
@@ -24,8 +24,8 @@ fn stiffness(problem: &Problem) -> Matrix {
     matrix
 }
 
-/// The lowest angular frequency ω₁ of small vibrations about rest without loads, rad/s; `None` for a body that supports
-/// do not hold.
+/// Returns the lowest angular frequency ω₁ of small vibrations about rest without loads, rad/s; `None` for a body that
+/// its supports leave free to move.
 #[must_use]
 pub fn lowest_frequency(problem: &Problem, mass: &Mass) -> Option<f64> {
     let system = problem.system();
@@ -38,8 +38,9 @@ pub fn lowest_frequency(problem: &Problem, mass: &Mass) -> Option<f64> {
     Some(1.0 / largest.sqrt()).filter(|omega| omega.is_finite())
 }
 
-/// The step beyond which symplectic Euler is unstable about rest, s: 2 (√(1 + ξ²) − ξ)/ω with ω the highest frequency
-/// that the lumped masses allow and ξ its damping ratio. A little less than the true one, as ω is found to a percent.
+/// Returns the step beyond which symplectic Euler is unstable about rest, s: 2 (√(1 + ξ²) − ξ)/ω with ω the highest
+/// frequency with lumped masses and ξ its damping ratio. Slightly below the exact value, because ω is known to one
+/// percent.
 #[must_use]
 pub fn critical_step(problem: &Problem, mass: &Mass, damping: Damping) -> Option<f64> {
     let system = problem.system();

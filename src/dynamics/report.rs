@@ -1,24 +1,24 @@
-//! What `auto` reports of its decisions in a motion.
+//! Report of the decisions of `auto` in a motion.
 
-/// What `auto` did since the start of a motion.
+/// Decisions of `auto` since the start of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MotionReport {
-    /// What the last step came down to.
+    /// Kind of the last step.
     pub decision: MotionDecision,
-    /// Back substitutions.
+    /// Number of back substitutions.
     pub solves: u64,
-    /// Matrices factorized.
+    /// Number of factorized matrices.
     pub factorizations: u64,
-    /// Steps taken under linear theory.
+    /// Number of steps with linear theory.
     pub linear_steps: u64,
-    /// Corotated steps without a factorization, and …
+    /// Number of corotated steps without a factorization.
     pub old_factor_steps: u64,
-    /// … those with one.
+    /// Number of corotated steps with a factorization.
     pub new_factor_steps: u64,
 }
 
-/// What a time step came down to.
+/// Kind of a time step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MotionDecision {
@@ -29,12 +29,12 @@ pub enum MotionDecision {
     Linear,
     /// Corotated, all stages with an older factor.
     OldFactor,
-    /// Corotated, factorized anew.
+    /// Corotated, with a new factor.
     NewFactor,
 }
 
 impl MotionDecision {
-    /// The word in JSON.
+    /// Returns the identifier in JSON.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -58,7 +58,7 @@ impl std::fmt::Display for MotionDecision {
 }
 
 impl MotionReport {
-    /// Notes a step.
+    /// Records a step.
     pub(crate) fn note(&mut self, decision: MotionDecision) {
         self.decision = decision;
         match decision {

@@ -1,4 +1,4 @@
-//! One implicit stage of a time step.
+//! Implicit stage of a time step.
 
 use nalgebra::Vector2;
 
@@ -11,54 +11,57 @@ use crate::solver::SolverError;
 use crate::state::State;
 use crate::timings::{Timings, timed};
 
-/// The equations f_ext + s − f_int − f_d − α M (u − û) = 0 for the displacement u at the end of a stage; û is in the
-/// memory.
+/// Equations f_ext + s − f_int − f_d − α M (u − û) = 0 for the displacement u at the end of a stage; û is stored in
+/// [`Memory`].
 ///
-/// The velocity that damps is the difference quotient v = β u + Σ cᵢ uᵢ, and f_d = m (a M v + b ∫ F ℂ[Ė] ∇N dA) with the
-/// same quotient Ė of Green's strain, so that no turning of the body is damped (Rayleigh damping with factors a and b).
+/// The damping velocity is the difference quotient v = β u + Σ cᵢ uᵢ, and f_d = m (a M v + b ∫ F ℂ[Ė] ∇N dA) with the
+/// same quotient Ė of Green's strain, so that the stiffness-proportional part does not damp rotations of the body
+/// (Rayleigh damping with factors a and b).
 #[derive(Debug)]
 pub(super) struct Stage<'a> {
     /// α, 1/s².
     pub inertia: f64,
-    /// Whether the stage is solved from where the step began, and not from where the body would fly.
+    /// `true` if the iteration starts from the state at the start of the step; `false` from the state in free flight.
     pub from_start: bool,
-    /// s, N.
+    /// Start force s, N; `None` for zero.
     pub start_force: Option<&'a [Vector2<f64>]>,
-    /// Whether forces are those between the start of the step and the end of the stage; else those at its end.
+    /// `true` if forces are averages between the start of the step and the end of the stage; `false` if they are those
+    /// at its end.
     pub between: bool,
-    /// Which matrix of the elements, beside α M.
+    /// Matrix of the elements that is added to α M.
     pub tangent: Tangent,
     /// β, 1/s.
     pub rate: f64,
     /// cᵢ (1/s) and uᵢ (m).
     pub others: &'a [(f64, &'a [Vector2<f64>])],
-    /// Whether damping acts on the body half way between the start of the step and the end of the stage; else at the end.
+    /// `true` if damping acts on the configuration half way between the start of the step and the end of the stage;
+    /// `false` at the end.
     pub damps_half_way: bool,
-    /// m.
+    /// m, factor of the damping force.
     pub damping: f64,
 }
 
-/// Most terms of a difference quotient.
+/// Largest number of terms of a difference quotient.
 const TERMS: usize = 3;
-/// Solves after which the iteration of a stage counts as failed: two to eight do.
+/// Number of solves after which the iteration of a stage fails; usually two to eight suffice.
 const MOST_SOLVES: u32 = 30;
-/// Relative accuracy of a correction that is the only one of its stage, over the error asked of the motion …
+/// Relative accuracy of the only correction of a stage, as a fraction of the error requested for the motion.
 const ACCURACY: f64 = 0.03;
-/// … and of one that others follow, whose residual says what is left.
+/// Relative accuracy of a correction that is followed by others, whose residual shows the remaining error.
 const ACCURACY_OF_ITERATIONS: f64 = 0.05;
-/// A residual that has shrunk to less than this fraction needs no new matrix.
+/// Ratio of successive residuals below which no new matrix is needed.
 const PROGRESS: f64 = 0.25;
-/// Rounding of K u over its size: residuals are not smaller.
+/// Relative rounding error of K u, a lower bound of residuals.
 const ROUNDING: f64 = 4e-16;
 
-/// The residual of a stage over the free unknowns, N.
+/// Residual of a stage over the free unknowns, N.
 struct Residual {
     norm: f64,
-    /// What it is to be compared with: the largest of the forces that make it up.
+    /// Reference value: the largest of the forces in the residual.
     scale: f64,
 }
 
-/// Solves stages.
+/// Solver of stages.
 #[derive(Debug)]
 pub(crate) struct StageSolver<'a> {
     pub problem: &'a mut Problem,
@@ -67,36 +70,36 @@ pub(crate) struct StageSolver<'a> {
     pub method: MethodKind,
     pub kinematics: Kinematics,
     pub solves: Solves,
-    /// The error asked of a whole motion, as a fraction.
+    /// Error requested for the whole motion, as a fraction.
     pub max_error: f64,
-    /// The solver's, for integrators that must iterate.
+    /// Tolerance of the scene's solver, for integrators that always iterate.
     pub tolerance: f64,
     pub memory: &'a mut Memory,
     pub counts: &'a mut Counts,
     pub timings: &'a mut Timings,
 }
 
-/// A step from one state to the next.
+/// Time step from one state to the next.
 #[derive(Debug)]
 pub(crate) struct Step<'a> {
     pub solver: StageSolver<'a>,
     /// Length of the step, s.
     pub h: f64,
-    /// Where it begins.
+    /// State at the start.
     pub start: &'a State,
-    /// Where it ends; at first a copy of where it begins.
+    /// State at the end; initially a copy of `start`.
     pub state: &'a mut State,
-    /// A state between the two, for integrators that need one.
+    /// Intermediate state, for integrators that need one.
     pub middle: &'a mut State,
     /// `true` if the ledger is kept.
     pub books: bool,
 }
 
 impl StageSolver<'_> {
-    /// Solves a stage from where `state` is, whose rotations are those of its displacement.
+    /// Solves a stage, starting from `state`, whose rotations must be those of its displacement.
     ///
     /// # Errors
-    /// [`StepError`]; the state is of no use then.
+    /// [`StepError`]; the state is then invalid.
     pub(super) fn solve(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) -> Result<(), StepError> {
         let (most, tolerance) = match self.solves {
             Solves::Times(most) => (most, None),
@@ -109,7 +112,7 @@ impl StageSolver<'_> {
                 break;
             }
             let tangent = self.tangent(stage);
-            // An iteration can do without the present matrix as long as the residual says that it gets on.
+            // An iteration does not need the current matrix as long as the residual decreases fast.
             let old = solves > 0 && tolerance.is_some() && self.keeps_factors();
             let residual = self.assemble(stage, tangent.filter(|_| !old), start, state);
             if !residual.norm.is_finite() {
@@ -133,13 +136,13 @@ impl StageSolver<'_> {
         Ok(())
     }
 
-    /// Rotations and turns of edges of the displacement.
+    /// Updates rotations and edge angles to those of the displacement.
     pub fn follow(&mut self, state: &mut State) {
         let (system, kinematics) = (self.problem.system(), self.kinematics);
         timed(&mut self.timings.rotate, || system.follow(state, kinematics));
     }
 
-    /// Which matrix of the elements the next solve needs; `None` where it has one that is constant.
+    /// Returns the matrix of the elements that the next solve needs; `None` if a constant matrix is already factorized.
     fn tangent(&self, stage: &Stage<'_>) -> Option<Tangent> {
         let constant = self.constant(stage);
         if let (Some(constant), Some(of)) = (constant, self.memory.corrector.constant)
@@ -152,13 +155,13 @@ impl StageSolver<'_> {
         Some(Tangent { warped, geometric: if turns { geometric } else { 0.0 }, definite })
     }
 
-    /// What the matrix depends on where it is constant: under linear theory, unless a hand pulls.
+    /// Returns the weights of the matrix if it is constant: with linear theory and without a mouse spring.
     fn constant(&self, stage: &Stage<'_>) -> Option<Weights> {
         let is_constant = self.kinematics == Kinematics::Linear && self.problem.hand().is_none();
         is_constant.then(|| self.weights(stage))
     }
 
-    /// The parts of a stage's matrix.
+    /// Returns the weights of mass and stiffness in a stage's matrix.
     fn weights(&self, stage: &Stage<'_>) -> Weights {
         Weights {
             inertia: stage.inertia + stage.damping * self.damping.mass * stage.rate,
@@ -166,7 +169,7 @@ impl StageSolver<'_> {
         }
     }
 
-    /// The residual force of a state, and a matrix where one is wanted.
+    /// Computes the residual force of a state, and the matrix if requested.
     fn assemble(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
         let mut timings = std::mem::take(self.timings);
         let residual = timed(&mut timings.assemble, || {
@@ -180,8 +183,8 @@ impl StageSolver<'_> {
         residual
     }
 
-    /// The residual force of a state into the memory's forces, and the elements' matrix where one is wanted. Damping
-    /// and what the hand pulls are in the residual only.
+    /// Computes the residual force of a state into the memory's forces, and the elements' matrix if requested. Damping
+    /// and the mouse spring are included in the residual only.
     fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
         let Memory { corrector, forces, free_flight, mean, scratch: [way, momentum], .. } = &mut *self.memory;
         let (problem, system) = (&*self.problem, self.problem.system());
@@ -224,7 +227,7 @@ impl StageSolver<'_> {
         Residual { norm, scale }
     }
 
-    /// f_d into the memory.
+    /// Computes f_d into the memory.
     fn damping_force(&mut self, stage: &Stage<'_>, start: &State, state: &State) {
         let Memory { damping, scratch: [configuration, velocity], .. } = &mut *self.memory;
         let Damping { mass, stiffness, .. } = self.damping;
@@ -250,7 +253,7 @@ impl StageSolver<'_> {
         }
     }
 
-    /// Adds to the elements' matrix what inertia, damping, moments and the hand have of it.
+    /// Adds the parts of inertia, damping, moments and mouse spring to the elements' matrix.
     fn complete_matrix(&mut self, stage: &Stage<'_>, tangent: Tangent, start: &State, state: &State) {
         if self.damping.stiffness > 0.0 {
             let Memory { corrector, scratch: [configuration, _], .. } = &mut *self.memory;
@@ -268,13 +271,13 @@ impl StageSolver<'_> {
         }
         if let Some(hand) = self.problem.hand() {
             let (u, v) = held(stage, hand, start, state);
-            // Half way between, the point moves half as far as at the end.
+            // Half way through the stage, the point moves half as far as at the end.
             let share = if stage.between { 0.5 } else { 1.0 };
             hand.add_stiffness(u, v, stage.rate / share, share, matrix);
         }
     }
 
-    /// Factorizes the matrix; one that is not positive definite is replaced by one that is.
+    /// Factorizes the matrix; if it is not positive definite, a positive definite one is used instead.
     fn factorize(
         &mut self,
         stage: &Stage<'_>,
@@ -297,13 +300,13 @@ impl StageSolver<'_> {
         timed(&mut self.timings.factorize, || corrector.factor.factorize(corrector.matrix.values()))
     }
 
-    /// Whether `auto` looks for corrections with factors of earlier matrices.
+    /// Returns `true` if corrections are computed with factors of earlier matrices (`auto`).
     fn keeps_factors(&self) -> bool {
         self.method == MethodKind::Auto && self.kinematics == Kinematics::Corotated
     }
 
-    /// u ← u + K⁻¹ r, with a factor of K where a tangent says of which, else with the one there is. K is at hand, or that
-    /// of an earlier solve of the same stage.
+    /// Performs u ← u + K⁻¹ r, with a factor of K if `tangent` is given, else with the existing factor. The matrix K is
+    /// that of the current state, or, if `earlier`, of an earlier solve of the same stage.
     fn correct(
         &mut self,
         stage: &Stage<'_>,
@@ -344,7 +347,7 @@ impl StageSolver<'_> {
         timed(&mut self.timings.solve, || corrector.factor.solve_in_place(&mut corrector.free));
     }
 
-    /// Whether `auto` has found the correction with the factor of an earlier matrix.
+    /// Tries to compute the correction with the factor of an earlier matrix; returns `true` if that succeeded.
     fn correct_with_kept_factor(&mut self, stage: &Stage<'_>, earlier: bool, state: &State) -> bool {
         if !self.keeps_factors() {
             return false;
@@ -364,7 +367,7 @@ impl StageSolver<'_> {
         done
     }
 
-    /// Stores the force f_ext − f_int that accelerates a body, without pulses and hand, in `result.net_force`.
+    /// Stores the force f_ext − f_int that accelerates a body, without pulses and mouse spring, in `result.net_force`.
     pub fn measure_net_force(&mut self, state: &State, result: &mut State) {
         self.problem.set_pulses(&|_| 0.0);
         let (problem, forces) = (&*self.problem, &mut self.memory.forces);
@@ -376,7 +379,8 @@ impl StageSolver<'_> {
         result.knows_net_force = true;
     }
 
-    /// Stores the same force as the stage has left it at its end: α M (u − û) + f_d less those of hand and pulses.
+    /// Stores the same force as it results from the stage's equations at its end: α M (u − û) + f_d without mouse
+    /// spring and pulses.
     pub(super) fn keep_net_force(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) {
         let Memory { free_flight, scratch: [way, _], .. } = &mut *self.memory;
         combine(way, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
@@ -393,27 +397,27 @@ impl StageSolver<'_> {
         state.knows_net_force = true;
     }
 
-    /// Adds the forces of pulses at their present size on a body in a state, N, times `factor`.
+    /// Adds the forces of pulses at their current size, N, times `factor`.
     pub(super) fn add_pulse_force(&self, state: &State, factor: f64, forces: &mut [Vector2<f64>]) {
         let problem = &*self.problem;
         problem.loads().add_pulse_force(problem.system(), &state.displacement, self.kinematics, factor, forces);
     }
 
-    /// The hand's force on a body at the time of its state, N.
+    /// Returns the force of the mouse spring at the state's time, N.
     pub fn hand_force(&mut self, state: &State) -> Vector2<f64> {
         self.problem.set_time(state.time);
         let force = |hand: &Hand| hand.force(hand.mean(&state.displacement), hand.mean(&state.velocity));
         self.problem.hand().map_or_else(Vector2::zeros, force)
     }
 
-    /// Adds a force of the hand to nodal forces, N.
+    /// Adds a force of the mouse spring to nodal forces, N.
     pub(super) fn add_hand_force(&self, hand: Vector2<f64>, forces: &mut [Vector2<f64>]) {
         if let Some(point) = self.problem.hand() {
             point.add_force(hand, forces);
         }
     }
 
-    /// The hand's force in a stage's equations, N.
+    /// Returns the force of the mouse spring in a stage's equations, N.
     fn applied_hand_force(&self, stage: &Stage<'_>, start: &State, state: &State) -> Vector2<f64> {
         self.problem.hand().map_or_else(Vector2::zeros, |hand| {
             let (u, v) = held(stage, hand, start, state);
@@ -421,12 +425,12 @@ impl StageSolver<'_> {
         })
     }
 
-    /// What a stage adds to the ledger: the residual of its end is left in the memory's forces.
+    /// Computes the stage's entries in the ledger; the residual at its end is left in the memory's forces.
     ///
-    /// What is lost is what the stage leaves unsolved, and the difference between the work of loads and hand and that of
-    /// the forces it has used. Forces between start and end do the work of the potential; what pulses and hand do beside
-    /// it is what their forces half way do. Forces at the end do not: pulses are recorded by their mean over the stage, the hand by
-    /// the trapezoidal rule.
+    /// The integrator's loss is the work of the unsolved residual, and the difference between the work of loads and
+    /// mouse spring and the work of the forces used. Averaged forces do the work of the potential, and pulses and mouse
+    /// spring do the work of their forces half way. Forces at the end do not: pulses are recorded with their mean over
+    /// the stage, the mouse spring by the trapezoidal rule.
     pub(super) fn book(
         &mut self,
         stage: &Stage<'_>,
@@ -458,7 +462,7 @@ impl StageSolver<'_> {
         }
     }
 
-    /// The residual that rounding leaves: ε ‖diag(K) |u|‖, N.
+    /// Returns the rounding error of the residual: ε ‖diag(K) |u|‖, N.
     fn rounding(&mut self, state: &State) -> f64 {
         let pattern = self.problem.system().pattern();
         let corrector = &mut self.memory.corrector;
@@ -468,7 +472,7 @@ impl StageSolver<'_> {
     }
 }
 
-/// The displacement at which damping acts: linear theory knows rest only.
+/// Computes the displacement at which damping acts; in linear theory this is the rest position.
 fn damped_configuration(
     kinematics: Kinematics,
     stage: &Stage<'_>,
@@ -485,14 +489,14 @@ fn damped_configuration(
     }
 }
 
-/// The terms of a stage's difference quotient: that of the unknown first, then the others.
+/// Returns the terms of a stage's difference quotient: first the unknown's term, then the others.
 fn terms<'a>(stage: &Stage<'a>, state: &'a State) -> [(f64, &'a [Vector2<f64>]); TERMS] {
     let mut terms = [(stage.rate, &*state.displacement); TERMS];
     terms[1..].iter_mut().zip(stage.others).for_each(|(term, other)| *term = *other);
     terms
 }
 
-/// Displacement and velocity of the point a hand holds, where the stage's forces are.
+/// Returns displacement and velocity of the point of the mouse spring, at the place of the stage's forces.
 fn held(stage: &Stage<'_>, hand: &Hand, start: &State, state: &State) -> (Vector2<f64>, Vector2<f64>) {
     let u = hand.mean(&state.displacement);
     let v = u * stage.rate + stage.others.iter().map(|(c, other)| hand.mean(other) * *c).sum::<Vector2<f64>>();

@@ -1,4 +1,4 @@
-//! What a time step works with.
+//! Data of a time step.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -10,17 +10,17 @@ use crate::solver::SolverError;
 use crate::state::State;
 use crate::words::number;
 
-/// Why a step gave no state.
+/// Reason why a step failed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {
-    /// No factor.
+    /// The factorization failed.
     #[error(transparent)]
     Solver(#[from] SolverError),
     /// A number is not finite.
     #[error("a result is not a finite number")]
     NotFinite,
-    /// The step has added energy as no error of rounding or linearization does.
+    /// The step has added more energy than errors of rounding or linearization explain.
     #[error("the step has added energy to the motion")]
     AddedEnergy,
     /// The iteration of a stage did not reach its tolerance.
@@ -28,46 +28,46 @@ pub enum StepError {
     NotConverged(u32),
 }
 
-/// Why a motion cannot go on.
+/// Reason why a motion cannot continue.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum StopReason {
-    /// A step failed, however short.
+    /// A step failed even at the smallest length.
     #[error("a step failed even at {} s: {error}", number(*step))]
     Step {
-        /// The last step tried, s.
+        /// Length of the last step tried, s.
         step: f64,
-        /// Why it failed.
+        /// Reason why it failed.
         error: StepError,
     },
-    /// An explicit step gave no finite state.
+    /// An explicit step gave a state that is not finite.
     #[error("the motion exploded: the step of {} s, the critical one is about {} s", number(*step), number(*critical))]
     Exploded {
-        /// The step, s.
+        /// Step length, s.
         step: f64,
-        /// The longest stable one about rest, s.
+        /// Longest stable step about rest, s.
         critical: f64,
     },
-    /// A node is farther from its rest position than this many sizes of the body.
+    /// A node has moved by more than this multiple of the body's size.
     #[error("the body has gone more than {} times its size away", number(*.0))]
     RanAway(f64),
-    /// Whoever was stepping has stopped before the end.
+    /// Stopped from outside before the end.
     #[error("interrupted before the end: the result is partial")]
     Interrupted,
 }
 
-/// How often a stage is solved.
+/// Number of solves per stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Solves {
-    /// This often, unless it is exact before.
+    /// This number, or fewer if the stage is solved exactly before.
     Times(u32),
-    /// Until the relative residual is below a tolerance.
+    /// Until the relative residual is below this tolerance.
     Tolerance(f64),
 }
 
 impl Solves {
-    /// The matrix of the elements for forces at the end of a stage. An iteration converges fastest with all of G; where
-    /// its solves are counted, a negative G makes the motion explode.
+    /// Returns the matrix of the elements for forces at the end of a stage. An iteration converges fastest with all of
+    /// G; with a fixed number of solves, a negative G makes the motion explode.
     pub fn tangent(self) -> Tangent {
         match self {
             Self::Times(_) => Tangent::DEFINITE,
@@ -76,48 +76,48 @@ impl Solves {
     }
 }
 
-/// What was done since the start.
+/// Counts of operations since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Counts {
-    /// Time steps taken.
+    /// Time steps.
     pub steps: u64,
     /// Back substitutions.
     pub solves: u64,
     /// Factorizations.
     pub factorizations: u64,
-    /// Times that a step failed and was halved.
+    /// Failed steps that were halved.
     pub halvings: u64,
 }
 
-/// What a step adds to the ledger, J.
+/// Entries of a step in the ledger, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Booking {
-    /// By damping.
+    /// Energy removed by damping.
     pub dissipated: f64,
-    /// By the integrator itself, where it can tell apart from the sum of all else.
+    /// Energy removed by the integrator, if it is computed independently; `None` if it is the remainder of the balance.
     pub lost: Option<f64>,
-    /// Work of the loads in time.
+    /// Work of pulses.
     pub pulses: f64,
-    /// Work of the hand.
+    /// Work of the mouse spring.
     pub hand: f64,
 }
 
-/// Memory steps work in, made once for a system.
+/// Work memory of time steps, allocated once per system.
 #[derive(Debug)]
 pub(crate) struct Memory {
     pub corrector: Corrector,
-    /// Forces of the stage that was assembled last.
+    /// Forces of the stage assembled last.
     pub forces: Forces,
-    /// û of the present stage, m.
+    /// û of the current stage, m.
     pub free_flight: Vec<Vector2<f64>>,
     /// Damping force, N.
     pub damping: Vec<Vector2<f64>>,
-    /// What the stage that was assembled last leaves unsolved, over the largest of its forces.
+    /// Residual of the stage assembled last, relative to the largest of its forces.
     pub residual: f64,
-    /// Half way through a step, under linear theory.
+    /// State half way through a step, with linear theory.
     pub mean: State,
-    /// For passing results.
+    /// Temporary nodal vectors.
     pub scratch: [Vec<Vector2<f64>>; 2],
 }
 
@@ -136,18 +136,18 @@ impl Memory {
     }
 }
 
-/// Product of nodal vectors.
+/// Returns the dot product of nodal vectors.
 pub(super) fn dot(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()
 }
 
-/// The sum of f(x) · (uᵢ(after) − uᵢ(before)) over nodes.
+/// Returns the work Σ f(x) · (uᵢ(after) − uᵢ(before)) over nodes.
 pub(super) fn work(force: &[Vector2<f64>], before: &State, after: &State) -> f64 {
     let ways = after.displacement.iter().zip(&before.displacement);
     force.iter().zip(ways).map(|(f, (after, before))| f.dot(&(after - before))).sum()
 }
 
-/// result = Σ cᵢ xᵢ.
+/// Computes result = Σ cᵢ xᵢ.
 pub(super) fn combine<const N: usize>(result: &mut [Vector2<f64>], terms: [(f64, &[Vector2<f64>]); N]) {
     for (i, r) in result.iter_mut().enumerate() {
         *r = terms.iter().map(|(c, x)| x[i] * *c).sum();

@@ -1,6 +1,6 @@
-//! Symplectic Euler: v₁ = v₀ + h M⁻¹ f(x₀, v₀), x₁ = x₀ + h v₁, M lumped on the nodes.
+//! Symplectic Euler: v₁ = v₀ + h M⁻¹ f(x₀, v₀), x₁ = x₀ + h v₁, M lumped at the nodes.
 //!
-//! Nothing is solved. Stable below the critical step, which the finest and stiffest element sets
+//! No equations are solved. Stable below the critical step, which the smallest and stiffest element determines
 //! ([`super::critical_step()`]); beyond it the motion explodes.
 
 use nalgebra::Vector2;

@@ -1,8 +1,8 @@
-//! TR-BDF2: a trapezoid to γ h, then the backward difference of second order; γ = 2 − √2.
+//! TR-BDF2: a trapezoidal stage to γ h, then a second-order backward difference; γ = 2 − √2.
 //!
 //! Bank, Coughran, Fichtner, Grosse, Rose and Smith 1985, *Transient simulation of silicon devices and circuits*; Hosea
-//! and Shampine 1996, *Analysis and implementation of TR-BDF2*. L-stable: what the step cannot resolve dies away, and
-//! nothing else does much. Both stages have the same matrix up to the state it is taken at.
+//! and Shampine 1996, *Analysis and implementation of TR-BDF2*. L-stable: modes that the step cannot resolve are
+//! damped, others hardly. Both stages have the same matrix up to the state at which it is evaluated.
 
 use super::stage::{Stage, Step};
 use super::step::{Booking, StepError, combine};
@@ -21,7 +21,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     step,
 };
 
-/// Where the trapezoid ends, of the step.
+/// End of the trapezoidal stage, as a fraction of the step.
 const GAMMA: f64 = 2.0 - SQRT_2;
 
 fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
@@ -30,7 +30,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let mut hand = solver.hand_force(start);
     let mut booking = Booking::default();
 
-    // The trapezoid: x_g = x₀ + γh (v₀ + v_g)/2, M (v_g − v₀) = γh (f₀ + f_g)/2 − γh f_d.
+    // Trapezoidal stage: x_g = x₀ + γh (v₀ + v_g)/2, M (v_g − v₀) = γh (f₀ + f_g)/2 − γh f_d.
     let g = GAMMA * h;
     if !start.knows_net_force {
         solver.measure_net_force(start, state);
@@ -39,10 +39,10 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (g, &start.velocity)]);
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
     solver.follow(state);
-    // The state gets another one at the end of the step.
+    // `state.net_force` is overwritten at the end of the step.
     let mut net_force = std::mem::take(&mut state.net_force);
     solver.add_hand_force(hand, &mut net_force);
-    // Half of the pulses acts where the step begins, half where the stage ends, both at their mean.
+    // Half of the pulses acts at the start of the step, half at the end of the stage, both with their mean.
     solver.add_pulse_force(start, 1.0, &mut net_force);
     let trapezoid = Stage {
         inertia: 4.0 / (g * g),
@@ -64,7 +64,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     state.time = start.time + g;
     if booked {
         let stage = solver.book(&trapezoid, start, state, hand);
-        // The damping force of the stage is twice that of the step: its time is half of the stage's.
+        // The damping force of the stage is twice that of the step, because it acts over half of the stage's time.
         booking = Booking { dissipated: 0.5 * stage.dissipated, lost: None, ..stage };
     }
     state.net_force = net_force;
@@ -72,7 +72,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     middle.copy_from(state);
     hand = solver.hand_force(middle);
 
-    // The backward difference: v₁ = (x₁ − c₁x_g + c₀x₀)/w, M (v₁ − c₁v_g + c₀v₀)/w = f₁ − f_d.
+    // Backward difference: v₁ = (x₁ − c₁x_g + c₀x₀)/w, M (v₁ − c₁v_g + c₀v₀)/w = f₁ − f_d.
     let w = h * (1.0 - GAMMA) / (2.0 - GAMMA);
     let c1 = 1.0 / (GAMMA * (2.0 - GAMMA));
     let c0 = (1.0 - GAMMA).powi(2) * c1;

@@ -1,25 +1,25 @@
-//! The shapes of elements in their reference coordinates (ξ, η), apart from how many nodes they have.
+//! Reference shapes of elements in coordinates (ξ, η), independent of the number of nodes.
 
-/// A reference shape: what elements of any degree on it have in common.
+/// Reference shape, shared by elements of any degree on it.
 #[derive(Debug)]
 pub struct Cell {
-    /// What one is called.
+    /// Name of the shape.
     pub name: &'static str,
     /// Corners, counter-clockwise.
     pub corners: &'static [[f64; 2]],
     /// Area in reference coordinates.
     pub area: f64,
-    /// The corners of the four parts of a uniform refinement.
+    /// Corners of the four parts of a uniform refinement.
     pub children: &'static [&'static [[f64; 2]]],
-    /// Weights of the corners at a point; they interpolate a map that takes straight sides to straight sides.
+    /// Weights of the corners at a point; they interpolate a map that keeps straight sides straight.
     pub corner_weights: fn(at: [f64; 2]) -> Vec<f64>,
-    /// How far inside a point is: negative outside.
+    /// Distance-like function of a point: positive inside, 0 on the boundary, negative outside.
     pub depth: fn(at: [f64; 2]) -> f64,
-    /// Cuts the cell into small triangles with so many pieces a side.
+    /// Cuts the cell into small triangles with `pieces` pieces per side.
     pub lattice: fn(pieces: u32) -> Lattice,
 }
 
-/// A cell cut into small triangles, to be drawn.
+/// Cell cut into small triangles, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lattice {
     /// Reference coordinates of the points.
@@ -62,7 +62,7 @@ pub const SQUARE: Cell = Cell {
     lattice: square_lattice,
 };
 
-/// The bilinear function that is 1 at one corner of the square and 0 at the others, for every corner.
+/// Evaluates the bilinear shape functions of the four corners of the square.
 pub(super) fn bilinear([x, y]: [f64; 2]) -> Vec<f64> {
     SQUARE.corners.iter().map(|[a, b]| 0.25 * (1.0 + a * x) * (1.0 + b * y)).collect()
 }

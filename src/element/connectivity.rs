@@ -1,17 +1,17 @@
-//! Which nodes elements have: one by one, and side by side.
+//! Node numbers of elements, per element and per SIMD batch.
 
 use crate::lanes::{LANES, Numbers, filled};
 
-/// The nodes of elements of `N` nodes.
+/// Node numbers of elements with `N` nodes.
 #[derive(Debug)]
 pub(super) struct Connectivity<const N: usize> {
     elements: Vec<[u32; N]>,
-    /// Those in all lanes, node by node.
+    /// Node numbers of the elements in all lanes, node by node.
     batches: Vec<[[u32; LANES]; N]>,
 }
 
 impl<const N: usize> Connectivity<N> {
-    /// From node numbers, element by element.
+    /// Builds the connectivity from node numbers, element by element.
     pub fn new(numbers: &[u32]) -> Self {
         let (elements, _) = numbers.as_chunks::<N>();
         let batches = elements.chunks(LANES).map(|own| {
@@ -21,17 +21,17 @@ impl<const N: usize> Connectivity<N> {
         Self { batches: batches.collect(), elements: elements.to_vec() }
     }
 
-    /// How many elements.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         self.elements.len()
     }
 
-    /// Of every element.
+    /// Iterates over the node numbers of every element.
     pub fn iter(&self) -> std::slice::Iter<'_, [u32; N]> {
         self.elements.iter()
     }
 
-    /// Of all elements, as many at once as there are lanes.
+    /// Iterates over the elements in SIMD batches.
     #[inline(always)]
     pub fn batches(&self) -> impl Iterator<Item = (Numbers, &[[u32; LANES]; N])> {
         let count = self.elements.len();

@@ -7,12 +7,12 @@ use crate::lanes::{Number, one_plus};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
-/// What two deformation gradients F₀ = I + H₀ and F₁ = I + H₁ have between them.
+/// Discrete gradient between two deformation gradients F₀ = I + H₀ and F₁ = I + H₁.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteGradient<T: Number = f64> {
     /// F̄ − R̄, F̄ = (F₀ + F₁)/2.
     strain: Matrix2<T>,
-    /// R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁), r = tr S: no rotation in general.
+    /// R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁), r = tr S: not a rotation in general.
     mean_rotation: Matrix2<T>,
     /// R̄/|R̄|.
     pub rotation: Rotation<T>,
@@ -21,8 +21,9 @@ pub struct DiscreteGradient<T: Number = f64> {
 }
 
 impl<T: Number> DiscreteGradient<T> {
-    /// Between the displacement gradients H and rotations of two states. Linear theory's is the stress of the mean
-    /// strain, and not this one with no rotation: the skew part of F̄ − R̄ vanishes only with the polar factors.
+    /// Returns the discrete gradient between the displacement gradients H and rotations of two states. Zero rotations
+    /// do not give that of linear theory, which is the stress of the mean strain: the skew part of F̄ − R̄ vanishes
+    /// only for the polar factors.
     #[must_use]
     #[inline(always)]
     pub fn new([h0, h1]: [Matrix2<T>; 2], [r0, r1]: [Rotation<T>; 2]) -> Self {
@@ -39,7 +40,7 @@ impl<T: Number> DiscreteGradient<T> {
         let (t0, t1) = (stretch(&h0, r0, &turn0), stretch(&h1, r1, &turn1));
         let two = T::splat(2.0);
         let sum = two + two + t0 + t1;
-        // Crushed to nothing in both states: no rotation is better than another.
+        // If tr S vanishes in both states, both rotations get the weight ½.
         let stands = sum.simd_abs().simd_gt(T::zero());
         let weight = |t: T| ((two + t) / sum).select(stands, half);
         let mean_turn = turn0 * weight(t0) + turn1 * weight(t1);
@@ -52,7 +53,7 @@ impl<T: Number> DiscreteGradient<T> {
         }
     }
 
-    /// P = 2μ (F̄ − R̄) + λ t̄ R̄, Pa.
+    /// Returns P = 2μ (F̄ − R̄) + λ t̄ R̄, Pa.
     #[must_use]
     #[inline(always)]
     pub fn stress(&self, lame: Lame) -> Matrix2<T> {

@@ -1,4 +1,4 @@
-//! Four-node quadrilaterals with incompatible modes and one rotation each.
+//! Four-node quadrilaterals with incompatible modes and one rotation per element.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -18,70 +18,70 @@ use crate::lanes::{LANES, Lanes, Number, apply, filled, one_plus, product, sum_o
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
 
-/// The values at the corners of ξη, the one bilinear function that is not linear.
+/// Values at the corners of ξη, the bilinear function that is not linear.
 const TWIST: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
 
 /// Bilinear quadrilaterals with the incompatible modes 1 − ξ² and 1 − η² (Wilson, Taylor, Doherty and Ghaboussi 1973,
 /// *Incompatible displacement models*) in the form that passes the patch test on any convex quadrilateral (Taylor,
 /// Beresford and Wilson 1976, *A non-conforming element for stress analysis*: the modes' gradients are those at the
-/// centre, times the ratio of the Jacobians), condensed at rest, and turned by the polar factor R of F at the centre.
+/// centre, times the ratio of the Jacobians), condensed at rest, and rotated by the polar factor R of F at the centre.
 ///
 /// Displacements are u = linear + q ξη, with q = Σ γₐ uₐ (γ: Flanagan and Belytschko 1981). The modes do no work on
-/// uniform stress, and the mean of ∇Nₐ is its value at the centre. So the condensed 8 × 8 stiffness falls into
+/// uniform stress, and the mean of ∇Nₐ is its value at the centre. So the condensed 8 × 8 stiffness splits into
 ///
 /// Ke = A B₀ᵀ C B₀ + γ γᵀ ⊗ K,
 ///
-/// that of a single point at the centre and a 2 × 2 matrix K that holds everything the modes do. The energy of
-/// d = Rᵀ(x − x̄) − (X − X̄), ½ d Ke d, is then A ψ(S) + ½ q̃ K q̃ with q̃ = Rᵀ q. R makes the first term stationary, the
-/// second not: with θ the angle of R, f = K q̃ and J a quarter turn, ∂w/∂θ = −f·J q̃, and the force and the Hessian need
-/// θ_x = R J ∇Nₐ / tr S and θ_xx = −(θ_x R∇Nᵀ + R∇N θ_xᵀ) / tr S.
+/// the stiffness of a single point at the centre and a 2 × 2 matrix K that contains the whole effect of the modes. The
+/// energy of d = Rᵀ(x − x̄) − (X − X̄), ½ d Ke d, is then A ψ(S) + ½ q̃ K q̃ with q̃ = Rᵀ q. R makes the first term
+/// stationary, but not the second: with w = ½ q̃ K q̃, θ the angle of R, f = K q̃ and J the rotation by 90°, ∂w/∂θ =
+/// −f·J q̃, and the force and the Hessian need θ_x = R J ∇Nₐ / tr S and θ_xx = −(θ_x R∇Nᵀ + R∇N θ_xᵀ) / tr S.
 #[derive(Debug)]
 pub struct IncompatibleQuads {
     nodes: Connectivity<4>,
-    /// Side by side.
+    /// Rest geometry of the elements, one SIMD batch per entry.
     quads: Vec<Quad<Lanes>>,
-    /// At the points of the rule: the gradients of ξη and of the two modes.
+    /// Gradients of ξη and of the two modes at the quadrature points.
     points: Vec<[QuadraturePoint<3>; 4]>,
-    /// Condensed modes, for the ratios of moduli that were asked for last.
+    /// Cache of condensed modes for the ratios λ/μ used last.
     condensed: Mutex<Vec<Arc<Condensed>>>,
 }
 
-/// An element at rest, or several side by side.
+/// Rest geometry of an element; with SIMD `T`, of one element per lane.
 #[derive(Clone, Copy, Debug)]
 struct Quad<T: Number = f64> {
-    /// ∇Nₐ at the centre, 1/m, and the whole area, m².
+    /// ∇Nₐ at the centre, 1/m, and the element's area, m².
     centre: QuadraturePoint<4, T>,
-    /// q = Σ γₐ uₐ.
+    /// Weights γₐ of q = Σ γₐ uₐ.
     gamma: [T; 4],
 }
 
-/// What depends on λ/μ.
+/// Quantities that depend on λ/μ.
 #[derive(Debug)]
 struct Condensed {
     ratio: f64,
-    /// K_xx, K_xy, K_yy over μ, side by side as the elements.
+    /// K_xx, K_xy, K_yy over μ, in SIMD batches like the elements.
     stiffness: Vec<[Lanes; 3]>,
-    /// The modes' sizes over q̃: those of 1 − ξ² along x and y, of 1 − η² along x and y.
+    /// Amplitudes of the modes over q̃: 1 − ξ² along x and y, 1 − η² along x and y.
     modes: Vec<Matrix4x2<f64>>,
 }
 
-/// How many ratios are remembered: those of a few materials on one mesh, and of their viscosities, which rounding may
-/// have put beside.
+/// Capacity of the cache: the ratios of a few materials on one mesh and of their viscosities, which may differ by
+/// rounding.
 const REMEMBERED: usize = 4;
 
-/// J v: a quarter turn, counter-clockwise.
+/// Returns J v, v rotated by 90° counter-clockwise.
 #[inline(always)]
 fn quarter<T: Number>(v: Vector2<T>) -> Vector2<T> {
     Vector2::new(-v.y, v.x)
 }
 
-/// A symmetric matrix of its xx, xy and yy.
+/// Returns the symmetric matrix with the entries xx, xy and yy.
 #[inline(always)]
 fn symmetric<T: Number>([xx, xy, yy]: [T; 3]) -> Matrix2<T> {
     Matrix2::new(xx, xy, xy, yy)
 }
 
-/// Rows of a matrix, one after the other.
+/// Returns the entries of a matrix, row by row.
 #[inline(always)]
 fn rows<T: Number>(m: &Matrix2<T>) -> [T; 4] {
     [m.m11, m.m12, m.m21, m.m22]
@@ -98,7 +98,7 @@ impl Quad {
 }
 
 impl Quad<Lanes> {
-    /// Several elements.
+    /// Packs elements into lanes, one per lane.
     fn side_by_side(own: [Quad; LANES]) -> Self {
         Self {
             centre: QuadraturePoint::side_by_side(own.map(|quad| quad.centre)),
@@ -106,7 +106,7 @@ impl Quad<Lanes> {
         }
     }
 
-    /// The element in this lane.
+    /// Returns the element in one lane.
     #[inline(always)]
     fn lane(&self, of: usize) -> Quad {
         Quad { centre: self.centre.lane(of), gamma: self.gamma.map(|gamma| gamma.extract(of)) }
@@ -114,7 +114,7 @@ impl Quad<Lanes> {
 }
 
 impl<T: Number> Quad<T> {
-    /// q: the γₐ sum to zero, so that differences will do.
+    /// Returns q, computed from differences of displacements, because the γₐ sum to zero.
     #[inline(always)]
     fn twist(&self, u: &[Vector2<T>; 4]) -> Vector2<T> {
         let mut q = zero_vector();
@@ -125,8 +125,8 @@ impl<T: Number> Quad<T> {
     }
 }
 
-/// tr S; and where R is the polar factor that belongs to H, bit for bit: there R follows x. Elsewhere it is another, and stays
-/// what it is.
+/// Returns tr S, and in each lane `true` if R is bitwise the polar factor of I + H. There R depends on x; elsewhere it
+/// is held constant.
 #[inline(always)]
 fn following<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> (T, T::SimdBool) {
     let f = one_plus(h);
@@ -134,14 +134,14 @@ fn following<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> (T, T::SimdBool) {
     (r.c * (f.m11 + f.m22) + r.s * (f.m21 - f.m12), own.c.simd_eq(r.c) & own.s.simd_eq(r.s))
 }
 
-/// 1 / tr S, bounded where the element is crushed; zero where R does not follow x.
+/// Returns 1 / tr S, bounded for crushed elements; zero where R is held constant.
 #[inline(always)]
 fn inverse_trace<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> T {
     let (trace, follows) = following(r, h);
     (T::one() / trace.simd_max(T::splat(SMALLEST_STRETCH_TRACE))).select(follows, T::zero())
 }
 
-/// The gradients of ξη and of the modes at a point, 1/m.
+/// Returns the gradients of ξη and of the modes at a point, 1/m.
 fn bending_point(
     element: &ElementType,
     rest: &[Vector2<f64>; 4],
@@ -149,7 +149,7 @@ fn bending_point(
     weight: f64,
 ) -> QuadraturePoint<3> {
     let (jacobian, centre) = (element.jacobian(rest, [xi, eta]), element.jacobian(rest, [0.0; 2]));
-    // That both can be inverted the mesh has checked.
+    // The mesh has checked that both Jacobians can be inverted.
     let [inverse, inverse_at_centre] = [jacobian, centre].map(|j| j.try_inverse().unwrap_or_default().transpose());
     let shrink = centre.determinant() / jacobian.determinant();
     QuadraturePoint {
@@ -180,8 +180,8 @@ impl Condensed {
             let mut coupling = Matrix4x2::zeros();
             coupling.fixed_view_mut::<2, 2>(0, 0).copy_from(&first);
             coupling.fixed_view_mut::<2, 2>(2, 0).copy_from(&second);
-            // Positive definite: no combination of the modes is free of strain. Where rounding says otherwise the
-            // element goes without them.
+            // Positive definite, because no combination of the modes is free of strain. If rounding makes the
+            // factorization fail, the element has no modes.
             let size = own.cholesky().map_or_else(Matrix4x2::zeros, |factor| -factor.solve(&coupling));
             let k = twist + coupling.transpose() * size;
             stiffness.push([k.m11, 0.5 * (k.m12 + k.m21), k.m22]);
@@ -195,7 +195,7 @@ impl Condensed {
     }
 }
 
-/// The part of an element in q, turned back, in one state.
+/// Part of an element's energy in q, in the rotated frame, and its derivatives in one state.
 #[derive(Clone, Copy, Debug)]
 struct Twisted<T> {
     /// K q̃, N.
@@ -222,10 +222,10 @@ impl<T: Number> Twisted<T> {
     }
 }
 
-/// Adds the parts of A and G in q: `k` is K, N/m.
+/// Adds the parts of A and G in q; `k` is K, N/m.
 ///
-/// G is θ_x zᵀ + z θ_xᵀ, of eigenvalues θ_x·z ± |θ_x||z|. Its positive part is ½ v vᵀ with v = s θ_x + z/s and
-/// s² = |z|/|θ_x|.
+/// G is θ_x zᵀ + z θ_xᵀ, with eigenvalues θ_x·z ± |θ_x||z|. Its positive part is ½ v vᵀ with v = s θ_x + z/s and s² =
+/// |z|/|θ_x|.
 #[inline(always)]
 fn add_twist<T: Number>(
     sum: &mut ElementMatrix<4, T>,
@@ -271,7 +271,7 @@ fn add_twist<T: Number>(
 }
 
 impl IncompatibleQuads {
-    /// The elements with these rest nodes (m) and node numbers; `element` is the quadrilateral's own entry.
+    /// Builds the elements from rest nodes (m) and node numbers; `element` is the registry entry of the quadrilateral.
     #[must_use]
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], connectivity: &[u32]) -> Self {
         let numbers = Connectivity::new(connectivity);
@@ -290,9 +290,9 @@ impl IncompatibleQuads {
         Self { points: points.collect(), quads: quads.collect(), nodes: numbers, condensed }
     }
 
-    /// The modes for these moduli. Made anew only where their ratio is a new one.
+    /// Returns the modes condensed for these moduli, computed only if their ratio is not in the cache.
     fn condensed(&self, moduli: Lame) -> Arc<Condensed> {
-        // Without stiffness no matter.
+        // Without stiffness the ratio has no influence.
         let ratio = if moduli.mu == 0.0 { 0.0 } else { moduli.lambda / moduli.mu };
         let mut known = self.condensed.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known.iter().find(|c| c.ratio.to_bits() == ratio.to_bits()) {
@@ -311,19 +311,19 @@ impl IncompatibleQuads {
         self.nodes.iter().zip(quads)
     }
 
-    /// Every element's nodes and rest state with K over μ.
+    /// Iterates over the elements: nodes, rest geometry, and K over μ.
     fn with_twist<'a>(&'a self, condensed: &'a Condensed) -> impl Iterator<Item = (&'a [u32; 4], Quad, [f64; 3])> {
         let stiffness = condensed.stiffness.iter().flat_map(|k| (0..LANES).map(|l| k.map(|k| k.extract(l))));
         self.elements().zip(stiffness).map(|((nodes, quad), k)| (nodes, quad, k))
     }
 }
 
-/// Half the turn from one rotation to another, which is at most a half turn: its cosine and sine.
+/// Returns cosine and sine of half the angle from the first rotation to the second, for an angle of at most 180°.
 #[inline(always)]
 fn half_turn<T: Number>([r0, r1]: [Rotation<T>; 2]) -> Rotation<T> {
     let (c, s) = (r0.c * r1.c + r0.s * r1.s, r0.c * r1.s - r0.s * r1.c);
     let half = T::splat(0.5);
-    // The larger of the two first: the other keeps its digits.
+    // Compute the larger of cosine and sine first and the other from it, so that no digits cancel.
     let larger = (half * (T::one() + c.simd_abs())).simd_sqrt();
     let smaller = half * s / larger;
     let ahead = c.simd_ge(T::zero());
@@ -403,7 +403,7 @@ impl Elements for IncompatibleQuads {
             let q = Rounded::sum(&own, &quad.gamma);
             let twisted = Twisted::new(&k, r.apply_inverse(q.value));
             let inverse_trace = inverse_trace(r, &h);
-            // Turned back, |R| is its own transpose.
+            // In the rotated frame |R| is its own transpose.
             let size = seen.turn * q.value.abs();
             let dq = seen.turn * q.error + size * (8.0 * UNIT) + seen.turned * q.value.abs() * seen.angle;
             let (force, across) = (twisted.force.abs(), Vector2::new(size.y, size.x));
@@ -423,14 +423,14 @@ impl Elements for IncompatibleQuads {
         }
     }
 
-    /// The part at the centre has [`DiscreteGradient`]. Of ½ q̃ K q̃ the difference is K q̃ₘ·(q̃₁ − q̃₀), q̃ₘ their mean.
-    /// With R̄ half way between R₀ and R₁, δ the angle between these, q̂ = R̄ᵀq and b̂ = tr((R̄ J)ᵀF),
+    /// Uses [`DiscreteGradient`] for the part at the centre. The difference of ½ q̃ K q̃ is K q̃ₘ·(q̃₁ − q̃₀), q̃ₘ
+    /// their mean. With R̄ half way between R₀ and R₁, δ the angle between these, q̂ = R̄ᵀq and b̂ = tr((R̄ J)ᵀF),
     ///
     /// q̃₁ − q̃₀ = cos(δ/2) (q̂₁ − q̂₀) − sin(δ/2) J (q̂₀ + q̂₁), and sin(δ/2) = (b̂₁ − b̂₀)/(tr S₀ + tr S₁):
     ///
-    /// linear in x₁ − x₀ with factors that turn with the body. So the force cos(δ/2) γₐ R̄ K q̃ₘ −
-    /// (K q̃ₘ·J(q̂₀ + q̂₁)) R̄ J ∇Nₐ/(tr S₀ + tr S₁) works by exactly the difference of the energies, and has no moment
-    /// about the mean of both states (a discrete gradient as Gonzalez 2000 asks for, without his division by |x₁ − x₀|²).
+    /// linear in x₁ − x₀ with factors that rotate with the body. So the force cos(δ/2) γₐ R̄ K q̃ₘ − (K q̃ₘ·J(q̂₀ +
+    /// q̂₁)) R̄ J ∇Nₐ/(tr S₀ + tr S₁) does work equal to the exact difference of the energies, and has no moment about
+    /// the mean of both states (a discrete gradient as required by Gonzalez 2000, without his division by |x₁ − x₀|²).
     fn linearize_between(
         &self,
         moduli: Lame,
@@ -451,15 +451,15 @@ impl Elements for IncompatibleQuads {
             let stress = between.stress(moduli) * quad.centre.area;
             let k = symmetric(*k) * mu;
             let half_turn = half_turn(r);
-            // R̄ = R₁ turned back by half the turn.
+            // R̄ is R₁ rotated back by δ/2.
             let middle = Rotation {
                 c: r[1].c * half_turn.c + r[1].s * half_turn.s,
                 s: r[1].s * half_turn.c - r[1].c * half_turn.s,
             };
             let mean = apply(&k, &((r[0].apply_inverse(q[0]) + r[1].apply_inverse(q[1])) * half));
             let sum_of_q = middle.apply_inverse(q[0] + q[1]);
-            // Where a rotation is undefined, in a body crushed to nothing, nothing follows. A bound on 1 / tr S would cost
-            // energy that nobody has.
+            // Where a rotation is undefined (crushed element), the rotation term is zero. Clamping 1 / tr S would break
+            // energy conservation.
             let [(t0, follows0), (t1, follows1)] = [following(r[0], &h[0]), following(r[1], &h[1])];
             let inverse_sum = Lanes::ONE / (t0 + t1).simd_max(Lanes::splat(f64::MIN_POSITIVE));
             let inverse_sum = inverse_sum.select(follows0 & follows1, Lanes::ZERO);
@@ -480,8 +480,9 @@ impl Elements for IncompatibleQuads {
         }
     }
 
-    /// As with one point at the centre; and q in the body's own frame, F₀ᵀ q, at its own rate with K. Like Green's strain
-    /// that is quadratic in x and blind to rigid motions: it is what Green's strain has in ξη.
+    /// Adds two parts. The part at the centre is that of one quadrature point. The part in q uses F₀ᵀ q, which is q in
+    /// the body's frame, its rate and K. Like Green's strain, F₀ᵀ q is quadratic in x and does not change under rigid
+    /// motion: it is the ξη part of Green's strain.
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {
         let condensed = self.condensed(moduli);
         for (nodes, quad, k) in self.with_twist(&condensed) {
@@ -568,7 +569,7 @@ impl Elements for IncompatibleQuads {
         smallest
     }
 
-    /// H is that of the shape functions; the strain has the modes' on top.
+    /// Computes H from the shape functions; the strain also contains the modes.
     fn visit_strains(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>) {
         let condensed = self.condensed(moduli);
         let modes = self.points.iter().zip(&condensed.modes);

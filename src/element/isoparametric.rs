@@ -1,5 +1,5 @@
-//! Elements whose displacement is Σ uₐ Nₐ and whose energy is a sum over quadrature points, each with a rotation of its
-//! own: Müller and Gross 2004, article eq. (2).
+//! Elements whose displacement is Σ uₐ Nₐ and whose energy is a sum over quadrature points with one rotation each:
+//! Müller and Gross 2004, article eq. (2).
 
 use nalgebra::{Matrix2, SimdPartialOrd, SimdValue, Vector2};
 
@@ -16,18 +16,18 @@ use crate::lanes::{LANES, Lanes, apply, gather, lane, matrix_lane, one_plus, pro
 use crate::material::Lame;
 use crate::rotation::Rotation;
 
-/// Elements of `N` nodes with `Q` quadrature points.
+/// Elements with `N` nodes and `Q` quadrature points.
 #[derive(Debug)]
 pub struct Isoparametric<const N: usize, const Q: usize> {
     nodes: Connectivity<N>,
-    /// Side by side.
+    /// Quadrature points in SIMD batches.
     points: Vec<[QuadraturePoint<N, Lanes>; Q]>,
 }
 
-/// How a sweep sees a quadrature point.
+/// Rotation, strain and stress of a quadrature point in an element loop.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
-    /// R.
+    /// Rotation R.
     rotation: Rotation<Lanes>,
     /// Trace of the strain.
     trace: Lanes,
@@ -36,7 +36,7 @@ struct Seen {
 }
 
 impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
-    /// The elements of this kind with these rest nodes and node numbers.
+    /// Builds the elements from rest nodes and node numbers.
     #[must_use]
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], connectivity: &[u32]) -> Self {
         let numbers = Connectivity::new(connectivity);
@@ -53,13 +53,15 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
         Self { points: points.collect(), nodes: numbers }
     }
 
-    /// Every element's nodes and quadrature points.
+    /// Iterates over the elements: nodes and quadrature points.
     fn elements(&self) -> impl Iterator<Item = (&[u32; N], impl Iterator<Item = QuadraturePoint<N>>)> {
         let points = self.points.iter().flat_map(|points| (0..LANES).map(move |lane| (points, lane)));
         self.nodes.iter().zip(points.map(|(points, lane)| points.iter().map(move |point| point.lane(lane))))
     }
 
-    /// One sweep: `gather` takes from the nodes what `look` sees a quadrature point with.
+    /// Loops over all elements: `gather` collects nodal values of a batch, `look` computes rotation, strain trace and
+    /// stress of a quadrature point from them. Adds nodal forces, their absolute values, and the tangent to `matrix` if
+    /// given.
     #[inline(always)]
     fn sweep<D>(
         &self,
@@ -90,7 +92,7 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
     }
 }
 
-/// Adds the nodal forces of so many elements, and their absolute values.
+/// Adds the nodal forces of `count` elements and their absolute values.
 #[inline(always)]
 pub(super) fn add_forces<const N: usize>(
     count: usize,
@@ -108,7 +110,7 @@ pub(super) fn add_forces<const N: usize>(
     }
 }
 
-/// The values of an element's nodes.
+/// Gathers the values of an element's nodes.
 #[inline(always)]
 pub(super) fn at_nodes<const N: usize>(nodes: &[u32; N], u: &[Vector2<f64>]) -> [Vector2<f64>; N] {
     let mut own = [Vector2::zeros(); N];
@@ -179,10 +181,10 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         }
     }
 
-    /// ψ = μ ‖S − I‖² + λ/2 tr²(S − I) depends on ‖F‖² and r = tr S only, and r² is quadratic in F. So with
-    /// F̄ = (F₀ + F₁)/2, R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁) and t̄ = (r₀ + r₁)/2 − 2 the stress P = 2μ (F̄ − R̄) + λ t̄ R̄ has
-    /// P : (F₁ − F₀) = ψ₁ − ψ₀ exactly, and P F̄ᵀ is symmetric (the idea of Simo and Tarnow 1992 and Gonzalez 2000, in
-    /// closed form for this energy). A is taken at R̄/|R̄|, G at t̄.
+    /// Uses the discrete gradient in closed form. ψ = μ ‖S − I‖² + λ/2 tr²(S − I) depends on ‖F‖² and r = tr S only,
+    /// and r² is quadratic in F. So with F̄ = (F₀ + F₁)/2, R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁) and t̄ = (r₀ + r₁)/2 − 2 the
+    /// stress P = 2μ (F̄ − R̄) + λ t̄ R̄ satisfies P : (F₁ − F₀) = ψ₁ − ψ₀ exactly, and P F̄ᵀ is symmetric (the idea of
+    /// Simo and Tarnow 1992 and Gonzalez 2000, in closed form for this energy). A is evaluated at R̄/|R̄|, G at t̄.
     fn linearize_between(
         &self,
         moduli: Lame,

@@ -1,4 +1,4 @@
-//! The matrix of one element, by blocks of two nodes.
+//! Element matrices by blocks of two nodes.
 
 use nalgebra::Vector2;
 
@@ -7,8 +7,8 @@ use crate::lanes::Number;
 use crate::rotation::Rotation;
 
 impl<T: Number> PointTangent<T> {
-    /// What all blocks K_ab of a node b have in common, for its turned gradient h: the factors of the two components of
-    /// g in their four entries.
+    /// Returns the common factors of all blocks K_ab of a node b with rotated gradient h: for each component of g, its
+    /// factors in the four entries of the block.
     #[inline(always)]
     fn column(&self, h: Vector2<T>) -> [Block<T>; 2] {
         let Self { axial, lambda, plus, minus } = *self;
@@ -16,16 +16,16 @@ impl<T: Number> PointTangent<T> {
     }
 }
 
-/// The part of a matrix that belongs to two nodes, row by row.
+/// Block of a matrix for two nodes, row by row.
 pub(super) type Block<T> = [T; 4];
 
-/// A symmetric matrix of an element of `N` nodes that no translation feels, or several side by side: its rows sum to zero.
-/// The blocks (a, b), b < a, are summed; those on the diagonal follow from them.
+/// Symmetric matrix of an element with `N` nodes whose rows sum to zero (invariance under translation); with SIMD `T`,
+/// one matrix per lane. Only the blocks (a, b), b < a, are summed; the diagonal blocks follow from them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ElementMatrix<const N: usize, T>([[Block<T>; N]; N]);
 
 impl<const N: usize, T: Number> ElementMatrix<N, T> {
-    /// Entries of its lower triangle.
+    /// Number of entries of the lower triangle.
     const ENTRIES: usize = N * (2 * N + 1);
 
     #[inline(always)]
@@ -33,7 +33,7 @@ impl<const N: usize, T: Number> ElementMatrix<N, T> {
         Self([[[T::zero(); 4]; N]; N])
     }
 
-    /// Adds a matrix of which `block(a, b)` gives the blocks below the diagonal.
+    /// Adds a matrix whose blocks below the diagonal are `block(a, b)`.
     #[inline(always)]
     pub(super) fn add_blocks(&mut self, mut block: impl FnMut(usize, usize) -> Block<T>) {
         for a in 0..N {
@@ -46,7 +46,7 @@ impl<const N: usize, T: Number> ElementMatrix<N, T> {
         }
     }
 
-    /// Adds the tangent of a point that is seen with a rotation.
+    /// Adds the tangent of a quadrature point with rotation `r`.
     #[inline(always)]
     pub(super) fn add(&mut self, point: &QuadraturePoint<N, T>, r: Rotation<T>, tangent: PointTangent<T>) {
         let mut turned = point.gradients;
@@ -61,7 +61,7 @@ impl<const N: usize, T: Number> ElementMatrix<N, T> {
         }
     }
 
-    /// Adds the matrices of so many elements from this number on to the entries they belong to; `slots` are those of
+    /// Adds the matrices of `count` elements, from number `first` on, to the global entries; `slots` as in
     /// [`super::MatrixSum`].
     #[inline(never)]
     pub(super) fn scatter(&self, first: usize, count: usize, slots: &[u32], values: &mut [f64]) {
@@ -77,7 +77,7 @@ impl<const N: usize, T: Number> ElementMatrix<N, T> {
             }
         }
         for lane in 0..count {
-            // A slice of known length: none of its slots is checked to be there.
+            // A slice of known length avoids a bounds check per slot.
             let slots = &slots[(first + lane) * Self::ENTRIES..][..Self::ENTRIES];
             let mut next = 0;
             let mut add = |value: &T| {

@@ -1,6 +1,7 @@
-//! Elements: what each says of itself ([`ElementType`]), and the loops over many of one kind ([`Elements`]).
+//! Elements: the registry entry of each type ([`ElementType`]), and the loops over many elements of one type
+//! ([`Elements`]).
 //!
-//! An element is one file that says everything of it, and a line in [`ELEMENTS`].
+//! To add an element, write one file for it and a line in [`ELEMENTS`].
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -31,16 +32,16 @@ pub use point::QuadraturePoint;
 pub(crate) use rounding::UNIT;
 pub use side::side_weights;
 
-/// What a mesh, its loads, its files and its picture ask of an element, whichever it is.
+/// Properties of an element type, used by meshes, loads, files and drawing.
 #[derive(Debug)]
 pub struct ElementType {
-    /// What scene files name.
+    /// Element type in scene files.
     pub kind: ElementKind,
-    /// The name scene files use.
+    /// Name in scene files.
     pub id: &'static str,
     /// One sentence for tooltips.
     pub about: &'static str,
-    /// Its shape.
+    /// Reference shape.
     pub cell: &'static Cell,
     /// Reference coordinates of the nodes: corners first, counter-clockwise.
     pub nodes: &'static [[f64; 2]],
@@ -50,27 +51,27 @@ pub struct ElementType {
     pub shape: fn(at: [f64; 2]) -> Vec<f64>,
     /// (∂Nₐ/∂ξ, ∂Nₐ/∂η) at a point.
     pub local_gradients: fn(at: [f64; 2]) -> Vec<Vector2<f64>>,
-    /// The rule of the stiffness; strains are known at its points.
+    /// Quadrature rule of the stiffness; strains are computed at its points.
     pub points: &'static [RulePoint],
-    /// The weights of the quadrature points' values in the value at a point: exact for fields as the strain of a
-    /// straight-sided element can be.
+    /// Weights that interpolate values at the quadrature points to any point; exact for the strain fields of a
+    /// straight-sided element.
     pub point_weights: fn(at: [f64; 2]) -> Vec<f64>,
-    /// The rule of mass and weight: exact for NₐN_b on straight-sided elements.
+    /// Quadrature rule of mass and weight, exact for NₐN_b on straight-sided elements.
     pub mass_points: &'static [RulePoint],
-    /// Pieces in which a side is drawn: more than one where sides may be curved.
+    /// Number of pieces in which a side is drawn; more than one if sides may be curved.
     pub drawn_pieces: u32,
-    /// VTK's number for the element.
+    /// VTK cell type.
     pub vtk_type: u8,
-    /// Gmsh's number for the element.
+    /// Gmsh element type.
     pub gmsh_type: u32,
-    /// The loops over many of these elements.
+    /// Constructor of the loops over many elements.
     pub loops: MakeElements,
 }
 
-/// Makes the loops over elements with these rest nodes (m) and node numbers, element by element.
+/// Constructor of element loops from rest nodes (m) and node numbers, element by element.
 pub type MakeElements = fn(nodes: &[Vector2<f64>], connectivity: &[u32]) -> Box<dyn Elements>;
 
-/// A point of a quadrature rule.
+/// Point of a quadrature rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RulePoint {
     /// Reference coordinates.
@@ -81,11 +82,11 @@ pub struct RulePoint {
 
 macro_rules! registry {
     ($($kind:ident => $entry:path),* $(,)?) => {
-        /// Every element there is.
+        /// All element types.
         pub static ELEMENTS: &[&ElementType] = &[$(&$entry),*];
 
         impl ElementKind {
-            /// What the element says of itself.
+            /// Returns the registry entry of the element.
             #[must_use]
             pub fn entry(self) -> &'static ElementType {
                 match self {
@@ -103,20 +104,20 @@ registry! {
 }
 
 impl ElementKind {
-    /// The name scene files use.
+    /// Returns the name in scene files.
     #[must_use]
     pub fn id(self) -> &'static str {
         self.entry().id
     }
 
-    /// Every element there is.
+    /// Iterates over all element types.
     pub fn all() -> impl Iterator<Item = Self> + Clone {
         ELEMENTS.iter().map(|e| e.kind)
     }
 }
 
 impl ElementType {
-    /// The Jacobian ∂X/∂(ξ, η) at a point of an element with these rest nodes.
+    /// Returns the Jacobian ∂X/∂(ξ, η) at a point of an element with these rest nodes.
     #[must_use]
     pub fn jacobian(&self, nodes: &[Vector2<f64>], at: [f64; 2]) -> Matrix2<f64> {
         let mut jacobian = Matrix2::zeros();
@@ -126,13 +127,13 @@ impl ElementType {
         jacobian
     }
 
-    /// Whether both are of the same shape: a mesh of one can be made a mesh of the other.
+    /// Returns `true` if both have the same reference shape, so that a mesh of one can be converted to the other.
     #[must_use]
     pub fn shares_cell(&self, other: &Self) -> bool {
         self.cell.corners == other.cell.corners
     }
 
-    /// The element's nodes in the order that turns it over: counter-clockwise becomes clockwise.
+    /// Returns the element's nodes in the order of the mirrored element: counter-clockwise becomes clockwise.
     #[must_use]
     pub fn turned_over(&self) -> Vec<usize> {
         // Mirroring the cell at its diagonal exchanges ξ and η.
@@ -140,14 +141,14 @@ impl ElementType {
         self.nodes.iter().map(mirrored).collect()
     }
 
-    /// The node at this place in reference coordinates, if there is one.
+    /// Returns the node at these reference coordinates, if there is one.
     #[must_use]
     pub fn node_at(&self, at: [f64; 2]) -> Option<usize> {
         const SAME: f64 = 1e-9;
         self.nodes.iter().position(|n| (n[0] - at[0]).abs() < SAME && (n[1] - at[1]).abs() < SAME)
     }
 
-    /// ∫ Nₐ dA over an element with these rest nodes, m², for every node.
+    /// Returns ∫ Nₐ dA over an element with these rest nodes, m², for every node.
     #[must_use]
     pub fn nodal_areas(&self, nodes: &[Vector2<f64>]) -> Vec<f64> {
         let mut areas = vec![0.0; nodes.len()];
@@ -159,14 +160,14 @@ impl ElementType {
     }
 }
 
-/// Which matrix a sweep adds up beside the force: a sum of A = Σ R Ke Rᵀ and G.
+/// Matrix that an element loop adds up with the force: a sum of A = Σ R Ke Rᵀ and G.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tangent {
     /// Factor of A.
     pub warped: f64,
     /// Factor of G.
     pub geometric: f64,
-    /// Whether G is taken only where it is positive.
+    /// `true` if only the positive semidefinite part of G is used.
     pub definite: bool,
 }
 
@@ -175,41 +176,41 @@ impl Tangent {
     pub const WARPED: Self = Self { warped: 1.0, geometric: 0.0, definite: false };
     /// A + G: the exact Hessian of the corotated energy.
     pub const EXACT: Self = Self { geometric: 1.0, ..Self::WARPED };
-    /// A + max(G, 0): positive definite, and its steps descend.
+    /// A + max(G, 0): positive definite, so its steps are descent directions.
     pub const DEFINITE: Self = Self { definite: true, ..Self::EXACT };
     /// G alone.
     pub const GEOMETRIC: Self = Self { warped: 0.0, ..Self::EXACT };
 
-    /// Whether all of G is in it: it belongs together with the loads' own tangent then.
+    /// Returns `true` if the tangent contains all of G; the tangent of the loads must then be added too.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         self.geometric != 0.0 && !self.definite
     }
 }
 
-/// Where a sweep adds a matrix.
+/// Destination of the matrix of an element loop.
 #[derive(Debug)]
 pub struct MatrixSum<'a> {
-    /// Which matrix.
+    /// Matrix to add.
     pub tangent: Tangent,
-    /// Where each entry of every element's lower triangle goes: node blocks (a, b), b ≤ a, row by row; the four entries
-    /// of a block, of a diagonal block the three of its lower triangle.
+    /// Index in `values` of each entry of every element's lower triangle: node blocks (a, b), b ≤ a, row by row; the
+    /// four entries of a block, or the three of the lower triangle of a diagonal block.
     pub slots: &'a [u32],
-    /// The values.
+    /// Values of the sparse matrix.
     pub values: &'a mut [f64],
 }
 
-/// The rotations with which a sweep sees the elements.
+/// Rotations used by an element loop.
 #[derive(Debug)]
 pub enum Rotations<'a> {
-    /// These.
+    /// Given rotations.
     Given(&'a [Rotation]),
-    /// The polar factors of F(x), which are written here; where one is undefined the old one stays.
+    /// Polar factors of F(x), which are written to this slice; where one is undefined, the old rotation is kept.
     Follow(&'a mut [Rotation]),
 }
 
 impl Rotations<'_> {
-    /// Those of these numbers, whose displacement gradients are H.
+    /// Returns the rotations with these indices, for displacement gradients H; updates them if they follow.
     #[inline(always)]
     fn see(&mut self, numbers: [usize; LANES], h: &Matrix2<Lanes>) -> Rotation<Lanes> {
         match self {
@@ -226,7 +227,7 @@ impl Rotations<'_> {
     }
 }
 
-/// The rotations of these numbers, side by side.
+/// Gathers the rotations with these indices into lanes.
 #[inline(always)]
 fn rotations_at(r: &[Rotation], numbers: [usize; LANES]) -> Rotation<Lanes> {
     let [a, b, c, d] = numbers;
@@ -234,7 +235,7 @@ fn rotations_at(r: &[Rotation], numbers: [usize; LANES]) -> Rotation<Lanes> {
     Rotation { c: [a.c, b.c, c.c, d.c].into(), s: [a.s, b.s, c.s, d.s].into() }
 }
 
-/// How fast Green's strain E = ½ (FᵀF − I) changes, 1/s.
+/// Rate of Green's strain E = ½ (FᵀF − I), 1/s.
 #[derive(Clone, Copy, Debug)]
 pub enum StrainRate<'a> {
     /// Σ cᵢ E(uᵢ): the factors (1/s) and displacements (m) of a difference quotient in time.
@@ -243,36 +244,37 @@ pub enum StrainRate<'a> {
     Velocity(&'a [Vector2<f64>]),
 }
 
-/// Receives a quadrature point's number, its displacement gradient H and its strain sym(RᵀF) − I.
+/// Callback for a quadrature point: its index, its displacement gradient H and its strain sym(RᵀF) − I.
 pub type StrainVisitor<'a> = dyn FnMut(usize, &Matrix2<f64>, &Matrix2<f64>) + 'a;
 
-/// The elements of a mesh, all of one kind. Slices over quadrature points or rotations hold them element by element;
-/// slices over nodes hold them in the mesh's order. Moduli are times the thickness, N/m.
+/// Elements of a mesh, all of one type. Slices over quadrature points or rotations are ordered element by element;
+/// slices over nodes are in the mesh's order. Moduli are times the thickness, N/m.
 pub trait Elements: std::fmt::Debug + Send + Sync {
-    /// Rotations of the whole mesh.
+    /// Returns the number of rotations of the whole mesh.
     fn rotation_count(&self) -> usize;
 
-    /// Quadrature points of the whole mesh.
+    /// Returns the number of quadrature points of the whole mesh.
     fn point_count(&self) -> usize;
 
-    /// Quadrature points of one element.
+    /// Returns the number of quadrature points of one element.
     fn points_per_element(&self) -> usize;
 
-    /// The number of the rotation that a quadrature point is seen with.
+    /// Returns the index of the rotation of a quadrature point.
     fn rotation_of(&self, point: usize) -> usize;
 
-    /// The area that a quadrature point stands for, m².
+    /// Returns the area of a quadrature point, weight times Jacobian, m².
     fn point_area(&self, point: usize) -> f64;
 
-    /// Sets every R to the polar factor of F(x); where that is undefined R stays.
+    /// Sets every R to the polar factor of F(x); where that is undefined, R is kept.
     fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]);
 
-    /// One sweep: finds the rotations where they are to follow `u`, adds the warped force Σ R Ke (Rᵀ x − X) to `force`,
-    /// its elements' absolute values by component to `magnitude`, N, and a tangent to `matrix` where one is wanted, N/m.
+    /// Adds force and tangent in one loop: updates the rotations if they follow `u`, adds the warped force Σ R Ke (Rᵀ x
+    /// − X) to `force`, the elements' absolute values by component to `magnitude`, N, and a tangent to `matrix` if
+    /// given, N/m.
     ///
-    /// With the rotations of `u` the force is the gradient of the energy, and A + G its Hessian: an element whose energy
-    /// R does not make stationary adds what R does as it follows x. With any others, as in linear theory, the force is
-    /// linear in `u`.
+    /// With the rotations of `u` the force is the gradient of the energy, and A + G its Hessian; elements whose energy
+    /// is not stationary in R include the dependence of R on x. With any other rotations, as in linear theory, the
+    /// force is linear in `u`.
     fn linearize(
         &self,
         moduli: Lame,
@@ -283,14 +285,15 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
         matrix: Option<MatrixSum<'_>>,
     );
 
-    /// Adds to `bound` what rounding can at most have changed in the forces of [`Self::linearize`] where the rotations are
-    /// the polar factors of F, or none, N: by component, to first order in the unit roundoff, and without that of adding up
-    /// elements.
+    /// Adds to `bound` an upper bound of the rounding error of the forces of [`Self::linearize`], N, for rotations that
+    /// are the polar factors of F, or identities: by component, to first order in the unit roundoff, and without the
+    /// error of summing elements.
     fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]);
 
-    /// One sweep between two states, as [`Self::linearize`]: the discrete gradient of the elastic energy, a force whose
-    /// work from one to the other is exactly the difference of their energies, and that turns no body; and A and G at
-    /// the mean rotation and strain. Half of A + G is about the derivative with respect to the second state.
+    /// Adds force and tangent between two states, as [`Self::linearize`]: the discrete gradient of the elastic energy,
+    /// a force whose work from one state to the other is exactly the difference of their energies and whose resultant
+    /// moment is zero; and A and G at the mean rotation and strain. Half of A + G approximates the derivative with
+    /// respect to the second state.
     fn linearize_between(
         &self,
         moduli: Lame,
@@ -300,29 +303,29 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
         matrix: Option<MatrixSum<'_>>,
     );
 
-    /// Adds the viscous force Σ ∫ F ℂ : Ė ∇N dA to `force`, N: `moduli` (N s/m) times a rate Ė of Green's strain, in a
-    /// configuration F that belongs to the displacement `u`. A rigid motion has no such rate.
+    /// Adds the viscous force Σ ∫ F ℂ : Ė ∇N dA to `force`, N: `moduli` (N s/m) times a rate Ė of Green's strain, in
+    /// the configuration F of the displacement `u`. The rate vanishes for rigid motions.
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]);
 
-    /// Adds to a matrix, with the slots and values of [`MatrixSum`], the derivative of the viscous force with respect to
-    /// the velocities, N s/m: Σ ∫ F ℂ[sym(Fᵀ ∇v)] ∇N dA, positive semidefinite.
+    /// Adds the derivative of the viscous force with respect to the velocities, N s/m, to a matrix with the slots and
+    /// values of [`MatrixSum`]: Σ ∫ F ℂ[sym(Fᵀ ∇v)] ∇N dA, positive semidefinite.
     fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]);
 
-    /// Elastic energy Σ ψ dA, J.
+    /// Returns the elastic energy Σ ψ dA, J.
     fn energy(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation]) -> f64;
 
-    /// The smallest det F: area over that at rest, negative where an element is turned inside out.
+    /// Returns the smallest det F, the ratio of current to rest area; negative if an element is inverted.
     fn smallest_area_ratio(&self, u: &[Vector2<f64>]) -> f64;
 
-    /// Calls `visit` for every quadrature point. Of the moduli only the ratio matters, and only where an element has
-    /// modes of its own inside, whose size depends on it.
+    /// Calls `visit` for every quadrature point. Only the ratio of the moduli matters, and only for elements with
+    /// internal modes, whose amplitudes depend on it.
     fn visit_strains(&self, moduli: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>);
 }
 
-/// The strain the element sees once turned back, sym(Rᵀ F) − I with F = I + H.
+/// Returns the strain in the rotated frame of the element, sym(Rᵀ F) − I with F = I + H.
 ///
-/// With R the polar factor of F this is the Biot strain S − I. Written with c − 1 = −s²/(1 + c), so that small strains
-/// under small rotations keep their digits.
+/// With R the polar factor of F this is the Biot strain S − I. It uses c − 1 = −s²/(1 + c), so that small strains under
+/// small rotations keep their digits.
 #[must_use]
 #[inline(always)]
 pub fn warped_strain<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> Matrix2<T> {
@@ -335,7 +338,7 @@ pub fn warped_strain<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> Matrix2<T> {
     Matrix2::new(xx, xy, xy, yy)
 }
 
-/// c − 1 to the last digits: −s²/(1 + c).
+/// Returns c − 1 without cancellation: −s²/(1 + c).
 #[inline(always)]
 fn cosine_minus_1<T: Number>(Rotation { c, s }: Rotation<T>) -> T {
     (-s * s / (T::one() + c)).select(c.simd_gt(T::zero()), c - T::one())

@@ -1,4 +1,4 @@
-//! Quadrature points: gradients, force and tangent of one.
+//! Quadrature points: gradients, force and tangent.
 
 use nalgebra::{Matrix2, SimdValue, Vector2};
 
@@ -7,7 +7,7 @@ use crate::lanes::{LANES, Lanes, Number, lane, outer, side_by_side, zero_matrix,
 use crate::material::Lame;
 use crate::rotation::Rotation;
 
-/// One quadrature point of an element with `N` nodes, at rest; or of several elements, side by side.
+/// Quadrature point of an element with `N` nodes, at rest; with SIMD `T`, one point per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadraturePoint<const N: usize, T: Number = f64> {
     /// ∇Nₐ with respect to the rest position, 1/m.
@@ -16,7 +16,7 @@ pub struct QuadraturePoint<const N: usize, T: Number = f64> {
     pub area: T,
 }
 
-/// Moduli of a point's tangent, times its area, N m; see [`QuadraturePoint::tangent`].
+/// Moduli of a point's tangent times its area, N m; see [`QuadraturePoint::tangent`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PointTangent<T> {
     pub axial: T,
@@ -25,13 +25,13 @@ pub(super) struct PointTangent<T> {
     pub minus: T,
 }
 
-/// Floor of tr S in G: one percent of its value at rest. Where the body is crushed to nothing tr S vanishes and G has no
-/// bound; the floor keeps the step finite.
+/// Lower bound of tr S in G: one percent of its value at rest. In a crushed body tr S vanishes and G is unbounded; the
+/// bound keeps the step finite.
 pub(super) const SMALLEST_STRETCH_TRACE: f64 = 0.02;
 
 impl<const N: usize> QuadraturePoint<N> {
-    /// The point at `at` of an element with these rest nodes. That the Jacobian there is positive,
-    /// [`crate::mesh::Mesh`] has checked.
+    /// Returns the point at `at` of an element with these rest nodes. [`crate::mesh::Mesh`] has checked that the
+    /// Jacobian there is positive.
     #[must_use]
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], at: [f64; 2], weight: f64) -> Self {
         let jacobian = element.jacobian(nodes, at);
@@ -43,15 +43,16 @@ impl<const N: usize> QuadraturePoint<N> {
         Self { gradients, area: weight * jacobian.determinant() }
     }
 
-    /// The warped element force R Ke (Rᵀ x − X), N, given the displacement gradient: the first Piola–Kirchhoff stress R T
-    /// of the corotated energy times the point's area, applied to ∇Nₐ.
+    /// Returns the warped element force R Ke (Rᵀ x − X), N, for a displacement gradient: the first Piola–Kirchhoff
+    /// stress R T of the corotated energy times the point's area, applied to ∇Nₐ.
     #[must_use]
     pub fn warped_force(&self, moduli: Lame, r: Rotation, h: &Matrix2<f64>) -> [Vector2<f64>; N] {
         let stress = r.matrix() * moduli.stress(&warped_strain(r, h)) * self.area;
         self.gradients.map(|g| stress * g)
     }
 
-    /// The block of nodes a and b in Ke, this point's part, N/m: v (λ g hᵀ + μ (g·h) I + μ h gᵀ) with g = ∇Nₐ, h = ∇N_b.
+    /// Returns this point's part of the block of nodes a and b in Ke, N/m: v (λ g hᵀ + μ (g·h) I + μ h gᵀ) with g =
+    /// ∇Nₐ, h = ∇N_b.
     #[must_use]
     pub fn stiffness_block(&self, moduli: Lame, a: usize, b: usize) -> Matrix2<f64> {
         let (g, h) = (self.gradients[a], self.gradients[b]);
@@ -61,7 +62,7 @@ impl<const N: usize> QuadraturePoint<N> {
 }
 
 impl<const N: usize> QuadraturePoint<N, Lanes> {
-    /// Points of several elements.
+    /// Packs points of several elements into lanes.
     pub(super) fn side_by_side(own: [QuadraturePoint<N>; LANES]) -> Self {
         Self {
             gradients: std::array::from_fn(|a| side_by_side(own.map(|point| point.gradients[a]))),
@@ -69,7 +70,7 @@ impl<const N: usize> QuadraturePoint<N, Lanes> {
         }
     }
 
-    /// The point of the element in this lane.
+    /// Returns the point of the element in one lane.
     #[inline(always)]
     pub(super) fn lane(&self, of: usize) -> QuadraturePoint<N> {
         let mut gradients = [zero_vector(); N];
@@ -79,10 +80,10 @@ impl<const N: usize> QuadraturePoint<N, Lanes> {
 }
 
 impl<const N: usize, T: Number> QuadraturePoint<N, T> {
-    /// The displacement gradient H = F − I = Σ uₐ ⊗ ∇Nₐ, which is Σ (uₐ − u₁) ⊗ ∇Nₐ.
+    /// Returns the displacement gradient H = F − I = Σ uₐ ⊗ ∇Nₐ, which is Σ (uₐ − u₁) ⊗ ∇Nₐ.
     ///
-    /// From displacements, not positions, and from differences of these: small strains keep their digits however large
-    /// the coordinates and however far the element is carried.
+    /// Computed from differences of displacements, not from positions: small strains keep their digits however large
+    /// the coordinates and the displacement of the element.
     #[must_use]
     #[inline(always)]
     pub fn displacement_gradient(&self, u: &[Vector2<T>; N]) -> Matrix2<T> {
@@ -93,14 +94,14 @@ impl<const N: usize, T: Number> QuadraturePoint<N, T> {
         h
     }
 
-    /// Moduli of this point's part of a tangent; `trace` is that of the strain.
+    /// Returns the moduli of this point's part of a tangent; `trace` is the trace of the strain.
     ///
-    /// With g = R ∇Nₐ and h = R ∇N_b, the block of R Ke Rᵀ is K_ab = v (λ g hᵀ + μ (g·h) I + μ h gᵀ): turning the
-    /// gradients is cheaper than turning the matrix, and gives the same.
+    /// With g = R ∇Nₐ and h = R ∇N_b, the block of R Ke Rᵀ is K_ab = v (λ g hᵀ + μ (g·h) I + μ h gᵀ): rotating the
+    /// gradients is cheaper than rotating the matrix and gives the same result.
     ///
-    /// G, the derivative of the force through R, adds in F-space (tr T / tr S) τ τᵀ with τ = vec(R J)/√2, J a quarter
-    /// turn, T the Biot stress: tension makes it positive, compression negative. In the plane a quarter turn exchanges
-    /// the components of g, so that with s = ½ v tr T / tr S it turns μ into μ + s and μ − s, at no further cost.
+    /// G, the derivative of the force through R, adds in F-space (tr T / tr S) τ τᵀ with τ = vec(R J)/√2, J the
+    /// rotation by 90°, T the Biot stress: tension makes it positive, compression negative. In the plane J exchanges
+    /// the components of g, so that with s = ½ v tr T / tr S it changes μ into μ + s and μ − s, at no further cost.
     #[inline(always)]
     pub(super) fn tangent(&self, moduli: Lame, trace: T, tangent: Tangent) -> PointTangent<T> {
         let Lame { lambda, mu } = moduli;

@@ -1,6 +1,6 @@
 //! The four-node quadrilateral: bilinear shape functions, incompatible modes, one rotation.
 //!
-//! It bends with one element across; see [`IncompatibleQuads`].
+//! It represents bending with one element across the beam; see [`IncompatibleQuads`].
 
 use nalgebra::Vector2;
 
@@ -19,7 +19,7 @@ const RULE: [RulePoint; 4] = [
     RulePoint { at: [-GAUSS, GAUSS], weight: 1.0 },
 ];
 
-/// The element.
+/// Registry entry of the element.
 pub(super) static Q4: ElementType = ElementType {
     kind: ElementKind::Q4,
     id: "q4",
@@ -30,10 +30,10 @@ pub(super) static Q4: ElementType = ElementType {
     shape: bilinear,
     local_gradients,
     points: &RULE,
-    // The bilinear function with given values at the four points.
+    // Bilinear interpolation between the four points.
     point_weights: |[x, y]| bilinear([x / GAUSS, y / GAUSS]),
     mass_points: &RULE,
-    // Sides stay straight, but the strain is not constant.
+    // Sides stay straight, but the strain varies over the element.
     drawn_pieces: 4,
     vtk_type: 9,
     gmsh_type: 3,

@@ -1,9 +1,9 @@
-//! What rounding may do to the force of an element: bounds by running error analysis (Higham 2002, *Accuracy and stability of
+//! Bounds of the rounding error of element forces by running error analysis (Higham 2002, *Accuracy and stability of
 //! numerical algorithms*, 3.3), to first order in the unit roundoff.
 //!
-//! Beside every intermediate result goes a bound of its error: that of its operands, carried on by the derivative, and of
-//! its own operations, each at most half of a last digit. What is stored (gradients, areas, moduli, displacements) counts
-//! as exact. The counts of operations are rounded up.
+//! Every intermediate result has a bound of its error: the error of its operands times the derivative, plus the error
+//! of its own operations, each at most half a unit in the last place. Stored values (gradients, areas, moduli,
+//! displacements) count as exact. Operation counts are rounded up.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -13,10 +13,10 @@ use crate::displacement::Compensated;
 use crate::material::Lame;
 use crate::rotation::Rotation;
 
-/// Relative error of one operation.
+/// Unit roundoff: largest relative error of one operation.
 pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;
 
-/// A vector with a bound of its error, by component.
+/// Vector with a bound of its error, by component.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rounded {
     pub value: Vector2<f64>,
@@ -26,7 +26,7 @@ pub(super) struct Rounded {
 impl Rounded {
     const ZERO: Self = Self { value: Vector2::new(0.0, 0.0), error: Vector2::new(0.0, 0.0) };
 
-    /// The displacements of an element's nodes relative to its first one.
+    /// Returns the displacements of an element's nodes relative to its first one.
     pub fn relative<const N: usize>(u: Compensated<'_>, nodes: &[u32; N]) -> [Self; N] {
         let remainder = nodes.map(|node| u.remainder()[node as usize].abs());
         let mut own = [Self::ZERO; N];
@@ -36,7 +36,7 @@ impl Rounded {
         own
     }
 
-    /// Σ wₐ vₐ.
+    /// Returns Σ wₐ vₐ.
     pub fn sum<const N: usize>(vectors: &[Self; N], weights: &[f64; N]) -> Self {
         let mut sum = Self::ZERO;
         for (v, w) in vectors.iter().zip(weights) {
@@ -47,10 +47,10 @@ impl Rounded {
     }
 }
 
-/// How an element sees a quadrature point, with bounds of the errors.
+/// Rotation and stress of a quadrature point with bounds of their errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RoundedPoint {
-    /// |R| of both rows.
+    /// |R|.
     pub turn: Matrix2<f64>,
     /// |R J|.
     pub turned: Matrix2<f64>,
@@ -62,13 +62,13 @@ pub(super) struct RoundedPoint {
     pub stress: [Matrix2<f64>; 2],
 }
 
-/// |A| |B|.
+/// Returns |A| |B|.
 fn product(a: &Matrix2<f64>, b: &Matrix2<f64>) -> Matrix2<f64> {
     a.abs() * b.abs()
 }
 
 impl RoundedPoint {
-    /// A point with the polar factor of its F, or with no rotation.
+    /// Returns the point with the polar factor of its F, or with the identity as rotation.
     pub fn new<const N: usize>(point: &QuadraturePoint<N>, moduli: Lame, r: Rotation, u: &[Rounded; N]) -> Self {
         let h = point.displacement_gradient(&u.map(|u| u.value));
         let mut dh = Matrix2::zeros();
@@ -83,7 +83,7 @@ impl RoundedPoint {
         let trace = (r.c * a + r.s * b).abs().max(f64::MIN_POSITIVE);
         let angle = (c * db + s * da) / trace;
 
-        // The strain, and what a wrong angle makes of it: the deviator, turned by an eighth of a turn.
+        // Strain, with the effect of an error of the angle: the deviator rotated by 45°.
         let strain = warped_strain(r, &h);
         let c_minus_1 = if r.c > 0.0 { s * s / (1.0 + c) } else { 1.0 + c };
         let off = angle * (0.5 * (strain.m11 - strain.m22).abs() + strain.m12.abs() + angle * trace);
@@ -94,7 +94,7 @@ impl RoundedPoint {
         let xy = 0.5 * (c * (h.m12 + h.m21) + s * (h.m22 + h.m11))
             + own(0.5 * (c * (size.m12 + size.m21) + s * (size.m22 + size.m11)));
 
-        // The stress turned back, then P.
+        // Stress in the rotated frame, then P.
         let (double, lambda) = (2.0 * moduli.mu.abs(), moduli.lambda.abs());
         let size = strain.abs();
         let of = |own: f64, sum: f64| double * own + lambda * sum;
@@ -118,7 +118,8 @@ impl RoundedPoint {
         }
     }
 
-    /// Bound of the error of what the stress does to a node with this gradient, and of adding it up with others, N.
+    /// Returns the bound of the error of the stress's force on a node with this gradient, including the summation with
+    /// `others` further terms, N.
     pub fn force(&self, gradient: &Vector2<f64>, others: f64) -> Vector2<f64> {
         let [value, error] = self.stress;
         (error + value * ((3.0 + others) * UNIT)) * gradient.abs()

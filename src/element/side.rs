@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
-/// Lagrange's polynomials on `n` equally spaced nodes over [−1, 1], and their derivatives, at `xi`.
+/// Evaluates Lagrange's polynomials on `n` equally spaced nodes over [−1, 1], and their derivatives, at `xi`.
 fn lagrange(n: usize, xi: f64) -> Vec<(f64, f64)> {
     let node = |i: usize| 2.0 * i as f64 / (n - 1) as f64 - 1.0;
     let others = |a: usize| (0..n).filter(move |&b| b != a);
@@ -23,7 +23,7 @@ fn lagrange(n: usize, xi: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// ∫ Nₐ ds for nodes in their order along a side, m: the nodes' weights in a uniform traction.
+/// Returns ∫ Nₐ ds for nodes in their order along a side, m: the nodes' weights in a uniform traction.
 #[must_use]
 pub fn side_weights(nodes: &[Vector2<f64>]) -> Vec<f64> {
     let mut weights = vec![0.0; nodes.len()];

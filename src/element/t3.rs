@@ -6,7 +6,7 @@ use super::cell::TRIANGLE;
 use super::{ElementType, Isoparametric, RulePoint};
 use crate::model::ElementKind;
 
-/// The element.
+/// Registry entry of the element.
 pub(super) static T3: ElementType = ElementType {
     kind: ElementKind::T3,
     id: "t3",
@@ -18,7 +18,7 @@ pub(super) static T3: ElementType = ElementType {
     local_gradients: |_| vec![Vector2::new(-1.0, -1.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)],
     points: &[RulePoint { at: [1.0 / 3.0; 2], weight: 0.5 }],
     point_weights: |_| vec![1.0],
-    // Degree 2: products of two linear functions.
+    // Exact to degree 2: products of two linear functions.
     mass_points: &[
         RulePoint { at: [1.0 / 6.0, 1.0 / 6.0], weight: 1.0 / 6.0 },
         RulePoint { at: [2.0 / 3.0, 1.0 / 6.0], weight: 1.0 / 6.0 },

@@ -1,4 +1,4 @@
-//! The structured rectangle of a scene's `[beam]`.
+//! Structured mesh of a scene's `[beam]`.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::{Mesh, MeshError, Segment};
 use crate::model::{Beam, Diagonals};
 
 impl Mesh {
-    /// Number of nodes of [`Self::beam`].
+    /// Returns the number of nodes of [`Self::beam`].
     #[must_use]
     pub fn beam_nodes(beam: &Beam) -> u64 {
         let pieces = beam.element.entry().sides[0].len() as u64 - 1;
@@ -16,14 +16,15 @@ impl Mesh {
         columns.saturating_mul(rows)
     }
 
-    /// The rectangle [0, length] × [−height/2, height/2], or the arch it is bent to, two triangles or one quadrilateral a cell, with the edges `left`, `right`,
-    /// `bottom` and `top`. Nodes are numbered column by column, from the left and from below.
+    /// Meshes the rectangle [0, length] × [−height/2, height/2], or the arch it is bent to, with two triangles or one
+    /// quadrilateral per cell and the edges `left`, `right`, `bottom` and `top`. Nodes are numbered column by column,
+    /// from the left and from below.
     ///
     /// # Errors
-    /// [`MeshError::Degenerate`] where cells are too thin for their length.
+    /// [`MeshError::Degenerate`] if cells are too thin for their length.
     pub fn beam(beam: &Beam) -> Result<Self, MeshError> {
         let entry = beam.element.entry();
-        // Every cell is a lattice with as many pieces as the element's sides have between their nodes.
+        // Every cell is a lattice of nodes with as many pieces per side as an element side.
         let pieces = entry.sides[0].len() - 1;
         let [nx, ny] = beam.cells.map(|n| n as usize);
         let [columns, rows] = [nx, ny].map(|n| n * pieces);
@@ -36,7 +37,7 @@ impl Mesh {
                 bent(beam, along, beam.height * across)
             })
             .collect();
-        // For every node of an element, the weights of its corners.
+        // Weights of the corners for every node of an element.
         let weights: Vec<Vec<f64>> = entry.nodes.iter().map(|&at| (entry.cell.corner_weights)(at)).collect();
         let mut connectivity = Vec::with_capacity(2 * nx * ny * weights.len());
         for (i, j) in (0..nx).flat_map(|i| (0..ny).map(move |j| (i, j))) {
@@ -69,8 +70,8 @@ impl Mesh {
     }
 }
 
-/// Position, m, of a point of the beam: `along` runs from 0 to 1, `across` is the distance from the axis, m. The axis of an
-/// arch is a parabola, its sections are normal to it.
+/// Returns the position, m, of a point of the beam: `along` runs from 0 to 1, `across` is the distance from the axis,
+/// m. The axis of an arch is a parabola, and its sections are normal to the axis.
 pub(crate) fn bent(beam: &Beam, along: f64, across: f64) -> Vector2<f64> {
     let x = beam.length * along;
     if beam.rise == 0.0 {
@@ -81,9 +82,10 @@ pub(crate) fn bent(beam: &Beam, along: f64, across: f64) -> Vector2<f64> {
     axis + Vector2::new(-slope, 1.0) * (across / slope.hypot(1.0))
 }
 
-/// Inverse of [`bent`]: `along` and `across`, m, of the point of the beam that is nearest to a position, m, at first order.
+/// Inverts [`bent`]: returns `along` and `across`, m, of the point of the beam nearest to a position, m, to first
+/// order.
 pub(crate) fn straightened(beam: &Beam, at: Vector2<f64>) -> [f64; 2] {
-    /// Newton's method on a parabola takes a handful of steps.
+    /// Upper limit; Newton's method on a parabola needs only a few steps.
     const STEPS: u32 = 50;
     let mut along = at.x / beam.length;
     if beam.rise != 0.0 {
@@ -92,7 +94,7 @@ pub(crate) fn straightened(beam: &Beam, at: Vector2<f64>) -> [f64; 2] {
             let slope = 4.0 * beam.rise * (1.0 - 2.0 * along);
             let (tangent, bend) = (Vector2::new(beam.length, slope), -8.0 * beam.rise);
             let arm = at - bent(beam, along, 0.0);
-            // Gauss–Newton where the second derivative would turn the step round.
+            // Gauss–Newton if the second derivative would reverse the step.
             let curvature = (tangent.norm_squared() - arm.y * bend).max(0.1 * tangent.norm_squared());
             let step = arm.dot(&tangent) / curvature;
             along += step;

@@ -1,7 +1,8 @@
-//! Reads Gmsh's MSH format, version 4.1, ASCII: triangles of 3 or 6 nodes or quadrilaterals of 4 in the plane z = 0, and
-//! physical curves as named edges. Own code because what we found on the registry leaves physical names out and panics on damaged files.
+//! Reader of Gmsh's MSH format, version 4.1, ASCII: triangles of 3 or 6 nodes or quadrilaterals of 4 in the plane z =
+//! 0, and physical curves as named edges. We wrote our own reader because the crates we found omit physical names and
+//! panic on damaged files.
 //!
-//! Counts in the file are never trusted with memory: everything read is a line that is there.
+//! Memory is never allocated from counts in the file, only for lines that exist.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -15,25 +16,25 @@ use crate::model::ElementKind;
 use crate::model::limits::{COORDINATE, TOTAL_CELLS};
 use crate::words::number;
 
-/// Why a mesh file cannot be used.
+/// Reason why a mesh file cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GmshError {
-    /// A line is not what the format has there.
+    /// A line does not follow the format.
     #[error("line {line}: expected {expected}")]
     Syntax {
-        /// One-based.
+        /// One-based line number.
         line: usize,
-        /// What the format has there.
+        /// Expected content.
         expected: String,
     },
-    /// A binary file, or no file of Gmsh's.
+    /// A binary file, or not a Gmsh file.
     #[error("expected Gmsh format 4.1, ASCII, got a binary file; {SAVE_IT}")]
     NotText,
     /// The file as a whole lacks something.
     #[error("{0}")]
     Content(String),
-    /// The elements make no mesh.
+    /// The elements do not form a valid mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
@@ -41,10 +42,10 @@ pub enum GmshError {
 const SAVE_IT: &str = "save it with `gmsh in.msh -save -format msh41 -o out.msh`";
 const ONLY_PHYSICAL: &str = "Gmsh saves only physical groups once there is one";
 
-/// Distance from z = 0, relative to the size of the mesh, that is taken for rounding.
+/// Distance from z = 0, relative to the size of the mesh, that counts as rounding error.
 const FLAT: f64 = 1e-9;
 
-/// Gmsh's numbers for what it has beside elements of ours, and how many nodes each has.
+/// Gmsh's element types of lines, with their numbers of nodes, and of points.
 const LINES: [(i64, usize); 2] = [(1, 2), (8, 3)];
 const POINT: i64 = 15;
 
@@ -69,7 +70,7 @@ impl<'a> Lines<'a> {
         GmshError::Syntax { line: self.number, expected: expected.to_owned() }
     }
 
-    /// The numbers of the next line, at least `least` of them.
+    /// Parses the numbers of the next line, at least `least` of them.
     fn numbers<T: std::str::FromStr>(&mut self, least: usize, expected: &str) -> Result<Vec<T>, GmshError> {
         let line = self.next(expected)?;
         let numbers: Vec<T> = line
@@ -93,48 +94,49 @@ struct File {
     curve_names: HashMap<i64, String>,
     curve_groups: HashMap<i64, Vec<i64>>,
     nodes: HashMap<u64, Vector2<f64>>,
-    /// Line of the file, kind and node tags.
+    /// Line of the file, element type and node tags.
     elements: Vec<(usize, &'static ElementType, Vec<u64>)>,
-    /// Line of the file, curve, and the tags of both ends.
+    /// Line of the file, curve, and the tags of both end nodes.
     lines: Vec<(usize, i64, [u64; 2])>,
     /// Metres per unit of the file.
     scale: f64,
-    /// The largest distance from z = 0, m, and its line.
+    /// Largest distance from z = 0, m, and its line.
     out_of_plane: (f64, usize),
 }
 
 impl Mesh {
-    /// Reads a mesh. Its triangles or quadrilaterals become `element`: nodes that the file lacks are put in the middle of
-    /// straight sides, those that `element` does not have are left out.
+    /// Reads a mesh and converts its triangles or quadrilaterals to `element`: missing nodes are added in the middle of
+    /// straight sides, nodes that `element` does not have are left out.
     ///
     /// # Errors
-    /// [`GmshError`], with the line where there is one.
+    /// [`GmshError`], with the line if known.
     pub fn from_gmsh(text: &str, element: ElementKind) -> Result<Self, GmshError> {
         Self::from_gmsh_scaled(text, element, 1.0)
     }
 
-    /// [`Self::from_gmsh`] of a file whose unit is `scale` metres: 0.001 for millimetres.
+    /// Reads a mesh as [`Self::from_gmsh`] from a file whose unit is `scale` metres: 0.001 for millimetres.
     ///
     /// # Errors
-    /// As [`Self::from_gmsh`].
+    /// Same errors as [`Self::from_gmsh`].
     pub fn from_gmsh_scaled(text: &str, element: ElementKind, scale: f64) -> Result<Self, GmshError> {
         File::read(text, scale)?.into_mesh(element)
     }
 
-    /// The element that a file has, by the headers of its blocks alone; of several, that with the most nodes, so that none
-    /// is lost. What is wrong with the file is said when it is read.
+    /// Returns the element type in a file, from the headers of its blocks alone; of several types, the one with the
+    /// most nodes, so that no node is lost. Errors in the file are reported when it is read.
     #[must_use]
     pub fn gmsh_element(text: &str) -> Option<ElementKind> {
         Headers::of(text).own().map(|entry| entry.kind)
     }
 
-    /// Number of nodes that the mesh of a file has where its cells become `element`, by the headers of its blocks alone: exact if that is
-    /// the file's own element, else for a body of one part without holes.
+    /// Returns the number of nodes of a file's mesh converted to `element`, from the headers of its blocks alone: exact
+    /// for the file's own element type; for others, valid for a connected body without holes.
     #[must_use]
     pub fn gmsh_nodes(text: &str, element: ElementKind) -> u64 {
         let headers = Headers::of(text);
         let Some(own) = headers.own() else { return 0 };
-        // N = V + E n + F m: vertices, sides with n nodes between their ends, faces with m nodes inside; and V − E + F = 1.
+        // N = V + E n + F m: vertices, sides with n nodes between their ends, faces with m nodes inside; and V − E + F
+        // = 1.
         let faces: f64 = headers.elements.iter().map(|(_, count)| *count as f64).sum();
         let nodes = headers.nodes as f64;
         let [(n, m), (new_n, new_m)] = [own, element.entry()].map(|entry| {
@@ -147,10 +149,10 @@ impl Mesh {
     }
 }
 
-/// Counts in the headers of a file's blocks.
+/// Counts in the block headers of a file.
 struct Headers {
     nodes: u64,
-    /// The elements of every block that has some of ours.
+    /// Element type and count of every block with a supported type.
     elements: Vec<(&'static ElementType, u64)>,
 }
 
@@ -178,13 +180,13 @@ impl Headers {
         headers
     }
 
-    /// The element with the most nodes; `None` where the file has none of ours.
+    /// Returns the element type with the most nodes; `None` if the file has no supported elements.
     fn own(&self) -> Option<&'static ElementType> {
         self.elements.iter().map(|(entry, _)| *entry).max_by_key(|entry| entry.nodes.len())
     }
 }
 
-/// What an element type of Gmsh's is that cannot be read, and what to do about it.
+/// Describes an unsupported Gmsh element type and how to avoid it.
 fn foreign(kind: i64) -> String {
     let order = "mesh with `-order 1` or `-order 2`";
     match kind {
@@ -321,7 +323,7 @@ impl File {
         Err(GmshError::Syntax { line, expected })
     }
 
-    /// Refuses elements of another shape than `entry`'s, and says what to do.
+    /// Rejects elements with another shape than `entry`, with advice.
     fn check_shapes(&self, entry: &ElementType) -> Result<(), GmshError> {
         let mut others = self.elements.iter().filter(|(_, own, _)| !own.shares_cell(entry));
         let Some((_, other, _)) = others.next() else { return Ok(()) };
@@ -344,7 +346,7 @@ impl File {
         )))
     }
 
-    /// Refuses elements with the same corners.
+    /// Rejects elements with the same corners.
     fn check_doubles(&self, entry: &ElementType) -> Result<(), GmshError> {
         let mut lines: HashMap<Vec<u64>, usize> = HashMap::new();
         for (line, _, tags) in &self.elements {
@@ -373,12 +375,12 @@ impl File {
         self.check_flat()?;
         self.check_shapes(entry)?;
         self.check_doubles(entry)?;
-        // A cell of a beam is two triangles.
+        // A cell of a beam consists of two triangles.
         let a_cell = if entry.cell.corners.len() == 3 { 2.0 } else { 1.0 };
         TOTAL_CELLS.check(self.elements.len() as f64 / a_cell).map_err(|_| {
             GmshError::Content(format!("expected at most {} {}s", a_cell * TOTAL_CELLS.max, entry.cell.name))
         })?;
-        // Only the nodes of elements: what else the file holds would be free to float away.
+        // Only nodes of elements are read; other nodes in the file would be unconnected.
         let mut builder =
             Builder { tags: &self.nodes, numbers: HashMap::new(), between: HashMap::new(), nodes: Vec::new() };
         let mut connectivity = Vec::with_capacity(entry.nodes.len() * self.elements.len());
@@ -386,7 +388,7 @@ impl File {
             let missing =
                 |tag: u64| GmshError::Syntax { line: *line, expected: format!("nodes that exist, got {tag}") };
             for &at in entry.nodes {
-                // A node that the file has there, or one between the ends of a straight side.
+                // A node of the file at this place, or a new one between the ends of a straight side.
                 let node = match own.node_at(at) {
                     Some(i) => builder.number(tags[i]).ok_or_else(|| missing(tags[i]))?,
                     None => builder.between(own, tags, at).map_err(missing)?,
@@ -415,7 +417,7 @@ impl File {
     }
 }
 
-/// Numbers nodes in the order they are met, and makes those between others that the file lacks.
+/// Builder that numbers nodes in the order of use and adds missing nodes between others.
 struct Builder<'a> {
     tags: &'a HashMap<u64, Vector2<f64>>,
     numbers: HashMap<u64, u32>,
@@ -435,7 +437,8 @@ impl Builder<'_> {
         Some(number)
     }
 
-    /// The node at `at` in an element of the file that has none there; the tag that is missing where one is.
+    /// Returns the node at `at` in an element of the file that has none there, adding it if necessary. The error is the
+    /// tag of a missing corner node.
     fn between(&mut self, element: &ElementType, tags: &[u64], at: [f64; 2]) -> Result<u32, u64> {
         let weights = (element.cell.corner_weights)(at);
         let mut ends = Vec::new();

@@ -1,36 +1,36 @@
-//! Which element holds a point, and where in it.
+//! Search for the element that contains a point.
 
 use nalgebra::Vector2;
 
 use super::{Mesh, Segment};
 
-/// A point of the body, whatever the body does: an element and a place in it.
+/// Point that moves with the body: an element and a place in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialPoint {
-    /// The element.
+    /// Element number.
     pub element: usize,
-    /// Reference coordinates in it.
+    /// Reference coordinates in the element.
     pub at: [f64; 2],
 }
 
-/// Points on the boundary must not fall out by rounding.
+/// Tolerance that keeps points on the boundary inside despite rounding.
 const SLACK: f64 = 1e-9;
 
-/// Curved sides may leave the box of their nodes by this fraction of its size.
+/// Distance by which curved sides may extend beyond the bounding box of their nodes, relative to its size.
 const BULGE: f64 = 0.25;
 
 impl Mesh {
-    /// The material point at a rest position, m; `None` outside the body.
+    /// Returns the material point at a rest position, m; `None` outside the body.
     #[must_use]
     pub fn locate(&self, at: Vector2<f64>) -> Option<MaterialPoint> {
         self.locate_in(&self.nodes, at)
     }
 
-    /// The material point that is at a position, m, while the nodes are at `positions`; `None` outside the body, and
-    /// where there are not as many positions as nodes.
+    /// Returns the material point at a position, m, with the nodes at `positions`; `None` outside the body, and if the
+    /// number of positions differs from the number of nodes.
     ///
-    /// One sweep over the boxes of the elements: of a body that moves, an index would have to be made anew for every
-    /// state, which costs more than the sweep.
+    /// It tests the bounding boxes of all elements. For a moving body a search index would have to be rebuilt in every
+    /// state, which costs more.
     #[must_use]
     pub fn locate_in(&self, positions: &[Vector2<f64>], at: Vector2<f64>) -> Option<MaterialPoint> {
         if positions.len() != self.nodes.len() {
@@ -45,8 +45,8 @@ impl Mesh {
         })
     }
 
-    /// The material point that is nearest to a position, m, and no farther from it than `within`, m, while the nodes are
-    /// at `positions`; `outline` is [`Self::outline`].
+    /// Returns the material point nearest to a position, m, within the distance `within`, m, with the nodes at
+    /// `positions`; `outline` is [`Self::outline`].
     #[must_use]
     pub fn pick(
         &self,
@@ -55,7 +55,7 @@ impl Mesh {
         at: Vector2<f64>,
         within: f64,
     ) -> Option<MaterialPoint> {
-        /// A point on the boundary is looked for a little inside, by this part of its side.
+        /// Offset of a boundary point towards the inside, relative to the length of its side.
         const INSIDE: f64 = 1e-3;
         if let Some(point) = self.locate_in(positions, at) {
             return Some(point);
@@ -73,16 +73,16 @@ impl Mesh {
         self.locate_in(positions, foot + inside)
     }
 
-    /// The nodes of a material point's element with their shape functions there; the weights sum to 1. `None` where
-    /// there is no such element.
+    /// Returns the nodes of a material point's element with their shape functions there; the weights sum to 1. `None`
+    /// if there is no such element.
     #[must_use]
     pub fn weights(&self, point: MaterialPoint) -> Option<Vec<(u32, f64)>> {
         let nodes = self.elements().nth(point.element)?;
         Some(nodes.iter().copied().zip((self.entry().shape)(point.at)).collect())
     }
 
-    /// Reference coordinates of a position in an element whose nodes are at `positions`; `None` where its map cannot be
-    /// inverted.
+    /// Returns the reference coordinates of a position in an element whose nodes are at `positions`; `None` if the map
+    /// cannot be inverted.
     fn invert(&self, nodes: &[u32], positions: &[Vector2<f64>], at: Vector2<f64>) -> Option<[f64; 2]> {
         // Newton's method: straight-sided elements take one step.
         const STEPS: u32 = 12;
@@ -106,7 +106,7 @@ impl Mesh {
     }
 }
 
-/// Whether a position is in or near the box around an element's nodes.
+/// Returns `true` if a position is in or near the bounding box of an element's nodes.
 fn is_in_box(nodes: &[u32], positions: &[Vector2<f64>], at: Vector2<f64>) -> bool {
     let mut own = nodes.iter().map(|&n| positions[n as usize]);
     let Some(first) = own.next() else { return false };

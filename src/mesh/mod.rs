@@ -1,4 +1,4 @@
-//! Meshes of one kind of element: nodes, connectivity, named edges. Everything about them is checked once, here.
+//! Meshes of one element type: nodes, connectivity, named edges. The constructor validates them.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -19,64 +19,64 @@ pub use gmsh::GmshError;
 pub use locate::MaterialPoint;
 pub use recovery::Recovery;
 
-/// A mesh that cannot be used. Elements are numbered from 0.
+/// Error of a mesh. Elements are numbered from 0.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// No element at all, or a connectivity of the wrong length.
+    /// No element, or a connectivity of the wrong length.
     #[error("expected elements of {expected} nodes each, got {got} node numbers")]
     Connectivity {
-        /// Nodes an element.
+        /// Nodes per element.
         expected: usize,
         /// Node numbers given.
         got: usize,
     },
-    /// A node position that is NaN or infinite.
+    /// A node position is NaN or infinite.
     #[error("node {node} is at {position:?}: expected finite coordinates")]
     NotFinite {
-        /// The node.
+        /// Node number.
         node: usize,
-        /// Its position, m.
+        /// Position, m.
         position: [f64; 2],
     },
-    /// An element with a node that does not exist.
+    /// An element refers to a node that does not exist.
     #[error("element {element} names node {node}: expected a node below {count}")]
     NoSuchNode {
-        /// The element.
+        /// Element number.
         element: usize,
-        /// The node it names.
+        /// Node number.
         node: u32,
-        /// How many nodes there are.
+        /// Number of nodes.
         count: usize,
     },
-    /// An element without area.
+    /// An element has no area.
     #[error("element {element} has no area: expected corners that are not on one line, got {corners:?}")]
     Degenerate {
-        /// The element.
+        /// Element number.
         element: usize,
-        /// Its rest corners, m.
+        /// Rest corners, m.
         corners: Vec<[f64; 2]>,
     },
-    /// An element that folds over: its sides are too curved, or it is a quadrilateral that is not convex.
+    /// An element folds over: its sides are too curved, or it is a quadrilateral that is not convex.
     #[error("element {element} folds over: expected sides that are less curved, and convex quadrilaterals")]
     Folded {
-        /// The element.
+        /// Element number.
         element: usize,
     },
-    /// A segment of a named edge that is not a side of an element.
+    /// A segment of a named edge is not a side of an element.
     #[error("edge \"{edge}\" has the nodes {nodes:?}: expected the nodes of an element's side")]
     NoSuchSide {
-        /// The edge.
+        /// Name of the edge.
         edge: String,
-        /// The segment's nodes.
+        /// Nodes of the segment.
         nodes: Vec<u32>,
     },
 }
 
-/// The most nodes that a side of any element has.
+/// Largest number of nodes on an element side.
 const MOST_SIDE_NODES: usize = 3;
 
-/// One side of an element, by node numbers.
+/// Side of an element, by node numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     nodes: [u32; MOST_SIDE_NODES],
@@ -84,7 +84,8 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The segment through these nodes, in their order along it; `None` for fewer than two or more than a side has.
+    /// Returns the segment through these nodes, in their order along it; `None` for fewer than two nodes or more than a
+    /// side has.
     #[must_use]
     pub fn new(nodes: &[u32]) -> Option<Self> {
         let count = nodes.len();
@@ -96,53 +97,53 @@ impl Segment {
         Some(Self { nodes: own, count })
     }
 
-    /// Its nodes, in their order along it.
+    /// Returns the nodes, in their order along the segment.
     #[must_use]
     pub fn nodes(&self) -> &[u32] {
         &self.nodes[..self.count]
     }
 
-    /// The first and the last of them.
+    /// Returns the first and the last node.
     #[must_use]
     pub fn ends(&self) -> [u32; 2] {
         [self.nodes[0], self.nodes[self.count - 1]]
     }
 
-    /// Its ends, smaller number first: the same for the side of either element.
+    /// Returns the end nodes, smaller number first: the same for both elements that share the side.
     #[must_use]
     pub fn key(&self) -> [u32; 2] {
         side_key(self.ends())
     }
 
-    /// Whether both have the same nodes, in either direction.
+    /// Returns `true` if both have the same nodes, in the same or the opposite direction.
     fn is_same(&self, other: &Self) -> bool {
         self.nodes() == other.nodes() || self.nodes().iter().rev().eq(other.nodes())
     }
 }
 
-/// Two nodes, smaller number first.
+/// Sorts two node numbers.
 fn side_key([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Nodes, elements and named edges, at rest.
+/// Nodes, elements and named edges of a body at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     nodes: Vec<Vector2<f64>>,
     element: ElementKind,
     connectivity: Vec<u32>,
     edges: BTreeMap<String, Vec<Segment>>,
-    /// What the file that it was read from calls every node; empty for other meshes.
+    /// Node numbers in the mesh file; empty for meshes that were not read from a file.
     tags: Vec<Option<u64>>,
 }
 
-/// Area over squared size below which an element counts as degenerate: a few hundred roundings. It trades slivers that
-/// could still be solved against stiffness that is all rounding.
+/// Lower bound of area over squared size of an element: a few hundred rounding errors. It rejects slivers whose
+/// stiffness would consist of rounding errors, at the cost of some that could still be solved.
 const DEGENERATE: f64 = 1e-13;
 
 impl Mesh {
-    /// A mesh of these rest positions (m), node numbers (element by element, in the order of
-    /// [`ElementType::nodes`]) and named edges. Clockwise elements are turned over.
+    /// Returns a mesh with these rest positions (m), node numbers (element by element, in the order of
+    /// [`ElementType::nodes`]) and named edges. Clockwise elements are reversed.
     ///
     /// ```
     /// use std::collections::BTreeMap;
@@ -158,7 +159,7 @@ impl Mesh {
     /// ```
     ///
     /// # Errors
-    /// [`MeshError`], naming the node, the element or the edge.
+    /// [`MeshError`], which names the node, element or edge.
     pub fn new(
         nodes: Vec<Vector2<f64>>,
         element: ElementKind,
@@ -170,7 +171,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Checks everything, and turns clockwise elements over.
+    /// Validates the mesh, and reverses clockwise elements.
     fn check(&mut self) -> Result<(), MeshError> {
         let entry = self.element.entry();
         let n = entry.nodes.len();
@@ -198,9 +199,9 @@ impl Mesh {
                 own.iter_mut().zip(&turned_over).for_each(|(node, &from)| *node = clockwise[from]);
             }
             let rest: Vec<Vector2<f64>> = own.iter().map(|&n| self.nodes[n as usize]).collect();
-            // Written so that NaN is refused too.
+            // The comparison is `false` for NaN.
             let unfolded = |at: [f64; 2]| entry.jacobian(&rest, at).determinant() > 0.0;
-            // The Jacobian of straight sides is smallest at a corner.
+            // The Jacobian of an element with straight sides is smallest at a corner.
             let corners = if entry.sides[0].len() == 2 { entry.nodes } else { &[] };
             let mut points = entry.points.iter().chain(entry.mass_points).map(|p| p.at).chain(corners.iter().copied());
             if !points.all(unfolded) {
@@ -230,19 +231,20 @@ impl Mesh {
         Ok(())
     }
 
-    /// The mesh with every node moved.
+    /// Returns the mesh with every node moved to `place` of its rest position.
     ///
     /// # Errors
-    /// [`MeshError`] where that leaves an element without area.
+    /// [`MeshError`] if an element then has no area.
     pub fn moved(&self, place: impl Fn(Vector2<f64>) -> Vector2<f64>) -> Result<Self, MeshError> {
         let nodes = self.nodes.iter().map(|&x| place(x)).collect();
         let moved = Self::new(nodes, self.element, self.connectivity.clone(), self.edges.clone())?;
         Ok(Self { tags: self.tags.clone(), ..moved })
     }
 
-    /// How many parts it has that share no nodes, and the part of every node; `u32::MAX` for nodes without an element.
+    /// Returns the number of parts that share no nodes, and the part of every node; `u32::MAX` for nodes without an
+    /// element.
     pub(crate) fn parts(&self) -> (usize, Vec<u32>) {
-        // Union-find: every node points towards the first of its part.
+        // Union-find: every node points towards the first node of its part.
         fn first(of: &mut [u32], mut node: u32) -> u32 {
             while of[node as usize] != node {
                 let next = of[of[node as usize] as usize];
@@ -264,7 +266,7 @@ impl Mesh {
         let mut part_of = vec![u32::MAX; of.len()];
         for node in (0..of.len()).filter(|&node| used[node]) {
             let first = first(&mut of, node as u32) as usize;
-            // The first of a part has the smallest number, so it comes first.
+            // The first node of a part has its smallest number, so it is visited first.
             if first == node {
                 part_of[node] = parts;
                 parts += 1;
@@ -274,10 +276,11 @@ impl Mesh {
         (parts as usize, part_of)
     }
 
-    /// Parts of the mesh whose elements share sides, and nodes at which parts meet without sharing one: hinges. For every node the
-    /// parts that have it, each once; empty for nodes without an element. `None` where no two parts meet in a node.
+    /// Divides the mesh into parts whose elements share sides; nodes at which parts meet without sharing a side are
+    /// hinges. Returns the number of parts and for every node the parts that contain it, each once; empty for nodes
+    /// without an element. `None` if no two parts meet at a hinge.
     pub(crate) fn hinged_parts(&self) -> Option<(usize, Vec<Vec<u32>>)> {
-        // Two sides of the outline end at a node of it, four where parts only touch.
+        // Two sides of the outline end at each of its nodes, four at a node where parts only touch.
         let mut ends = vec![0_u32; self.nodes.len()];
         self.outline().iter().flat_map(Segment::ends).for_each(|node| ends[node as usize] += 1);
         if ends.iter().all(|&count| count <= 2) {
@@ -315,7 +318,7 @@ impl Mesh {
         Some((numbers.len(), of_node))
     }
 
-    /// The mesh with these edges in the place of its own.
+    /// Returns the mesh with its named edges replaced by `edges`.
     ///
     /// # Errors
     /// [`MeshError::NoSuchSide`].
@@ -325,61 +328,61 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Rest positions X, m.
+    /// Returns the rest positions X, m.
     #[must_use]
     pub fn nodes(&self) -> &[Vector2<f64>] {
         &self.nodes
     }
 
-    /// Rest position of a node, m.
+    /// Returns the rest position of a node, m.
     #[must_use]
     pub(crate) fn node(&self, node: u32) -> Vector2<f64> {
         self.nodes[node as usize]
     }
 
-    /// Whether its nodes have numbers of a file.
+    /// Returns `true` if the mesh was read from a file, with node numbers.
     #[must_use]
     pub fn is_from_file(&self) -> bool {
         !self.tags.is_empty()
     }
 
-    /// What a node is called towards people: by its file, or where there is none by its number from 0. `None` for a node
-    /// that was put between those of a file.
+    /// Returns the number of a node for display: its number in the mesh file, or without a file its index from 0.
+    /// `None` for a node that was added between those of a file.
     #[must_use]
     pub fn node_name(&self, node: u32) -> Option<u64> {
         if self.is_from_file() { self.tags.get(node as usize).copied().flatten() } else { Some(u64::from(node)) }
     }
 
-    /// What every element is.
+    /// Returns the element type.
     #[must_use]
     pub fn element(&self) -> ElementKind {
         self.element
     }
 
-    /// Node numbers, element by element, in the order of [`ElementType::nodes`]; corners counter-clockwise.
+    /// Returns the node numbers, element by element, in the order of [`ElementType::nodes`]; corners counter-clockwise.
     #[must_use]
     pub fn connectivity(&self) -> &[u32] {
         &self.connectivity
     }
 
-    /// Segments by edge name.
+    /// Returns the segments of every edge, by name.
     #[must_use]
     pub fn edges(&self) -> &BTreeMap<String, Vec<Segment>> {
         &self.edges
     }
 
-    /// Number of elements.
+    /// Returns the number of elements.
     #[must_use]
     pub fn element_count(&self) -> usize {
         self.connectivity.len() / self.element.entry().nodes.len()
     }
 
-    /// The node numbers of every element.
+    /// Iterates over the node numbers of every element.
     pub fn elements(&self) -> impl ExactSizeIterator<Item = &[u32]> {
         self.connectivity.chunks_exact(self.element.entry().nodes.len())
     }
 
-    /// The nodes of a named edge, each once; `None` if there is no such edge.
+    /// Returns the nodes of a named edge, each once; `None` if there is no such edge.
     #[must_use]
     pub fn edge_nodes(&self, name: &str) -> Option<Vec<u32>> {
         let mut nodes: Vec<u32> = self.edges.get(name)?.iter().flat_map(|s| s.nodes().to_vec()).collect();
@@ -388,7 +391,7 @@ impl Mesh {
         Some(nodes)
     }
 
-    /// The node nearest to a rest position; the first of equals.
+    /// Returns the node nearest to a rest position; the first of several at the same distance.
     #[must_use]
     pub fn nearest_node(&self, at: Vector2<f64>) -> u32 {
         let mut best = (f64::INFINITY, 0);
@@ -401,14 +404,14 @@ impl Mesh {
         best.1
     }
 
-    /// The corners of the box around the rest mesh, m.
+    /// Returns the lower left and upper right corner of the bounding box of the rest mesh, m.
     #[must_use]
     pub fn bounds(&self) -> (Vector2<f64>, Vector2<f64>) {
         let start = Vector2::repeat(f64::INFINITY);
         self.nodes.iter().fold((start, -start), |(low, high), p| (low.inf(p), high.sup(p)))
     }
 
-    /// The sides of an element of this mesh with these node numbers, counter-clockwise.
+    /// Iterates over the sides of an element with these node numbers, counter-clockwise.
     pub fn sides<'a>(&self, nodes: &'a [u32]) -> impl Iterator<Item = Segment> + 'a {
         let sides = self.element.entry().sides;
         sides.iter().filter_map(|side| {
@@ -418,7 +421,7 @@ impl Mesh {
         })
     }
 
-    /// The sides that belong to one element only: the outline, each running counter-clockwise around the body.
+    /// Returns the sides that belong to only one element, each counter-clockwise around the body.
     #[must_use]
     pub fn outline(&self) -> Vec<Segment> {
         let mut sides: Vec<Segment> = self.elements().flat_map(|nodes| self.sides(nodes)).collect();
@@ -426,13 +429,13 @@ impl Mesh {
         sides.chunk_by(|a, b| a.key() == b.key()).filter(|same| same.len() == 1).map(|same| same[0]).collect()
     }
 
-    /// What the mesh's element says of itself.
+    /// Returns the registry entry of the mesh's element type.
     pub(crate) fn entry(&self) -> &'static ElementType {
         self.element.entry()
     }
 }
 
-/// Twice the area of a polygon, positive where it runs counter-clockwise.
+/// Returns twice the area of a polygon, positive if it is counter-clockwise.
 fn doubled_area(corners: &[Vector2<f64>]) -> f64 {
     let Some(&first) = corners.first() else { return 0.0 };
     corners.windows(2).map(|w| (w[0] - first).perp(&(w[1] - first))).sum()

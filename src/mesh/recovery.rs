@@ -1,43 +1,43 @@
-//! From values at quadrature points to values at nodes.
+//! Recovery of nodal values from values at quadrature points.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::Mesh;
 
 /// Superconvergent patch recovery (Zienkiewicz and Zhu 1992, *The superconvergent patch recovery and a posteriori error
-/// estimates*, part 1): around every corner node a polynomial, complete and of the degree of the element's
-/// displacements, is fitted to the values at the quadrature points of the elements there. Its value at the corner is the
-/// corner's; a node between two corners gets the mean of what their two polynomials say there.
+/// estimates*, part 1): around every corner node a complete polynomial of the degree of the element's displacements is
+/// fitted to the values at the quadrature points of the adjacent elements. Its value at the corner is the corner's
+/// value; a node between two corners gets the mean of their two polynomials there.
 ///
-/// A patch that hardly determines its polynomial, as at the outline, takes the elements around its own ones in, too, or
-/// makes do with a lower degree where the mesh ends. Points count less the farther they are from the corner.
+/// If a patch hardly determines its polynomial, as at the outline, the surrounding elements are added, or the degree is
+/// reduced where the mesh ends. Weights of points decrease with the distance from the corner.
 ///
-/// The fit is linear in the values: this is a sparse matrix, made once for a mesh. Polynomials are complete and scaled by
-/// the patch's own spread, so it does not matter how the body is turned, nor how far cells are stretched.
+/// The fit is linear in the values: it is a sparse matrix, computed once per mesh. Polynomials are complete and scaled
+/// by the patch's own spread, so the result does not depend on the body's orientation or the aspect ratio of cells.
 #[derive(Debug)]
 pub struct Recovery {
-    /// Where the entries of every node start, and the end of the last.
+    /// Index of each node's first entry, and the end of the last.
     starts: Vec<u32>,
-    /// Quadrature point and weight.
+    /// Quadrature points and weights.
     entries: Vec<(u32, f64)>,
 }
 
 impl Recovery {
-    /// The recovery of a mesh.
+    /// Returns the recovery matrix of a mesh.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
         let patches = Patches::new(mesh);
         let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); mesh.nodes().len()];
         let entry = mesh.entry();
         let corners = entry.cell.corners.len();
-        // Every other node with the corners that speak for it.
+        // Non-corner nodes of an element with the corners whose polynomials are averaged there, and the weights.
         let between: Vec<(usize, Vec<(usize, f64)>)> = (corners..entry.nodes.len())
             .map(|node| {
                 let weights = (entry.cell.corner_weights)(entry.nodes[node]).into_iter().enumerate();
                 (node, weights.filter(|(_, weight)| weight.abs() > 1e-9).collect())
             })
             .collect();
-        // Of every corner, the nodes that it speaks for, with its share.
+        // For every corner, the nodes that its polynomial contributes to, with weights.
         let mut shares: Vec<Vec<(u32, f64)>> = vec![Vec::new(); mesh.nodes().len()];
         let mut seen = vec![false; mesh.nodes().len()];
         for own in mesh.elements() {
@@ -71,7 +71,7 @@ impl Recovery {
         result
     }
 
-    /// The values at every node, of those at every quadrature point. A node without elements gets zeros.
+    /// Computes the values at every node from values at every quadrature point. A node without elements gets zeros.
     pub fn recover<const K: usize>(&self, at_points: &[[f64; K]], nodal: &mut Vec<[f64; K]>) {
         nodal.clear();
         nodal.extend(self.starts.windows(2).map(|bounds| {
@@ -85,33 +85,33 @@ impl Recovery {
     }
 }
 
-/// What patches are made of.
+/// Mesh data needed to build patches.
 struct Patches<'a> {
     mesh: &'a Mesh,
-    /// The elements around every node, and where each node's start.
+    /// Elements around every node, and the index of each node's first one.
     around: Vec<u32>,
     starts: Vec<u32>,
-    /// Whether a node is on the outline.
+    /// `true` for nodes on the outline.
     outer: Vec<bool>,
-    /// Where every quadrature point is, m.
+    /// Position of every quadrature point, m.
     points: Vec<Vector2<f64>>,
     degree: usize,
 }
 
-/// The polynomial of a patch, as a map from values at its points.
+/// Polynomial of a patch, as a linear map from values at its points.
 #[derive(Default)]
 struct Fit {
-    /// Number and place of every point.
+    /// Index and position of every point.
     points: Vec<(u32, Vector2<f64>)>,
     centre: Vector2<f64>,
-    /// Whitens places relative to the centre.
+    /// Scales positions relative to the centre to unit covariance.
     scale: Matrix2<f64>,
     degree: usize,
-    /// Terms × points.
+    /// Polynomial coefficients, terms × points.
     coefficients: DMatrix<f64>,
 }
 
-/// The terms of a complete polynomial.
+/// Evaluates the terms of a complete polynomial.
 fn terms(degree: usize, x: Vector2<f64>) -> Vec<f64> {
     let mut terms = Vec::with_capacity((degree + 1) * (degree + 2) / 2);
     for total in 0..=degree {
@@ -120,14 +120,15 @@ fn terms(degree: usize, x: Vector2<f64>) -> Vec<f64> {
     terms
 }
 
-/// Points of a patch over the terms of its polynomial, at least, inside the body and …
+/// Smallest ratio of points to polynomial terms in a patch inside the body.
 const ENOUGH: f64 = 1.3;
-/// … at the outline, where points lie to one side of the corner.
+/// The same for corners on the outline, where all points lie to one side.
 const ENOUGH_OUTSIDE: f64 = 1.5;
-/// How fast the weight of points falls with their distance from the corner, in standard deviations of the patch. Chosen
-/// by the stresses at the hole of Kirsch's plate and inside it: without, six-node triangles have 1.5 times the error.
+/// Decay length of the weights of points with the distance from the corner, in standard deviations of the patch. Chosen
+/// by the stresses at the hole of Kirsch's plate and inside it: without weights, six-node triangles have 1.5 times the
+/// error.
 const REACH: f64 = 2.0;
-/// A patch grows no more often than this.
+/// Largest number of rings of elements in a patch.
 const MOST_RINGS: u32 = 3;
 
 impl<'a> Patches<'a> {
@@ -163,7 +164,7 @@ impl<'a> Patches<'a> {
         &self.around[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]
     }
 
-    /// The elements of a patch with those around it.
+    /// Adds the elements around a patch to it; returns `false` if there are none.
     fn grow(&self, patch: &mut Vec<u32>) -> bool {
         let stride = self.mesh.entry().nodes.len();
         let corners = self.mesh.entry().cell.corners.len();
@@ -177,7 +178,7 @@ impl<'a> Patches<'a> {
         patch.len() > before
     }
 
-    /// Fits around a corner.
+    /// Fits the polynomial around a corner.
     fn fit(&self, corner: u32, fit: &mut Fit) {
         let per_element = self.mesh.entry().points.len() as u32;
         let mut patch = self.around(corner).to_vec();
@@ -194,13 +195,13 @@ impl<'a> Patches<'a> {
             }
             rings += 1;
         }
-        // Of degree 0 it is the mean, which always is.
+        // The fit of degree 0 is the mean, which always exists.
         let _ = (0..=self.degree).rev().any(|degree| self.solve(self.mesh.node(corner), &patch, degree, fit));
     }
 
-    /// The least squares fit of a degree; `false` where the points do not determine it.
+    /// Computes the least squares fit of a degree; returns `false` if the points do not determine it.
     fn solve(&self, about: Vector2<f64>, patch: &[u32], degree: usize, fit: &mut Fit) -> bool {
-        /// Smallest pivot of the scaled normal equations, whose diagonal is about 1.
+        /// Smallest accepted pivot of the scaled normal equations, whose diagonal is about 1.
         const DETERMINED: f64 = 1e-6;
         let per_element = self.mesh.entry().points.len() as u32;
         fit.points.clear();
@@ -241,7 +242,7 @@ impl<'a> Patches<'a> {
 }
 
 impl Fit {
-    /// The weights of the points' values in the polynomial's value at a place.
+    /// Returns the weights of the points' values in the polynomial's value at a position.
     fn weights(&self, at: Vector2<f64>) -> Vec<f64> {
         let terms = DVector::from_vec(terms(self.degree, self.scale * (at - self.centre)));
         self.coefficients.tr_mul(&terms).as_slice().to_vec()

@@ -1,4 +1,4 @@
-//! Uniform refinement: every element into four, curved sides along their own curve.
+//! Uniform refinement: every element is cut into four; curved sides keep their curve.
 
 use std::collections::HashMap;
 
@@ -7,12 +7,12 @@ use nalgebra::Vector2;
 use super::{Mesh, Segment, side_key};
 use crate::element::ElementType;
 
-/// Where a node of a child is in its parent.
+/// Position of a child's node in its parent.
 #[derive(Clone, Copy, Debug)]
 enum Place {
     /// On a node of the parent.
     Node(usize),
-    /// On a side of the parent, so far from its first corner.
+    /// On a side of the parent: side number and distance from its first corner, as a fraction of the side.
     Side(usize, f64),
     /// Inside.
     Interior,
@@ -36,12 +36,13 @@ impl Place {
     }
 }
 
-/// Reference coordinates of a side's ends.
+/// Returns the reference coordinates of a side's ends.
 fn ends(entry: &ElementType, side: &[usize]) -> [Vector2<f64>; 2] {
     [side[0], side[side.len() - 1]].map(|n| Vector2::from(entry.nodes[n]))
 }
 
-/// New nodes on sides, by the side's ends and the distance from the smaller of them: the same for either element.
+/// New nodes on sides, by the side's ends and the distance from the end with the smaller number: the same for both
+/// elements.
 #[derive(Default)]
 struct OnSides(HashMap<([u32; 2], u32), u32>);
 
@@ -60,19 +61,19 @@ impl OnSides {
 }
 
 impl Mesh {
-    /// A nodal vector carried over to [`Self::refined`], by the shape functions.
+    /// Interpolates a nodal vector to [`Self::refined`] by the shape functions.
     #[must_use]
     pub fn prolonged(&self, nodal: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
-        // Refinement makes new nodes of the old by the shape functions, whatever is at the nodes.
+        // Refinement interpolates any nodal vector in the same way as positions.
         Self { nodes: nodal.to_vec(), ..self.clone() }.refined().nodes
     }
 
-    /// The mesh with every element cut into four of the same kind and every named edge into halves. Its nodes come
-    /// first, with the same numbers; the body is the same.
+    /// Returns the mesh with every element cut into four of the same type and every named edge into halves. The old
+    /// nodes come first, with the same numbers; the body is the same.
     #[must_use]
     pub fn refined(&self) -> Self {
         let entry = self.entry();
-        // The distinct places of all children's nodes, and which of them each child has.
+        // Distinct positions of all children's nodes, and their indices for each child.
         let mut places: Vec<[f64; 2]> = Vec::new();
         let mut children: Vec<Vec<usize>> = Vec::new();
         for corners in entry.cell.children {
@@ -122,7 +123,7 @@ impl Mesh {
     }
 }
 
-/// The two halves of a segment, with the nodes that refinement has put on it.
+/// Returns the two halves of a segment, with the nodes that refinement has added to it.
 fn halves(segment: &Segment, on_sides: &OnSides) -> [Segment; 2] {
     let own = segment.nodes();
     let pieces = own.len() - 1;
@@ -130,7 +131,7 @@ fn halves(segment: &Segment, on_sides: &OnSides) -> [Segment; 2] {
         let (twice, odd) = ((half * pieces + i) / 2, (half * pieces + i) % 2 == 1);
         let t = (half * pieces + i) as f64 / (2 * pieces) as f64;
         let old = (!odd).then(|| own[twice]);
-        // Every named edge is made of elements' sides, which all have been cut.
+        // A new node exists for every named edge, because edges consist of element sides, which have all been cut.
         old.or_else(|| on_sides.get(segment.ends(), t)).unwrap_or(own[twice])
     };
     [0, 1].map(|half| {

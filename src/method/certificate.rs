@@ -1,4 +1,4 @@
-//! What is known of a result whatever method found it: stability, and whether the warped iteration could have.
+//! Properties of a result independent of the method: stability, and convergence of the warped iteration.
 
 use super::iteration::{Workspace, assemble};
 use crate::assembly::{Forces, Kinematics, Matrix, Problem};
@@ -6,18 +6,18 @@ use crate::element::Tangent;
 use crate::solver::lanczos::extreme_eigenvalues;
 use crate::state::State;
 
-/// What is known of a result whatever method found it.
+/// Properties of a result independent of the method that found it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Certificate {
-    /// Whether the exact tangent is positive definite there; `None` for linear theory and before the end.
+    /// `true` if the exact tangent is positive definite; `None` for linear theory and before the end.
     pub stable: Option<bool>,
     /// ρ = |λ|max(A⁻¹G): the warped iteration converges here if it is below 1. `None` for linear theory, before the
-    /// end, and where A cannot be factorized.
+    /// end, and if A cannot be factorized.
     pub fixed_point_rho: Option<f64>,
 }
 
-/// Whether the exact tangent A + G − λ ∂f_ext/∂u is positive definite (its Cholesky factorization succeeds): a stable
-/// equilibrium, if the state is an equilibrium at this load factor at all. The state has the polar rotations of its
+/// Returns `true` if the exact tangent A + G − λ ∂f_ext/∂u is positive definite (its Cholesky factorization succeeds):
+/// a state in equilibrium at this load factor is then stable. The state must have the polar rotations of its
 /// displacement.
 pub fn is_stable(
     problem: &Problem,
@@ -30,12 +30,13 @@ pub fn is_stable(
     workspace.factor.factorize(workspace.matrix.values()).is_ok()
 }
 
-/// How much harder the supports push along their way the farther they are on it, with the loads as they are, J: the
-/// derivative of their generalised force g = Σ r · ∂u/∂λ with respect to the part λ of their way. `None` where the body is
-/// unstable even as they hold it.
+/// Returns the stiffness along the supports' prescribed motion at constant loads, J: the derivative of their
+/// generalised force g = Σ r · ∂u/∂λ with respect to the fraction λ of the motion. `None` if the body is unstable even
+/// with the supports held.
 ///
-/// It is what is left of the exact tangent when everything but λ is eliminated (its Schur complement): let go, and
-/// pushed by g instead, the body is stable if the tangent is positive definite on the free unknowns and this is positive.
+/// It is the Schur complement of the exact tangent when everything but λ is eliminated: if the supports are released
+/// and driven by g instead, the body is stable if the tangent is positive definite on the free unknowns and this value
+/// is positive.
 pub fn support_stiffness(
     problem: &Problem,
     state: &State,
@@ -43,7 +44,7 @@ pub fn support_stiffness(
     forces: &mut Forces,
     workspace: &mut Workspace,
 ) -> Option<f64> {
-    /// Part of the way by which derivatives are taken: central differences, right to about its square.
+    /// Step of the central differences, as a fraction of the motion; their error is about its square.
     const H: f64 = 1e-4;
     let (system, supports) = (problem.system(), problem.supports());
     let (mesh, pattern) = (system.mesh(), system.pattern());
@@ -52,7 +53,7 @@ pub fn support_stiffness(
     }
     let mut free = vec![0.0; system.dofs()];
     let mut trial = state.clone();
-    // How the free unknowns follow: K du = −∂f_int/∂λ.
+    // Derivative of the free unknowns: K du = −∂f_int/∂λ.
     for h in [H, -H] {
         trial.copy_from(state);
         supports.put(mesh, load_factor + h, Kinematics::Corotated, &mut trial.displacement);
@@ -76,7 +77,7 @@ pub fn support_stiffness(
         system.follow(&mut trial, Kinematics::Corotated);
         problem.linearize(&trial, forces, None);
         problem.balance(&trial, Kinematics::Corotated, load_factor, forces);
-        // Along the free unknowns it is in balance but for the error of `free`, which then counts by its square only.
+        // Along the free unknowns the forces balance up to the error of `free`, which therefore enters quadratically.
         pattern.add_free(&free, 1.0, &mut way);
         let force: f64 = way.iter().zip(forces.residual()).map(|(way, residual)| -way.dot(residual)).sum();
         stiffness += force / (2.0 * h);
@@ -84,7 +85,7 @@ pub fn support_stiffness(
     stiffness.is_finite().then_some(stiffness)
 }
 
-/// What ρ means, in words.
+/// Describes ρ in a sentence.
 #[must_use]
 pub fn rho_words(rho: f64) -> String {
     if rho < 1.0 {
@@ -96,12 +97,13 @@ pub fn rho_words(rho: f64) -> String {
     }
 }
 
-/// Lanczos steps: the extreme eigenvalue is right to a few digits long before.
+/// Number of Lanczos steps; the extreme eigenvalue has a few correct digits long before.
 const LANCZOS_STEPS: usize = 24;
 
-/// ρ = |λ|max(A⁻¹ G') at this state and load factor, the error factor of the warped iteration: it converges here if ρ < 1.
+/// Returns ρ = |λ|max(A⁻¹ G') at this state and load factor, the error factor of the warped iteration: it converges
+/// here if ρ < 1.
 ///
-/// G' is G with the derivative of −f_ext added. `None` where A cannot be factorized.
+/// G' is G plus the derivative of −f_ext. `None` if A cannot be factorized.
 pub fn fixed_point_rho(
     problem: &Problem,
     state: &State,

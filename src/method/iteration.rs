@@ -1,4 +1,4 @@
-//! What an iteration works with, and the step all methods share.
+//! Data of an iteration, and the step shared by all methods.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -9,11 +9,11 @@ use crate::solver::{Factor, SolverError};
 use crate::state::State;
 use crate::timings::{Timings, timed};
 
-/// Why an iteration produced no new state.
+/// Reason why an iteration produced no new state.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum IterationError {
-    /// No factor.
+    /// The factorization failed.
     #[error(transparent)]
     Solver(#[from] SolverError),
     /// The solution is not finite.
@@ -21,25 +21,25 @@ pub enum IterationError {
     NotFinite,
 }
 
-/// Memory an iteration works in, made once for a system.
+/// Work memory of an iteration, allocated once per system.
 #[derive(Debug)]
 pub struct Workspace {
-    /// A matrix over the free unknowns …
+    /// A matrix over the free unknowns.
     pub(crate) matrix: Matrix,
-    /// … and which it is, where it is a tangent of the present state at the present load.
+    /// Kind of tangent in `matrix`, if it is one of the current state at the current load.
     pub(crate) tangent: Option<Tangent>,
-    /// A factor.
+    /// Factor of the last factorized matrix.
     pub(crate) factor: Factor,
-    /// A vector over the free unknowns.
+    /// Vector over the free unknowns.
     pub(crate) free: Vec<f64>,
-    /// A nodal vector.
+    /// Nodal vector.
     pub(crate) nodal: Vec<Vector2<f64>>,
-    /// A state to try steps on.
+    /// State for trial steps.
     pub(crate) trial: State,
 }
 
 impl Workspace {
-    /// Makes room.
+    /// Allocates the memory.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -55,7 +55,7 @@ impl Workspace {
     }
 }
 
-/// When a solve is done.
+/// Convergence criteria.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
     /// Relative residual, for methods that iterate to an equilibrium.
@@ -64,38 +64,39 @@ pub struct Tolerances {
     pub error: f64,
 }
 
-/// A residual below this is small: one that no longer falls is near its end, not diverging, and may be rounding.
+/// Residual that counts as small: if one below it stops falling, it is near convergence, not diverging, and may be
+/// rounding error.
 pub(super) const ROUNDING: f64 = 1e-6;
-/// A bound of rounding above this says too little of a residual for its solve to be called done.
+/// Largest bound of the rounding error with which a solve may end; larger bounds are not meaningful.
 const LOOSEST_FLOOR: f64 = 1e-5;
 
-/// What a method may use and change in one iteration.
+/// Data that a method may use and change in one iteration.
 #[derive(Debug)]
 pub struct Iteration<'a> {
-    /// The equations and their numbers.
+    /// Problem to solve.
     pub problem: &'a Problem,
-    /// Forces of the present state at the present load.
+    /// Forces of the current state at the current load.
     pub forces: &'a mut Forces,
-    /// The relative residual.
+    /// Relative residual.
     pub residual: f64,
-    /// When the solve is done.
+    /// Convergence criteria.
     pub tolerances: Tolerances,
-    /// The state, with the rotations of its displacement; methods replace the displacement.
+    /// State, with the rotations of its displacement; methods replace the displacement.
     pub state: &'a mut State,
-    /// Memory.
+    /// Work memory.
     pub workspace: &'a mut Workspace,
-    /// Where the time goes.
+    /// Measured times.
     pub timings: &'a mut Timings,
 }
 
 impl Iteration<'_> {
-    /// The system of the problem.
+    /// Returns the system of the problem.
     pub(super) fn system(&self) -> &System {
         self.problem.system()
     }
 
-    /// Sees to it that the workspace's matrix is this tangent of the present state at this load factor, the loads' own
-    /// part included.
+    /// Ensures that the workspace's matrix is this tangent of the current state at this load factor, including the
+    /// loads' part.
     pub(super) fn assemble(&mut self, tangent: Tangent, load_factor: f64) {
         if self.workspace.tangent == Some(tangent) {
             return;
@@ -106,8 +107,8 @@ impl Iteration<'_> {
         });
     }
 
-    /// The bound of what rounding changes in the residual, where the residual is small and within it, and it
-    /// says something.
+    /// Returns the bound of the residual's rounding error if the residual is small and within it, and the bound is
+    /// small enough to be meaningful.
     pub(super) fn floor(&mut self) -> Option<f64> {
         if self.residual > ROUNDING {
             return None;
@@ -117,20 +118,20 @@ impl Iteration<'_> {
         floor.filter(|floor| *residual <= *floor && *floor <= LOOSEST_FLOOR)
     }
 
-    /// Whether the supports are where they are at this load factor.
+    /// Returns `true` if the supports are at their positions for this load factor.
     pub(super) fn supports_are_at(&self, load_factor: f64, kinematics: Kinematics) -> bool {
         let system = self.problem.system();
         self.problem.supports().are_at(system.mesh(), load_factor, kinematics, &self.state.displacement)
     }
 
-    /// Whether nothing has been moved yet, and supports turn so far that they must be taken on in parts.
+    /// Returns `true` if the supports are at rest and rotate so far that their motion must be applied in parts.
     pub(super) fn supports_must_turn_in_steps(&self) -> bool {
         let supports = self.problem.supports();
         supports.largest_load_step() < 1.0 && supports.are_at_rest(&self.state.displacement)
     }
 
-    /// Turns the body as a whole with its supports, where they are not yet where they are at this load factor; says
-    /// whether it did. What is left of their way is for [`Self::put_supports`].
+    /// Rotates the body as a whole with its supports, if they are not at their positions for this load factor; returns
+    /// `true` if it did. [`Self::put_supports`] applies the rest of their motion.
     pub(super) fn carry(&mut self, load_factor: f64) -> bool {
         let carries = !self.supports_are_at(load_factor, Kinematics::Corotated)
             && self.problem.supports().carry(self.problem.system().mesh(), load_factor, self.state);
@@ -140,8 +141,9 @@ impl Iteration<'_> {
         carries
     }
 
-    /// Puts the supports where they are at this load factor, if they are not: with the rotations as they are, so that
-    /// the residual force is f_ext − f_int − A v, v the way of the supports, and the next step moves the body as v asks.
+    /// Moves the supports to their positions for this load factor, if necessary. The rotations are kept, so that the
+    /// residual force is f_ext − f_int − A v, v the motion of the supports, and the next step moves the body
+    /// accordingly.
     pub(super) fn put_supports(&mut self, load_factor: f64, kinematics: Kinematics) {
         if self.supports_are_at(load_factor, kinematics) {
             return;
@@ -161,24 +163,24 @@ impl Iteration<'_> {
         timed(&mut self.timings.factorize, || factor.factorize(matrix.values()))
     }
 
-    /// Factorizes the workspace's matrix, definite or not.
+    /// Factorizes the workspace's matrix, which may be indefinite; returns `true` if it is positive definite.
     pub(super) fn factorize_symmetric(&mut self) -> bool {
         let Workspace { matrix, factor, .. } = &mut *self.workspace;
         timed(&mut self.timings.factorize, || factor.factorize_symmetric(matrix.values()))
     }
 
-    /// u ← u + K⁻¹ (f_ext − f_int) with the last factor; returns the step's length.
+    /// Performs u ← u + K⁻¹ (f_ext − f_int) with the last factor; returns the step's length.
     ///
-    /// With K = A = Σ R Ke Rᵀ this is the article's iteration A x = f_ext + R K X (eq. 2) with A x taken to the
-    /// right-hand side: f_int is A x − R K X. The fixed unknowns do not move, so eliminating them leaves no term behind
-    /// (its 24 → 20 → 24), and a small step keeps its digits next to a large x.
+    /// With K = A = Σ R Ke Rᵀ this is the article's iteration A x = f_ext + R K X (eq. 2) with A x on the right-hand
+    /// side: f_int is A x − R K X. The fixed unknowns do not move, so eliminating them leaves no extra term (the
+    /// article's 24 → 20 → 24), and a small step keeps its digits next to a large x.
     pub(super) fn step(&mut self) -> Result<f64, IterationError> {
         self.solve_for_step()?;
         self.advance(1.0);
         Ok(self.step_length())
     }
 
-    /// The step K⁻¹ (f_ext − f_int) with the last factor, left in the workspace.
+    /// Computes the step K⁻¹ (f_ext − f_int) with the last factor into the workspace.
     pub(super) fn solve_for_step(&mut self) -> Result<(), IterationError> {
         let Workspace { factor, free, .. } = &mut *self.workspace;
         timed(&mut self.timings.solve, || {
@@ -188,7 +190,7 @@ impl Iteration<'_> {
         })
     }
 
-    /// u ← u + `fraction` · step; the workspace keeps the step that was made.
+    /// Performs u ← u + `fraction` · step; the workspace keeps the scaled step.
     pub(super) fn advance(&mut self, fraction: f64) {
         let free = &mut self.workspace.free;
         if fraction != 1.0 {
@@ -198,13 +200,13 @@ impl Iteration<'_> {
         self.workspace.tangent = None;
     }
 
-    /// Length of the step in the workspace.
+    /// Returns the length of the step in the workspace.
     pub(super) fn step_length(&self) -> f64 {
         self.workspace.free.iter().map(|v| v * v).sum::<f64>().sqrt()
     }
 }
 
-/// Forces of a state and a tangent, the loads' own part included.
+/// Computes the forces of a state and a tangent, including the loads' part.
 pub(crate) fn assemble(
     problem: &Problem,
     state: &State,
@@ -218,8 +220,8 @@ pub(crate) fn assemble(
     workspace.tangent = Some(tangent);
 }
 
-/// Measures a state: its forces, and a tangent where one is wanted. The displacement is new where rotations and turns of
-/// edges are to `follow` it, in the same sweep. Returns the relative residual.
+/// Computes the forces of a state, and a tangent if requested. If `follow` is `true`, the displacement is new, and
+/// rotations and edge angles are updated in the same loop. Returns the relative residual.
 pub(crate) fn measure(
     problem: &Problem,
     state: &mut State,

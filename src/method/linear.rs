@@ -1,5 +1,5 @@
-//! Linear finite elements, article eqs. (1) and (3): K (x − X) = f. Right while rotations are small, absurdly long
-//! beyond.
+//! Linear finite elements, article eqs. (1) and (3): K (x − X) = f. Valid while rotations are small; beyond, bodies
+//! grow far too long.
 
 use super::status::StallDetector;
 use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
@@ -14,11 +14,11 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     start: || Box::<Linear>::default(),
 };
 
-/// The warped iteration with every rotation the identity: the first solve is the answer, further ones refine it.
+/// The warped iteration with identity rotations: the first solve gives the result, further ones refine it.
 #[derive(Clone, Debug, Default)]
 pub struct Linear {
     stall: StallDetector,
-    /// Whether the workspace holds the factor of K.
+    /// `true` if the workspace holds the factor of K.
     factorized: bool,
     solved: bool,
 }
@@ -42,11 +42,11 @@ impl Method for Linear {
         if !self.factorized || held {
             it.assemble(Tangent::WARPED, 1.0);
             it.factorize()?;
-            // A hand's tangent is not constant.
+            // The tangent of a mouse spring is not constant.
             self.factorized = !held;
         }
         if !self.solved && !held {
-            // The answer does not depend on where the body was; a large displacement would only round it.
+            // The result does not depend on the previous state; a large displacement would only add rounding errors.
             it.state.displacement.reset();
             it.forces.residual.copy_from_slice(&it.forces.external);
             self.solved = true;

@@ -1,7 +1,7 @@
-//! Methods: how an iteration turns the current state into one nearer to equilibrium.
+//! Methods: the iterations that bring a state closer to equilibrium.
 //!
 //! A method decides which matrix an iteration factorizes, and when the solve is done. The iteration itself is the
-//! article's, the same for all:
+//! article's, the same for all methods:
 //!
 //! rotations(F(x)) → assemble A, f → factorize → solve → update x
 
@@ -25,26 +25,26 @@ pub use iteration::{Iteration, IterationError, Tolerances, Workspace};
 pub(crate) use status::is_useful_start;
 pub use status::{Reason, floor_words};
 
-/// An entry of the registry.
+/// Entry of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct MethodEntry {
-    /// What scene files name.
+    /// Method in scene files.
     pub kind: MethodKind,
-    /// The name scene files use.
+    /// Name in scene files.
     pub id: &'static str,
     /// One sentence for lists and tooltips.
     pub about: &'static str,
-    /// The method at rest.
+    /// Constructor.
     pub start: fn() -> Box<dyn Method>,
 }
 
 macro_rules! registry {
     ($($kind:ident => $entry:path),* $(,)?) => {
-        /// Every method there is: a file beside this one and a line here.
+        /// All methods; to add one, write a file in this folder and a line here.
         pub const METHODS: &[MethodEntry] = &[$($entry),*];
 
         impl MethodKind {
-            /// Its entry in the registry.
+            /// Returns the registry entry.
             #[must_use]
             pub fn entry(self) -> MethodEntry {
                 match self {
@@ -63,94 +63,94 @@ registry! {
 }
 
 impl MethodKind {
-    /// The name scene files use.
+    /// Returns the name in scene files.
     #[must_use]
     pub fn id(self) -> &'static str {
         self.entry().id
     }
 }
 
-/// What a method makes of a state that an iteration has reached.
+/// Decision of a method after an iteration.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// Another iteration.
+    /// Continue with another iteration.
     Continue,
-    /// Another iteration; the load factor or the state has changed since it was measured.
+    /// Continue with another iteration; the load factor or the state has changed since the forces were computed.
     Changed,
-    /// Done.
+    /// Converged.
     Converged,
-    /// Done as far as double precision goes: the residual is above the tolerance, and within this bound of what rounding
-    /// changes in it.
+    /// Converged as far as double precision allows: the residual is above the tolerance, but within this bound of its
+    /// rounding error.
     AtRounding(f64),
-    /// No use to go on.
+    /// Give up.
     Stop(Reason),
 }
 
-/// Why a method begins anew.
+/// Reason why a method restarts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
-    /// The body is at rest, or where the caller put it; the equations are what they were.
+    /// The body is at rest, or in a state set by the caller; the equations are unchanged.
     AtRest,
     /// The state is kept; loads or tolerances have changed, the stiffness has not.
     NewLoads,
-    /// The state is kept, the stiffness is another one.
+    /// The state is kept; the stiffness has changed.
     NewStiffness,
-    /// The unknowns are others: nothing that was found of them is of use.
+    /// The unknowns have changed; all earlier results are invalid.
     NewUnknowns,
 }
 
-/// What makes a method. It may remember: a new one starts at rest.
+/// Solution method. It may have internal state; a new one starts at rest.
 pub trait Method: std::fmt::Debug + Send + Sync {
-    /// A copy as it stands, without what it keeps for the iterations to come: it finds that again.
+    /// Clones without cached factors; they are rebuilt on first use.
     fn copy(&self) -> Box<dyn Method>;
 
-    /// Forgets the iteration that was, and what the restart makes useless.
+    /// Resets the iteration, and discards what the restart makes invalid.
     fn restart(&mut self, why: Restart);
 
-    /// How the present state is seen.
+    /// Returns the strain measure of the current state.
     fn kinematics(&self) -> Kinematics {
         Kinematics::Corotated
     }
 
-    /// The tangent that the next iteration is going to need of the present state: it is assembled in the sweep that
-    /// measures the state. `None` where none is needed, or that is not known yet.
+    /// Returns the tangent of the current state that the next iteration will need; it is assembled in the same loop as
+    /// the forces. `None` if none is needed or the choice is still open.
     fn tangent(&self) -> Option<Tangent> {
         None
     }
 
-    /// The fraction of the load that is on the body at present.
+    /// Returns the fraction of the load currently applied.
     fn load_factor(&self) -> f64 {
         1.0
     }
 
-    /// Load steps taken so far, the present one included.
+    /// Returns the number of load steps so far, including the current one.
     fn load_steps(&self) -> u32 {
         1
     }
 
-    /// Length of the last step over that of the one before: below 1 the iteration contracts.
+    /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.
     fn step_ratio(&self) -> Option<f64> {
         None
     }
 
-    /// What was skipped because the scene does not need it; `None` for methods that do not decide.
+    /// Returns the decisions that saved work; `None` for methods that make none.
     fn report(&self) -> Option<AutoReport> {
         None
     }
 
-    /// One iteration: a new displacement from the current one.
+    /// Performs one iteration: computes a new displacement from the current one.
     ///
     /// # Errors
-    /// [`IterationError`]; the caller puts the state back then.
+    /// [`IterationError`]; the caller then restores the state.
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError>;
 
-    /// Judges the state of the iteration.
+    /// Decides whether the state has converged.
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict;
 
-    /// Out of iterations: leaves the best state there is.
+    /// Leaves the best available state; called when the iteration limit is reached.
     fn stop(&mut self, _: &mut State) {}
 
-    /// What to do where an iteration gave no state; the state is the one before.
+    /// Handles a failed iteration; the state is the one before it. Returns how to continue.
     fn recover(&mut self, _: &mut Iteration<'_>, error: IterationError) -> Verdict {
         Verdict::Stop(Reason::Iteration(error))
     }

@@ -1,12 +1,12 @@
-//! Newton's method with the exact tangent A + G: full steps, and around them adaptive load stepping.
+//! Newton's method with the exact tangent A + G: full steps with adaptive load stepping.
 //!
-//! The first full step from rest is the linear solution, absurdly long, and the second one repairs it: a line search on
-//! the energy would refuse both, and is what makes Newton slow here. Where full steps fail the load is put on in parts.
-//! Where no part is small enough, line-searched descent takes over: on A + G where that is positive definite, else on
-//! A + max(G, 0), which always is.
+//! The first full step from rest is the linear solution, which is far too long, and the second one corrects it: a line
+//! search on the energy would reject both and slow Newton's method down. If full steps fail, the load is applied in
+//! parts. If no part is small enough, line-searched descent takes over: with A + G if it is positive definite, else
+//! with A + max(G, 0), which always is.
 //!
-//! Supports that move are put on with the load: the body is turned as a whole with them, and what is left of their way
-//! enters the first step of a load step as a force.
+//! The motion of supports is applied with the load: the body is rotated as a whole with them, and the rest of their
+//! motion enters the first step of a load step as a force.
 
 use super::iteration::ROUNDING;
 use super::status::{LONGEST_STEP, farthest};
@@ -23,38 +23,39 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     start: || Box::<Newton>::default(),
 };
 
-/// Full steps a load step may take before it must be close. The ordinary count is 5 to 9.
+/// Full steps per load step before the residual must be close to zero. Usually 5 to 9 are needed.
 const MAX_STEPS: u32 = 15;
-/// A relative residual this small is close: convergence is quadratic from here …
+/// Relative residual below which convergence is quadratic.
 const CLOSE: f64 = 1e-2;
-/// … and gets this many steps more.
+/// Additional steps once the residual is below [`CLOSE`].
 const LAST_STEPS: u32 = 6;
-/// Load steps grow by this after a success …
+/// Factor by which load steps grow after a success.
 const GROW: f64 = 2.0;
-/// … and shrink by this after a failure.
+/// Factor by which load steps shrink after a failure.
 const SHRINK: f64 = 0.35;
-/// A load step below this hands over to descent.
+/// Smallest load step; below it descent takes over.
 const SMALLEST_LOAD_STEP: f64 = 1e-4;
-/// Relative residual that will do between load steps: the next step corrects it anyway.
+/// Relative residual accepted between load steps; the next step corrects it.
 const BETWEEN_LOAD_STEPS: f64 = 1e-3;
-/// Steps in a row that do not shorten, after which a load step is given up.
+/// Number of successive steps without decrease after which a load step is given up.
 const PATIENCE: u32 = 3;
-/// Armijo's constant: descent accepts a step if the energy falls by at least this fraction of what the slope promises.
+/// Armijo's constant: descent accepts a step if the energy falls by at least this fraction of the decrease predicted by
+/// the slope.
 const SUFFICIENT: f64 = 1e-4;
-/// Halvings of a descent step before it is given up.
+/// Largest number of halvings of a descent step.
 const MAX_HALVINGS: u32 = 40;
 
-/// The state of the load stepping.
+/// State of load stepping.
 #[derive(Clone, Debug)]
 pub struct Newton {
-    /// Load factor being solved for.
+    /// Load factor of the current load step.
     target: f64,
-    /// The last load factor whose equilibrium was found, and that equilibrium.
+    /// Last load factor with a known equilibrium; `base` is that equilibrium.
     reached: f64,
     base: Option<State>,
     is_based: bool,
     load_step: f64,
-    /// The most that supports allow.
+    /// Largest load step that the supports allow.
     largest_load_step: f64,
     load_steps: u32,
     steps: u32,
@@ -90,7 +91,7 @@ impl Default for Newton {
 impl Newton {
     fn begin_load_step(&mut self) {
         self.load_step = self.load_step.min(self.largest_load_step);
-        // Descent takes the whole load in one go, but not supports that turn far.
+        // Descent applies the whole load at once, but not large rotations of supports.
         let step = if self.descends { self.largest_load_step } else { self.load_step };
         self.target = (self.reached + step).min(1.0);
         self.load_steps += 1;
@@ -100,7 +101,7 @@ impl Newton {
         self.last_residual = f64::INFINITY;
     }
 
-    /// Back to the last equilibrium, with less load; or, if that was hardly any, to descent.
+    /// Returns to the last equilibrium and tries a smaller load step, or descent if it would be too small.
     fn give_up_load_step(&mut self, state: &mut State) -> Verdict {
         self.restore(state);
         self.load_step = SHRINK * (self.target - self.reached);
@@ -109,7 +110,7 @@ impl Newton {
         Verdict::Changed
     }
 
-    /// The last equilibrium: of no load that is the body at rest, wherever the iteration started.
+    /// Restores the last equilibrium; without load this is the body at rest, wherever the iteration started.
     fn restore(&mut self, state: &mut State) {
         let Some(base) = self.base.as_mut().filter(|_| self.is_based) else { return };
         if self.reached == 0.0 {
@@ -118,8 +119,8 @@ impl Newton {
         state.copy_from(base);
     }
 
-    /// A step that lowers the energy: on A + G where that is positive definite, else on A + max(G, 0), halved until the
-    /// energy falls.
+    /// Performs a step that lowers the energy: with A + G if it is positive definite, else with A + max(G, 0), halved
+    /// until the energy falls.
     fn descend(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         if !it.supports_are_at(self.target, Kinematics::Corotated) {
             it.carry(self.target);
@@ -138,7 +139,7 @@ impl Newton {
         let (problem, trial) = (it.problem, &mut it.workspace.trial);
         let promised = problem.system().pattern().dot(&it.forces.residual, &it.workspace.free);
         let before = problem.energy(it.state, self.target);
-        // Differences of energies below this are rounding.
+        // Differences of energies below this are rounding errors.
         let noise = 1e-13 * before.abs();
         let mut fraction = 1.0;
         for _ in 0..MAX_HALVINGS {
@@ -164,7 +165,7 @@ impl Method for Newton {
     }
 
     fn restart(&mut self, _: Restart) {
-        // The room for it is kept: a frame allocates nothing.
+        // Keep the allocated state, so that no memory is allocated per frame.
         *self = Self { base: self.base.take(), ..Self::default() };
     }
 
@@ -209,14 +210,15 @@ impl Method for Newton {
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
         let (residual, tolerance) = (it.residual, it.tolerances.residual);
         if self.steps == 0 {
-            // Nothing solved yet; a state without load is its own equilibrium.
+            // Before the first step only a state under the full load can have converged; without load the state is
+            // trivially in equilibrium.
             let is_there = self.target == 1.0 && it.supports_are_at(1.0, Kinematics::Corotated);
             return if residual <= tolerance && is_there { Verdict::Converged } else { Verdict::Continue };
         }
         let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
         let gets_on = residual < self.last_residual;
         self.last_residual = residual;
-        // A step from what rounding leaves would be rounding too: soft bodies go far on it.
+        // A step computed from a residual at rounding level would be rounding error too, and move soft bodies far.
         let floor = if residual <= enough || self.target < 1.0 { None } else { it.floor() };
         if residual <= enough || floor.is_some() {
             it.assemble(Tangent::EXACT, self.target);
@@ -261,7 +263,7 @@ impl Method for Newton {
     }
 
     fn stop(&mut self, state: &mut State) {
-        // Descent only ever improves on what it started from.
+        // Descent never raises the energy, so its last state is the best one.
         if !self.descends {
             self.restore(state);
             self.target = self.reached;

@@ -1,4 +1,4 @@
-//! When an iteration is over: converged, out of iterations, or going nowhere.
+//! End of an iteration: converged, out of iterations, or diverging.
 
 use super::iteration::ROUNDING;
 use super::{Iteration, IterationError, Verdict};
@@ -6,28 +6,28 @@ use crate::assembly::System;
 use crate::state::{State, largest};
 use crate::words::{count, number, two_digits};
 
-/// Why an iteration stopped before it converged.
+/// Reason why an iteration stopped before it converged.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// All iterations that were allowed.
+    /// The iteration limit was reached.
     IterationLimit(u32),
-    /// The residual has not fallen for this many iterations; it is small, and more than rounding explains.
+    /// The residual has not fallen for this many iterations; it is small, but above its rounding error.
     Stuck(u32),
     /// The residual has not fallen for this many iterations, and is not small.
     Stalled(u32),
-    /// A node is farther from its rest position than this many sizes of the body.
+    /// A node has moved by more than this multiple of the body's size.
     RanAway(f64),
-    /// An iteration gave no state.
+    /// An iteration failed.
     Iteration(IterationError),
-    /// No load step, however small, and no descent led on.
+    /// Neither the smallest load step nor descent made progress.
     NoDescent,
     /// Stopped from outside.
     Interrupted,
 }
 
 impl Reason {
-    /// Whether the iteration leads nowhere; if not it stopped while still improving, or near its end.
+    /// Returns `true` if the iteration diverges; `false` if it stopped while still improving, or close to convergence.
     #[must_use]
     pub fn is_divergence(&self) -> bool {
         match self {
@@ -60,25 +60,25 @@ impl std::fmt::Display for Reason {
     }
 }
 
-/// What it means that a solve has ended at the bound of rounding in its residual, in words.
+/// Explains in a sentence that a solve has ended at the rounding error of its residual.
 #[must_use]
 pub fn floor_words(floor: f64, tolerance: f64) -> String {
     let [floor, tolerance] = [floor, tolerance].map(|v| number(two_digits(v)));
     format!("no digits are left: rounding may change the residual by {floor}, so {tolerance} cannot be asked for here")
 }
 
-/// Iterations without progress after which a fixed-point iteration is called off. A larger number lets slower
-/// iterations converge; a smaller one tells the user earlier that a load is hopeless.
+/// Number of iterations without progress after which a fixed-point iteration is given up. A larger number lets slower
+/// iterations converge; a smaller one reports earlier that a load is too large.
 const PATIENCE: u32 = 30;
-/// A new best residual counts as progress if it is this much below the old one.
+/// Largest ratio of a new best residual to the old one that counts as progress.
 const PROGRESS: f64 = 0.98;
-/// A residual that is more than this part of the one before no longer falls as an iteration makes it.
+/// Largest ratio of a residual to the one before that counts as falling.
 const FALLS: f64 = 0.5;
-/// Displacement over the size of the body beyond which nothing useful is to be expected. The linear solution of a
-/// slender beam under a large load is absurdly long, and still what was asked for: so not too small.
+/// Largest useful displacement, relative to the size of the body. It is large because the linear solution of a slender
+/// beam under a large load is very long and still a valid result of linear theory.
 const FARTHEST: f64 = 1e6;
 
-/// Sees from its residuals whether a fixed-point iteration still gets anywhere.
+/// Detects from its residuals whether a fixed-point iteration still makes progress.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StallDetector {
     best: Option<f64>,
@@ -87,7 +87,7 @@ pub(super) struct StallDetector {
     pub(super) steps: StepLengths,
 }
 
-/// The lengths of the last two steps.
+/// Lengths of the last two steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepLengths {
     last: f64,
@@ -95,20 +95,20 @@ pub(super) struct StepLengths {
 }
 
 impl StepLengths {
-    /// Takes the length of a step.
+    /// Records the length of a step.
     pub(super) fn stepped(&mut self, step: f64) {
         self.ratio = (self.last > 0.0).then(|| step / self.last).filter(|r| r.is_finite());
         self.last = step;
     }
 
-    /// Length of the last step over that of the one before.
+    /// Returns the length of the last step relative to the one before.
     pub(super) fn ratio(&self) -> Option<f64> {
         self.ratio
     }
 }
 
 impl StallDetector {
-    /// Judges the state of an iteration.
+    /// Decides whether the iteration has converged, stalled or diverged.
     pub(super) fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
         let residual = it.residual;
         if residual <= it.tolerances.residual {
@@ -139,19 +139,19 @@ impl StallDetector {
     }
 }
 
-/// The largest displacement over the size of the body at rest.
+/// Returns the largest displacement relative to the size of the body at rest.
 pub(super) fn farthest(system: &System, state: &State) -> f64 {
     largest(&state.displacement) / system.size()
 }
 
-/// A displacement this many sizes of the body long is not worth going on from. The linear solution of a slender beam
+/// Largest displacement, in sizes of the body, from which an iteration continues. The linear solution of a slender beam
 /// under a moderate load, with which Newton's method begins, is shorter.
 pub(super) const LONGEST_STEP: f64 = 20.0;
 
-/// Whether a solve that starts from this state has a chance: it is finite, not absurdly far from rest, and no element is
-/// crushed or turned inside out.
+/// Returns `true` if a solve may start from this state: it is finite, not too far from rest, and no element is crushed
+/// or inverted.
 pub(crate) fn is_useful_start(system: &System, state: &State) -> bool {
-    /// Area of an element over that at rest, below which it counts as crushed.
+    /// Ratio of an element's current to rest area below which it counts as crushed.
     const CRUSHED: f64 = 0.01;
     state.is_finite()
         && farthest(system, state) <= LONGEST_STEP

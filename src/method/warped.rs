@@ -1,9 +1,9 @@
 //! Warped stiffness: Müller and Gross 2004, "Interactive Virtual Materials"; article eq. (2), R K (Rᵀ x − X) = f.
 //!
-//! A fixed-point iteration x ← A(R)⁻¹ (f + R K X), R the polar factor of x. Where it converges the result is an exact
-//! equilibrium of the corotated energy; it converges while the load is small: for a cantilever up to about P L²/(E I) = 3.
+//! Fixed-point iteration x ← A(R)⁻¹ (f + R K X), R the polar factor of x. If it converges, the result is an exact
+//! equilibrium of the corotated energy; it converges for small loads: for a cantilever up to about P L²/(E I) = 3.
 //!
-//! Supports that turn far are taken on in parts, an iteration each, and the load with them.
+//! Large rotations of supports are applied in parts, one iteration each, and the load with them.
 
 use super::status::StallDetector;
 use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
@@ -18,7 +18,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     start: || Box::<Warped>::default(),
 };
 
-/// The article's iteration.
+/// Method `warped`, the article's iteration.
 #[derive(Clone, Debug)]
 pub struct Warped {
     stall: StallDetector,

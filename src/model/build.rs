@@ -1,4 +1,4 @@
-//! Scenes in code: builders and setters with numbers, checked where they are simulated.
+//! Builders and setters of scenes. Values are checked when the scene is simulated.
 
 use super::{
     Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
@@ -7,7 +7,7 @@ use super::{
 use crate::words::engineering;
 
 impl Scene {
-    /// A scene without a mesh, for [`crate::Simulation::with_mesh`].
+    /// Returns a scene without a mesh, for [`crate::Simulation::with_mesh`].
     #[must_use]
     pub fn named(name: impl Into<String>) -> Self {
         Self {
@@ -26,8 +26,8 @@ impl Scene {
         }
     }
 
-    /// A rectangle [0, length] × [−height/2, height/2], m, of rubber, on one row of six-node triangles: nothing holds or
-    /// pulls it yet.
+    /// Returns a rubber rectangle [0, length] × [−height/2, height/2], m, on one row of six-node triangles, without
+    /// supports and loads.
     ///
     /// ```
     /// use warpbeam::{Scene, Simulation};
@@ -40,7 +40,7 @@ impl Scene {
     /// ```
     #[must_use]
     pub fn beam(length: f64, height: f64) -> Self {
-        // Cells about as long as high.
+        // The cells are about as long as high.
         let along = (length / height).round().clamp(4.0, 100.0);
         let along = if along.is_finite() { along as u32 } else { 4 };
         let beam = Beam {
@@ -54,7 +54,7 @@ impl Scene {
         Self { beam: Some(beam), ..Self::named("Beam") }
     }
 
-    /// With so many metres per unit of its mesh file.
+    /// Sets the metres per unit of the mesh file.
     #[must_use]
     pub fn with_scale(mut self, scale: f64) -> Self {
         if let Some(mesh) = &mut self.mesh {
@@ -63,7 +63,7 @@ impl Scene {
         self
     }
 
-    /// With its cells cut this way.
+    /// Sets how cells are cut into triangles.
     #[must_use]
     pub fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
         if let Some(beam) = &mut self.beam {
@@ -72,7 +72,7 @@ impl Scene {
         self
     }
 
-    /// Bent to an arch whose axis rises by so much, m, in its middle.
+    /// Bends the beam to an arch whose axis rises by `rise`, m, in its middle.
     #[must_use]
     pub fn with_rise(mut self, rise: f64) -> Self {
         if let Some(beam) = &mut self.beam {
@@ -81,7 +81,7 @@ impl Scene {
         self
     }
 
-    /// With so many cells along and across the beam.
+    /// Sets the number of cells along and across the beam.
     #[must_use]
     pub fn with_cells(mut self, along: u32, across: u32) -> Self {
         if let Some(beam) = &mut self.beam {
@@ -90,41 +90,41 @@ impl Scene {
         self
     }
 
-    /// With this element.
+    /// Sets the element.
     #[must_use]
     pub fn with_element(mut self, element: ElementKind) -> Self {
         self.set_element(element);
         self
     }
 
-    /// With this material.
+    /// Sets the material.
     #[must_use]
     pub fn with_material(mut self, material: Material) -> Self {
         self.material = material;
         self
     }
 
-    /// With this method.
+    /// Sets the method.
     #[must_use]
     pub fn with_method(mut self, method: MethodKind) -> Self {
         self.solver.method = method;
         self
     }
 
-    /// Fixed here in both directions.
+    /// Adds a support that fixes `place` in both directions.
     #[must_use]
     pub fn clamp(self, place: impl Into<Place>) -> Self {
         self.support(place, &[Axis::X, Axis::Y])
     }
 
-    /// Fixed here in these directions.
+    /// Adds a support that fixes `place` in these directions.
     #[must_use]
     pub fn support(mut self, place: impl Into<Place>, fix: &[Axis]) -> Self {
         self.supports.push(Support::new(place, fix));
         self
     }
 
-    /// With the last support taken by this displacement, m, and turned about its middle by this angle, rad.
+    /// Prescribes a displacement, m, and a rotation about its middle, rad, for the support added last.
     ///
     /// ```
     /// use warpbeam::{Scene, Simulation, Status};
@@ -143,28 +143,29 @@ impl Scene {
         self
     }
 
-    /// Pulled here by a dead force, N.
+    /// Adds a dead force, N.
     #[must_use]
     pub fn force(mut self, place: impl Into<Place>, force: [f64; 2]) -> Self {
         self.loads.push(Load::force(place, force));
         self
     }
 
-    /// Turned here by a moment, N m, counter-clockwise, that turns with its edge.
+    /// Adds a moment, N m, counter-clockwise, that rotates with its edge.
     #[must_use]
     pub fn moment(mut self, edge: &str, moment: f64) -> Self {
         self.loads.push(Load::moment(edge, moment));
         self
     }
 
-    /// With its weight under this acceleration, m/s².
+    /// Adds the weight under this acceleration, m/s².
     #[must_use]
     pub fn gravity(mut self, acceleration: [f64; 2]) -> Self {
         self.loads.push(Load::gravity(acceleration));
         self
     }
 
-    /// With the last load as a pulse: times sin²(π (t − start)/duration) within, 0 outside.
+    /// Makes the load added last a pulse, with the factor sin²(π (t − start)/duration) from `start`, s, for `duration`,
+    /// s, and 0 at other times.
     #[must_use]
     pub fn pulse(mut self, start: f64, duration: f64) -> Self {
         match self.loads.last_mut() {
@@ -176,7 +177,7 @@ impl Scene {
         self
     }
 
-    /// In motion, with this integrator and time step, s.
+    /// Makes the scene dynamic with this integrator and time step, s.
     ///
     /// ```
     /// use warpbeam::{IntegratorKind, Scene, Simulation};
@@ -196,14 +197,14 @@ impl Scene {
         self
     }
 
-    /// Starting with this velocity, m/s, and angular velocity about the centre of mass, rad/s.
+    /// Sets the initial velocity, m/s, and angular velocity about the centre of mass, rad/s.
     #[must_use]
     pub fn starting(mut self, velocity: [f64; 2], spin: f64) -> Self {
         self.start = Start { velocity, spin };
         self
     }
 
-    /// Measured here.
+    /// Adds a probe.
     #[must_use]
     pub fn probe(mut self, name: &str, place: impl Into<Place>) -> Self {
         self.probes.push(Probe { name: name.to_owned(), place: place.into() });
@@ -213,7 +214,7 @@ impl Scene {
     /// Sets the components of a force, N; `load` counts the loads from 0.
     ///
     /// # Errors
-    /// Where there is no such force. What is out of range is refused when the scene is simulated.
+    /// If there is no such force. Values out of range are rejected when the scene is simulated.
     pub fn set_force(&mut self, load: usize, new: [f64; 2]) -> Result<(), Invalid> {
         match self.loads.get_mut(load) {
             Some(Load::Force { force, .. }) => *force = new,
@@ -225,7 +226,7 @@ impl Scene {
     /// Sets a moment, N m; `load` counts the loads from 0.
     ///
     /// # Errors
-    /// As [`Self::set_force`].
+    /// Same errors as [`Self::set_force`].
     pub fn set_moment(&mut self, load: usize, new: f64) -> Result<(), Invalid> {
         match self.loads.get_mut(load) {
             Some(Load::Moment { moment, .. }) => *moment = new,
@@ -237,7 +238,7 @@ impl Scene {
     /// Sets the acceleration of a weight, m/s²; `load` counts the loads from 0.
     ///
     /// # Errors
-    /// As [`Self::set_force`].
+    /// Same errors as [`Self::set_force`].
     pub fn set_gravity(&mut self, load: usize, new: [f64; 2]) -> Result<(), Invalid> {
         match self.loads.get_mut(load) {
             Some(Load::Gravity { acceleration, .. }) => *acceleration = new,
@@ -246,10 +247,10 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets where a support takes its place, m, and how far it turns it, rad; `support` counts the supports from 0.
+    /// Sets the prescribed displacement, m, and rotation, rad, of a support; `support` counts the supports from 0.
     ///
     /// # Errors
-    /// Where there is no such support. What is out of range is refused when the scene is simulated.
+    /// If there is no such support. Values out of range are rejected when the scene is simulated.
     pub fn move_support(&mut self, support: usize, displacement: [f64; 2], turn: f64) -> Result<(), Invalid> {
         let count = self.supports.len();
         let Some(moved) = self.supports.get_mut(support) else {
@@ -260,8 +261,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Gives the beam another length and height, m, and moves loads, supports and probes at points along with it. The number
-    /// of cells stays. A scene with a mesh file stays as it is.
+    /// Changes the length and height of the beam, m, and moves loads, supports and probes at points with it. The number
+    /// of cells does not change. A scene with a mesh file is not changed.
     pub fn resize_beam(&mut self, length: f64, height: f64) {
         let Some(beam) = &mut self.beam else { return };
         let before = beam.clone();
@@ -281,7 +282,7 @@ impl Scene {
         }
     }
 
-    /// Every load times `factor`, and supports taken as much of their way.
+    /// Multiplies every load and every prescribed displacement and rotation of supports by `factor`.
     pub fn scale_loads(&mut self, factor: f64) {
         for support in &mut self.supports {
             support.displacement = support.displacement.map(|u| u * factor);
@@ -295,14 +296,14 @@ impl Scene {
         }
     }
 
-    /// The element of its mesh.
+    /// Returns the element type of the scene's mesh.
     #[must_use]
     pub fn element(&self) -> ElementKind {
         let beam = self.beam.as_ref().map(|b| b.element);
         beam.or(self.mesh.as_ref().and_then(|m| m.element)).unwrap_or_default()
     }
 
-    /// Sentences about pulses that are shorter than a time step.
+    /// Returns warnings about pulses that are shorter than a time step.
     #[must_use]
     pub fn unresolved_pulses(&self) -> Vec<String> {
         let step = self.dynamics.time_step;
@@ -319,7 +320,7 @@ impl Scene {
             .collect()
     }
 
-    /// Makes every cell of its mesh this element.
+    /// Sets the element type of the scene's mesh.
     pub fn set_element(&mut self, element: ElementKind) {
         if let Some(beam) = &mut self.beam {
             beam.element = element;
@@ -341,7 +342,8 @@ fn no_such_load(load: usize, expected: &str, got: Option<&Load>) -> Invalid {
 }
 
 impl Material {
-    /// Rubber-like in plane stress: this Young's modulus (Pa) and Poisson ratio, 1000 kg/m³, 1 m thick.
+    /// Returns a rubber-like material in plane stress with this Young's modulus (Pa) and Poisson ratio, 1000 kg/m³ and
+    /// 1 m thick.
     ///
     /// ```
     /// use warpbeam::{Material, Plane};

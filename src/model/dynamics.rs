@@ -1,11 +1,11 @@
-//! How time goes on in a dynamic scene, and how it starts.
+//! Time integration settings and initial velocities of a dynamic scene.
 
 use serde::{Deserialize, Serialize};
 
 use super::error::Invalid;
 use super::limits::{self, Limit};
 
-/// How time goes on.
+/// Time integration settings of a dynamic scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -14,9 +14,9 @@ pub struct DynamicsSettings {
     pub time_step: f64,
     /// Time after which a headless run ends, s.
     pub duration: f64,
-    /// Solves a step, or a stage of one; 0: as many as the solver's tolerance takes.
+    /// Solves per time step, or per stage of one; 0 repeats until the solver's tolerance is met.
     pub iterations: u32,
-    /// The integrator, by its name in the registry.
+    /// Integrator.
     pub integrator: IntegratorKind,
     /// Rayleigh damping.
     pub damping: Damping,
@@ -34,34 +34,34 @@ impl Default for DynamicsSettings {
     }
 }
 
-/// Rayleigh damping: a part that resists motion, and one that resists deformation.
+/// Rayleigh damping: mass-proportional and stiffness-proportional.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct Damping {
-    /// Factor of the mass, 1/s: a mode of angular frequency ω decays with this over 2.
+    /// Mass-proportional factor α, 1/s: a mode of angular frequency ω decays at the rate α/2.
     pub mass: f64,
-    /// Factor of the stiffness, s: a mode decays with this times ω²/2. Rigid motion is not damped.
+    /// Stiffness-proportional factor β, s: a mode decays at the rate β ω²/2. Rigid motion is not damped.
     pub stiffness: f64,
 }
 
-/// The integrators there are; [`crate::dynamics::INTEGRATORS`] says what each does.
+/// Integrators; [`crate::dynamics::INTEGRATORS`] describes each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum IntegratorKind {
-    /// The article's and the games' way.
+    /// First order, as in the article and in games.
     ImplicitEuler,
-    /// Second order, damps what the step cannot resolve.
+    /// Second order, damps modes that the time step cannot resolve.
     #[default]
     TrBdf2,
-    /// Second order, keeps energy, momentum and angular momentum.
+    /// Second order, conserves energy, momentum and angular momentum.
     EnergyMomentum,
-    /// Explicit.
+    /// Explicit; no equations are solved.
     SymplecticEuler,
 }
 
-/// How a dynamic scene starts.
+/// Initial velocities of a dynamic scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -72,13 +72,13 @@ pub struct Start {
     pub spin: f64,
 }
 
-/// A load in time: times sin²(π (t − start)/duration) within, 0 outside.
+/// Time dependence of a load: the factor is sin²(π (t − start)/duration) during the pulse and 0 at other times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pulse {
-    /// When it begins, s.
+    /// Start, s.
     pub start: f64,
-    /// How long it lasts, s.
+    /// Duration, s.
     pub duration: f64,
 }
 
@@ -112,7 +112,7 @@ impl Start {
 }
 
 impl Pulse {
-    /// The factor of the load at a time.
+    /// Returns the factor of the load at a time, s.
     ///
     /// ```
     /// use warpbeam::scene::Pulse;
@@ -125,7 +125,7 @@ impl Pulse {
         if (0.0..=1.0).contains(&t) { (std::f64::consts::PI * t).sin().powi(2) } else { 0.0 }
     }
 
-    /// The integral of the factor from one time to another, s.
+    /// Returns the integral of the factor from one time to another, s.
     ///
     /// ```
     /// use warpbeam::scene::Pulse;
@@ -146,13 +146,13 @@ impl Pulse {
         }
     }
 
-    /// The mean of the factor from one time to another.
+    /// Returns the mean of the factor from one time to another.
     #[must_use]
     pub fn mean(&self, from: f64, to: f64) -> f64 {
         if to > from { self.impulse(from, to) / (to - from) } else { self.factor(from) }
     }
 
-    /// When it is over, s.
+    /// Returns the end of the pulse, s.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.start + self.duration

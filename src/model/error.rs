@@ -1,41 +1,41 @@
-//! What can be wrong with a scene, said with file, line and what was expected.
+//! Errors of scenes, with file, line and expected value.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use thiserror::Error;
 
-/// A value that reads well but cannot be used.
+/// Value that can be parsed but not used.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{key}: {message}")]
 pub struct Invalid {
-    /// The key, as `--set` writes it: `load.0.force`.
+    /// Key as in `--set`: `load.0.force`.
     pub key: String,
-    /// What was expected, and what was there.
+    /// Expected and actual value.
     pub message: String,
 }
 
 impl Invalid {
-    /// `key` and the sentence about it.
+    /// Returns an error for `key` with this message.
     pub fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
         Self { key: key.into(), message: message.into() }
     }
 }
 
-/// Why the text of a scene could not be read.
+/// Reason why the text of a scene could not be read.
 #[derive(Clone, Debug, Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The system's reason.
+    /// I/O error of the operating system.
     #[error("{0}")]
     System(Arc<std::io::Error>),
-    /// A folder, or a device.
+    /// The path is a folder or a device.
     #[error("not a file")]
     NoFile,
-    /// More bytes than a scene may have.
+    /// The text is larger than the limit for scenes.
     #[error("{bytes} bytes, more than the {most} a scene may have")]
     TooLarge {
-        /// Bytes read; for a stream, no more than one over the limit.
+        /// Bytes read; for a stream, at most one over the limit.
         bytes: u64,
         /// The limit.
         most: u64,
@@ -48,46 +48,46 @@ impl From<std::io::Error> for ReadError {
     }
 }
 
-/// Why a scene could not be opened.
+/// Reason why a scene could not be opened.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// Neither a built-in scene nor a readable file.
     #[error("{path}: {reason}; expected a scene file, or one of the built-in scenes: {built_in}", path = path.display())]
     Read {
-        /// What was asked for.
+        /// Path or name given.
         path: PathBuf,
-        /// Why it could not be read.
+        /// Reason why it could not be read.
         reason: ReadError,
-        /// The names that would have worked.
+        /// Names of the built-in scenes.
         built_in: String,
     },
     /// Not TOML, an unknown key, or a value of the wrong type.
     #[error("{}{message}", at(file.as_deref(), *line))]
     Syntax {
-        /// The file, or the built-in name; `None` for a text without a name.
+        /// File, or built-in name; `None` for a text without a name.
         file: Option<PathBuf>,
-        /// One-based line, where the parser gave one.
+        /// One-based line, if the parser gave one.
         line: Option<usize>,
-        /// The parser's sentence.
+        /// The parser's message.
         message: String,
     },
     /// A value that cannot be used, or a missing key.
     #[error("{}{invalid}", at(file.as_deref(), *line))]
     Invalid {
-        /// The file, or the built-in name; `None` for a text without a name.
+        /// File, or built-in name; `None` for a text without a name.
         file: Option<PathBuf>,
-        /// One-based line of the key, or of the table that lacks it; `None` where neither is written in the file.
+        /// One-based line of the key, or of the table that lacks it; `None` if neither is written in the file.
         line: Option<usize>,
-        /// Key and sentence.
+        /// Key and message.
         invalid: Invalid,
     },
     /// A `--set` that cannot be applied.
     #[error("--set {assignment}: {message}")]
     Set {
-        /// As typed.
+        /// The assignment as typed.
         assignment: String,
-        /// What was expected.
+        /// Expected value.
         message: String,
     },
 }

@@ -1,10 +1,10 @@
-//! The range of every number a scene may hold: one table for scene files, `--set` and the sliders.
+//! Ranges of all numbers of a scene, used for scene files, `--set` and the sliders.
 
 use thiserror::Error;
 
 use crate::words::number;
 
-/// A closed range and its unit.
+/// Closed range and its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// Unit, empty for pure numbers.
@@ -15,13 +15,13 @@ pub struct Limit {
     pub max: f64,
 }
 
-/// A value that is not in its range.
+/// Value out of range.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("expected {} to {}{}{}, got {got}", number(limit.min), number(limit.max), if limit.unit.is_empty() { "" } else { " " }, limit.unit)]
 pub struct OutOfRange {
     /// The range.
     pub limit: Limit,
-    /// What was there, as it was written.
+    /// Value given, as written.
     pub got: String,
 }
 
@@ -30,7 +30,7 @@ impl Limit {
         Self { unit, min, max }
     }
 
-    /// Accepts `value`.
+    /// Checks that `value` is in the range.
     ///
     /// # Errors
     /// [`OutOfRange`] for values out of range, NaN and infinities.
@@ -38,7 +38,7 @@ impl Limit {
         if value >= self.min && value <= self.max { Ok(()) } else { Err(self.expected(&number(value))) }
     }
 
-    /// The complaint about `got`, which is no number in the range.
+    /// Returns the error for `got`, which is not a number in the range.
     #[must_use]
     pub fn expected(&self, got: &str) -> OutOfRange {
         OutOfRange { limit: *self, got: got.to_owned() }
@@ -53,7 +53,7 @@ pub const HEIGHT: Limit = Limit::new("m", 1e-6, 1e6);
 pub const RISE: Limit = Limit::new("m", -1e6, 1e6);
 /// Cells along one direction.
 pub const CELLS: Limit = Limit::new("", 1.0, 100_000.0);
-/// Cells in all: what fits in memory with its factor (about a million unknowns).
+/// Total number of cells; limited by the memory of the factorization (about a million unknowns).
 pub const TOTAL_CELLS: Limit = Limit::new("", 1.0, 250_000.0);
 /// Young's modulus.
 pub const YOUNG: Limit = Limit::new("Pa", 1e-6, 1e15);
@@ -75,37 +75,37 @@ pub const DIRECTION: Limit = Limit::new("°", -180.0, 180.0);
 pub const ACCELERATION: Limit = Limit::new("m/s²", 0.0, 1e6);
 /// A coordinate.
 pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
-/// A turn of a support.
+/// Prescribed rotation of a support.
 pub const TURN: Limit = Limit::new("rad", -100.0, 100.0);
 /// Metres per unit of a mesh file.
 pub const MESH_SCALE: Limit = Limit::new("m", 1e-9, 1e6);
-/// Relative residual at which a solve is done.
+/// Relative residual at which a solve has converged.
 pub const TOLERANCE: Limit = Limit::new("", 1e-14, 0.1);
-/// Iterations a solve may take.
+/// Largest number of iterations per solve.
 pub const MAX_ITERATIONS: Limit = Limit::new("", 1.0, 100_000.0);
-/// Iterations after which a result is accepted; 0 for none.
+/// Iterations after which a result is accepted without convergence; 0 for never.
 pub const ACCEPT_AFTER: Limit = Limit::new("", 0.0, 100_000.0);
-/// Error that may be asked for.
+/// Requested largest error.
 pub const MAX_ERROR_PERCENT: Limit = Limit::new("%", 1e-6, 100.0);
-/// Time a solve may be given.
+/// Time limit of a solve.
 pub const BUDGET_MS: Limit = Limit::new("ms", 1e-6, 1e6);
-/// Seconds of a motion that a second of its moving picture shows.
+/// Playback speed of a motion, simulated seconds per second.
 pub const PLAYBACK_SPEED: Limit = Limit::new("", 1e-6, 1e6);
 /// Time step of a dynamic scene.
 pub const TIME_STEP: Limit = Limit::new("s", 1e-9, 1e3);
 /// Duration of a headless run.
 pub const DURATION: Limit = Limit::new("s", 1e-9, 1e6);
-/// Solves a step.
+/// Solves per time step.
 pub const STEP_ITERATIONS: Limit = Limit::new("", 0.0, 100.0);
-/// Factor of the mass in Rayleigh damping.
+/// Mass-proportional factor α of Rayleigh damping.
 pub const MASS_DAMPING: Limit = Limit::new("1/s", 0.0, 1e6);
-/// Factor of the stiffness in Rayleigh damping.
+/// Stiffness-proportional factor β of Rayleigh damping.
 pub const STIFFNESS_DAMPING: Limit = Limit::new("s", 0.0, 1e6);
 /// A speed.
 pub const SPEED: Limit = Limit::new("m/s", 0.0, 1e6);
 /// An angular velocity.
 pub const SPIN: Limit = Limit::new("rad/s", -1e6, 1e6);
-/// When a pulse begins.
+/// Start of a pulse.
 pub const PULSE_START: Limit = Limit::new("s", -1e6, 1e6);
-/// How long a pulse lasts.
+/// Duration of a pulse.
 pub const PULSE_DURATION: Limit = Limit::new("s", 1e-9, 1e6);

@@ -1,6 +1,6 @@
 //! The data of a scene: a beam, its material, supports, loads and probes; builders, limits, units and validation.
 //!
-//! [`crate::scene`] reads it, and is where the public finds it.
+//! [`crate::scene`] reads it from files and re-exports these types.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ pub use place::{Axis, Load, Place, Probe, Support, TableError};
 
 use crate::words::number;
 
-/// Everything a solve needs to know.
+/// Complete description of a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -33,15 +33,15 @@ pub struct Scene {
     /// Equilibrium or motion.
     #[serde(default)]
     pub analysis: Analysis,
-    /// The meshed rectangle …
+    /// Meshed rectangle; given exactly if `mesh` is not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beam: Option<Beam>,
-    /// … or a mesh from a file.
+    /// Mesh from a file; given exactly if `beam` is not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshFile>,
-    /// The elastic material.
+    /// Elastic material.
     pub material: Material,
-    /// Where nodes are fixed.
+    /// Supports, which fix nodes.
     #[serde(rename = "support", default)]
     pub supports: Vec<Support>,
     /// Forces, moments and gravity.
@@ -50,30 +50,30 @@ pub struct Scene {
     /// Places whose displacements are measured.
     #[serde(rename = "probe", default)]
     pub probes: Vec<Probe>,
-    /// How the equilibrium is found.
+    /// Settings of the equilibrium solver.
     #[serde(default)]
     pub solver: SolverSettings,
-    /// How time goes on, in dynamic scenes.
+    /// Time integration settings of dynamic scenes.
     #[serde(default, skip_serializing_if = "DynamicsSettings::is_default")]
     pub dynamics: DynamicsSettings,
-    /// How a dynamic scene starts.
+    /// Initial velocities of dynamic scenes.
     #[serde(default, skip_serializing_if = "Start::is_rest")]
     pub start: Start,
 }
 
-/// Kinds of results.
+/// Kind of result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Analysis {
-    /// An equilibrium.
+    /// Equilibrium.
     #[default]
     Static,
-    /// A motion.
+    /// Motion.
     Dynamic,
 }
 
-/// A structured mesh of the rectangle [0, length] × [−height/2, height/2], or of the arch it is bent to.
+/// Structured mesh of the rectangle [0, length] × [−height/2, height/2], or of the arch it is bent to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -82,12 +82,12 @@ pub struct Beam {
     pub length: f64,
     /// Height, m.
     pub height: f64,
-    /// How far its axis rises in the middle, along a parabola from end to end, m: a shallow arch, without stress.
+    /// Rise of the axis in the middle, along a parabola from end to end, m: a shallow arch, stress-free.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub rise: f64,
     /// Cells along and across; each is a quadrilateral, or is cut into two triangles.
     pub cells: [u32; 2],
-    /// Element that every cell, or each of its triangles, becomes.
+    /// Element type of every cell, or of each of its triangles.
     #[serde(default)]
     pub element: ElementKind,
     /// Direction in which cells are cut into triangles; quadrilaterals are not cut.
@@ -95,25 +95,25 @@ pub struct Beam {
     pub diagonals: Diagonals,
 }
 
-/// A mesh from a Gmsh file.
+/// Mesh from a Gmsh file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct MeshFile {
-    /// The file, relative to the scene file. Its physical curves name the edges.
+    /// Path of the file, relative to the scene file. Its physical curves name the edges.
     pub file: String,
-    /// The element every cell becomes; without one, what the file has, which is found when the scene is opened.
+    /// Element type; if `None`, the type in the file is used, which is determined when the scene is opened.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub element: Option<ElementKind>,
-    /// Metres per unit of the file; 1 where it is not given.
+    /// Metres per unit of the file; `None` means 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
-    /// Contents of the file; read when the scene is opened.
+    /// Contents of the file, read when the scene is opened.
     #[serde(skip)]
     pub text: Option<Arc<str>>,
 }
 
-/// The elements there are.
+/// Element types.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -132,14 +132,14 @@ pub enum ElementKind {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Diagonals {
-    /// Cell (i, j) from lower left to upper right where i + j is even, else the other way.
+    /// Cell (i, j) is cut from lower left to upper right if i + j is even, else from upper left to lower right.
     #[default]
     Alternating,
-    /// Every cell from lower left to upper right.
+    /// Every cell is cut from lower left to upper right.
     Same,
 }
 
-/// Linear elastic, isotropic.
+/// Linear elastic, isotropic material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -147,7 +147,7 @@ pub struct Material {
     pub young: f64,
     /// Poisson ratio ν.
     pub poisson: f64,
-    /// Density ρ, kg/m³; gravity and motion read it.
+    /// Density ρ, kg/m³; used for gravity and motion.
     #[serde(default = "default_density")]
     pub density: f64,
     /// Thickness t out of the plane, m.
@@ -158,7 +158,7 @@ pub struct Material {
     pub plane: Plane,
 }
 
-/// `true` for a default value, which files leave out.
+/// Returns `true` for a default value, which scene files omit.
 fn is_zero<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
@@ -175,28 +175,28 @@ fn default_thickness() -> f64 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Plane {
-    /// No stress out of the plane: a thin plate.
+    /// No stress out of the plane, as in a thin plate.
     #[default]
     Stress,
-    /// No strain out of the plane: a slice of something long.
+    /// No strain out of the plane, as in a slice of a long body.
     Strain,
 }
 
-/// How the equilibrium is found.
+/// Settings of the equilibrium solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct SolverSettings {
-    /// The method, by its name in the registry.
+    /// Method.
     pub method: MethodKind,
-    /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ below which the solve is done.
+    /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ below which the solve has converged.
     pub tolerance: f64,
-    /// Iterations after which it gives up.
+    /// Number of iterations after which the solve fails.
     pub max_iterations: u32,
-    /// Iterations after which the result is accepted as it is; 0: only where it has converged.
+    /// Number of iterations after which the result is accepted without convergence; 0 accepts converged results only.
     #[serde(skip_serializing_if = "is_off")]
     pub accept_after: u32,
-    /// `auto` only: the error that is asked for, percent of the true displacement.
+    /// Requested error for `auto`, percent of the exact displacement.
     pub max_error_percent: f64,
 }
 
@@ -212,13 +212,13 @@ impl Default for SolverSettings {
     }
 }
 
-/// `true` for a number of iterations that nothing is accepted after.
+/// Returns `true` for 0, which turns `accept_after` off.
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_off(iterations: &u32) -> bool {
     *iterations == 0
 }
 
-/// The methods there are; `method::METHODS` says what each does.
+/// Methods; `method::METHODS` describes each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -230,15 +230,15 @@ pub enum MethodKind {
     /// Newton's method with the exact tangent.
     #[default]
     Newton,
-    /// Whatever of these the asked accuracy needs.
+    /// The cheapest of these with the requested accuracy.
     Auto,
 }
 
 impl Scene {
-    /// The scene as a TOML file.
+    /// Serialises the scene as TOML.
     ///
     /// # Errors
-    /// The serializer's message; a validated scene has none.
+    /// The serializer's message; validated scenes have none.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(self)
     }
@@ -246,7 +246,7 @@ impl Scene {
     /// Checks every number and every choice that can be checked without a mesh.
     ///
     /// # Errors
-    /// The first key that is wrong and what was expected there.
+    /// The first invalid key and the expected value.
     pub fn validate(&self) -> Result<(), Invalid> {
         match (&self.beam, &self.mesh) {
             (Some(beam), None) => beam.validate()?,
@@ -257,7 +257,7 @@ impl Scene {
         self.validate_all_but_geometry()
     }
 
-    /// [`Self::validate`] for a scene that is put on a mesh of the caller's.
+    /// Checks as [`Self::validate`], but not the geometry; for a scene on a mesh given by the caller.
     pub(crate) fn validate_all_but_geometry(&self) -> Result<(), Invalid> {
         if self.name.trim().is_empty() {
             return Err(Invalid::new("name", "expected a title, got an empty string"));
@@ -325,7 +325,7 @@ fn check(key: &str, limit: limits::Limit, value: f64) -> Result<(), Invalid> {
     limit.check(value).map_err(|e| Invalid::new(key, e.to_string()))
 }
 
-/// Length over height of a cell, or the inverse, beyond which an element's stiffness is all rounding.
+/// Largest ratio of the sides of a cell; beyond it rounding errors dominate the element stiffness.
 const MAX_CELL_ASPECT: f64 = 1e5;
 
 impl Beam {
@@ -348,19 +348,19 @@ impl Beam {
         Err(Invalid::new("beam.cells", message))
     }
 
-    /// Height of the axis at rest above its ends, m; `along` is 0 at the left end and 1 at the right one.
+    /// Returns the height of the axis at rest above its ends, m; `along` is 0 at the left end and 1 at the right end.
     pub(crate) fn axis(&self, along: f64) -> f64 {
         4.0 * self.rise * along * (1.0 - along)
     }
 
-    /// Rest coordinates of a point, m: `along` is 0 at the left end and 1 at the right one, `across` −½ at the bottom and ½ at
-    /// the top, measured upwards.
+    /// Returns the rest coordinates of a point, m: `along` is 0 at the left end and 1 at the right end, `across` −½ at
+    /// the bottom and ½ at the top, measured upwards.
     #[must_use]
     pub fn point(&self, along: f64, across: f64) -> [f64; 2] {
         [along * self.length, self.axis(along) + across * self.height]
     }
 
-    /// Length over height of one cell.
+    /// Returns length over height of one cell.
     #[must_use]
     pub fn cell_aspect(&self) -> f64 {
         let [nx, ny] = self.cells.map(f64::from);
@@ -369,7 +369,7 @@ impl Beam {
 }
 
 impl Plane {
-    /// The Poisson ratios this plane assumption allows.
+    /// Returns the range of Poisson ratios for this plane assumption.
     #[must_use]
     pub fn poisson_limit(self) -> limits::Limit {
         match self {

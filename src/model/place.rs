@@ -1,4 +1,4 @@
-//! Places on a body, and what is put there: supports, loads, probes.
+//! Places on a body; supports, loads and probes at them.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -8,10 +8,10 @@ use super::error::Invalid;
 use super::{is_zero, limits};
 use crate::words::number;
 
-/// A whole edge or one point.
+/// Whole edge or single point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// A named edge: `left`, `right`, `bottom`, `top`, or one of a mesh file.
+    /// Named edge: `left`, `right`, `bottom`, `top`, or a name of the mesh file.
     Edge(String),
     /// Rest coordinates, m.
     At([f64; 2]),
@@ -29,23 +29,23 @@ impl From<[f64; 2]> for Place {
     }
 }
 
-/// Why a table of a scene is none of a support, a load or a probe.
+/// Reason why a table of a scene is not a support, load or probe.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// No place.
+    /// The table names no place.
     #[error("expected edge = \"…\" or at = [x, y], got neither")]
     NoPlace,
-    /// Two places.
+    /// The table names two places.
     #[error("expected edge = \"…\" or at = [x, y], got both")]
     TwoPlaces,
-    /// Other keys than a force has.
+    /// The keys are not those of a force.
     #[error("a load of kind \"force\" has the keys edge or at, and force = [fx, fy] in N")]
     Force,
-    /// Other keys than gravity has.
+    /// The keys are not those of gravity.
     #[error("a load of kind \"gravity\" has the one key acceleration = [ax, ay] in m/s²")]
     Gravity,
-    /// Other keys than a moment has.
+    /// The keys are not those of a moment.
     #[error("a load of kind \"moment\" has the keys edge, and moment in N m")]
     Moment,
 }
@@ -60,7 +60,7 @@ impl std::fmt::Display for Place {
 }
 
 impl Place {
-    /// From the two keys of a table, of which exactly one is given.
+    /// Makes a place from the two keys of a table, of which exactly one must be given.
     fn new(edge: Option<String>, at: Option<[f64; 2]>) -> Result<Self, TableError> {
         match (edge, at) {
             (Some(edge), None) => Ok(Self::Edge(edge)),
@@ -70,7 +70,7 @@ impl Place {
         }
     }
 
-    /// The two keys of a table.
+    /// Returns the values of the two keys of a table.
     fn keys(self) -> (Option<String>, Option<[f64; 2]>) {
         match self {
             Self::Edge(edge) => (Some(edge), None),
@@ -88,35 +88,36 @@ impl Place {
     }
 }
 
-/// Nodes that stay where they are, or are taken somewhere else.
+/// Support: nodes that are fixed, or moved along a prescribed displacement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SupportTable", into = "SupportTable")]
 #[non_exhaustive]
 pub struct Support {
-    /// An edge, whose nodes are all fixed, or a point, whose nearest node is.
+    /// Edge with all its nodes, or point, which stands for the nearest node.
     pub place: Place,
-    /// The directions in which they are fixed.
+    /// Fixed directions.
     pub fix: Vec<Axis>,
-    /// Where the place is taken, m, in the directions in which it is fixed; put on in load steps, with the loads.
+    /// Prescribed displacement, m, in the fixed directions; applied in load steps, with the loads.
     pub displacement: [f64; 2],
-    /// How far an edge is turned about its middle, rad, counter-clockwise, full turns included; put on in load steps.
+    /// Prescribed rotation of an edge about its middle, rad, counter-clockwise, full turns included; applied in load
+    /// steps.
     pub turn: f64,
 }
 
 impl Support {
-    /// Fixed here in these directions, where it is.
+    /// Returns a support without prescribed displacement.
     #[must_use]
     pub fn new(place: impl Into<Place>, fix: &[Axis]) -> Self {
         Self { place: place.into(), fix: fix.to_vec(), displacement: [0.0; 2], turn: 0.0 }
     }
 
-    /// Whether it takes its place somewhere else.
+    /// Returns `true` if a displacement or rotation is prescribed.
     #[must_use]
     pub fn moves(&self) -> bool {
         self.displacement != [0.0; 2] || self.turn != 0.0
     }
 
-    /// Whether both fix the same unknowns, wherever they take them.
+    /// Returns `true` if both fix the same unknowns, whatever displacements they prescribe.
     pub(crate) fn fixes_as(&self, other: &Self) -> bool {
         (&self.place, &self.fix) == (&other.place, &other.fix)
     }
@@ -149,79 +150,80 @@ impl Support {
     }
 }
 
-/// A direction of the plane.
+/// Direction of the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Axis {
-    /// Along the rest beam.
+    /// Along the beam at rest.
     X,
-    /// Across it.
+    /// Across the beam at rest.
     Y,
 }
 
-/// A displacement to report: the mean over an edge, or of a material point.
+/// Displacement to report: the mean over an edge, or of a material point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ProbeTable", into = "ProbeTable")]
 #[non_exhaustive]
 pub struct Probe {
-    /// What it is called in results.
+    /// Name in results.
     pub name: String,
-    /// The edge it averages over, or the material point it follows.
+    /// Edge that is averaged over, or material point.
     pub place: Place,
 }
 
-/// A load. Forces and gravity are dead: they keep their direction as the body turns; a moment turns with its edge.
+/// Load. Forces and gravity are dead loads: they keep their direction as the body rotates; a moment rotates with its
+/// edge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "LoadTable", into = "LoadTable")]
 #[non_exhaustive]
 pub enum Load {
-    /// A total force, N: over an edge as uniform traction, or on the nearest node.
+    /// Total force, N: uniform traction over an edge, or force on the nearest node.
     Force {
-        /// Where it pulls.
+        /// Edge or point.
         place: Place,
-        /// Its components, N.
+        /// Components, N.
         force: [f64; 2],
-        /// When it pulls; always where there is none.
+        /// Time dependence; `None` for a constant load.
         pulse: Option<Pulse>,
     },
-    /// A moment, N m, positive counter-clockwise, on a straight edge; it turns with the edge.
+    /// Moment on a straight edge, positive counter-clockwise; it rotates with the edge.
     Moment {
-        /// The edge.
+        /// Edge.
         edge: String,
-        /// N m.
+        /// Moment, N m.
         moment: f64,
-        /// When it turns; always where there is none.
+        /// Time dependence; `None` for a constant load.
         pulse: Option<Pulse>,
     },
-    /// The weight of the body under this acceleration, m/s².
+    /// Weight of the body.
     Gravity {
-        /// Its components, m/s².
+        /// Components of the acceleration, m/s².
         acceleration: [f64; 2],
-        /// When it acts; always where there is none.
+        /// Time dependence; `None` for a constant load.
         pulse: Option<Pulse>,
     },
 }
 
 impl Load {
-    /// A dead force, N, at a place.
+    /// Returns a dead force, N, at a place.
     #[must_use]
     pub fn force(place: impl Into<Place>, force: [f64; 2]) -> Self {
         Self::Force { place: place.into(), force, pulse: None }
     }
 
-    /// A moment, N m, on an edge.
+    /// Returns a moment, N m, on an edge.
     #[must_use]
     pub fn moment(edge: &str, moment: f64) -> Self {
         Self::Moment { edge: edge.to_owned(), moment, pulse: None }
     }
 
-    /// The weight of the body under an acceleration, m/s².
+    /// Returns the weight of the body under an acceleration, m/s².
     #[must_use]
     pub fn gravity(acceleration: [f64; 2]) -> Self {
         Self::Gravity { acceleration, pulse: None }
     }
 
-    /// When it acts; always where there is none.
+    /// Returns the load's pulse; `None` for a constant load.
     #[must_use]
     pub fn pulse(&self) -> Option<Pulse> {
         match self {
@@ -229,7 +231,7 @@ impl Load {
         }
     }
 
-    /// Whether it is a moment.
+    /// Returns `true` for a moment.
     #[must_use]
     pub fn is_moment(&self) -> bool {
         matches!(self, Self::Moment { .. })
@@ -255,7 +257,8 @@ impl Load {
     }
 }
 
-// The tables as TOML writes them. Not `#[serde(tag)]` or `#[serde(flatten)]`: these would lose the line of an error.
+// Tables as written in TOML. `#[serde(tag)]` and `#[serde(flatten)]` are not used, because they lose the line of an
+// error.
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

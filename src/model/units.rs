@@ -1,5 +1,5 @@
-//! Numbers with units, wherever a number is typed: `210 GPa`, `-12 kN`, `7.8 g/cm³`. One table of units for scene files,
-//! `--set` and the window; what is read is in the unit that [`limits`] give the value.
+//! Parser of numbers with units, such as `210 GPa`, `-12 kN` and `7.8 g/cm³`, for scene files, `--set` and the window.
+//! Results are in the unit of the value's [`limits`].
 
 use std::borrow::Cow;
 use std::fmt;
@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 use super::error::Invalid;
 use super::limits::{self, Limit};
 
-/// Exponents of metre, kilogram, second and radian. The radian counts, so that `1/s` is no angular velocity.
+/// Exponents of metre, kilogram, second and radian. The radian is included so that `1/s` is not an angular velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dimension([i32; 4]);
 
@@ -25,7 +25,7 @@ const PRESSURE: Dimension = Dimension([-1, 1, -2, 0]);
 const MOMENT: Dimension = Dimension([2, 1, -2, 0]);
 const RATE: Dimension = Dimension([0, 0, -1, 0]);
 
-/// What dimensions are called, and their SI units.
+/// Names of dimensions and their SI units.
 const NAMES: &[(Dimension, &str, &str)] = &[
     (NUMBER, "a pure number", ""),
     (LENGTH, "a length", "m"),
@@ -45,7 +45,7 @@ const NAMES: &[(Dimension, &str, &str)] = &[
     (Dimension([0, 1, -2, 0]), "a force on a length", "N/m"),
 ];
 
-/// A symbol, its dimension, its size in SI units as a factor and a power of ten, and whether it takes prefixes.
+/// Symbol, dimension, SI value as a factor and a power of ten, and `true` if the unit takes prefixes.
 struct Unit(&'static str, Dimension, f64, i32, bool);
 
 const UNITS: &[Unit] = &[
@@ -88,7 +88,7 @@ const PREFIXES: &[(&str, i32)] = &[
     ("p", -12),
 ];
 
-/// The numbers of a scene that have a unit, or could be taken to, without their places in lists.
+/// Keys of a scene that hold a number with a unit, without list indices.
 const KEYS: &[(&str, Limit)] = &[
     ("beam.length", limits::LENGTH),
     ("beam.height", limits::HEIGHT),
@@ -118,47 +118,47 @@ const KEYS: &[(&str, Limit)] = &[
     ("start.spin", limits::SPIN),
 ];
 
-/// Why a text is no number in the unit that was asked for.
+/// Reason why a text is not a number in the expected unit.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum UnitError {
-    /// No number to begin with.
+    /// The text does not begin with a number.
     #[error("`{text}` is no number; expected {expected}")]
     NoNumber {
-        /// What was typed.
+        /// Text as typed.
         text: String,
-        /// What would have been right.
+        /// Expected quantity.
         expected: Quantity,
     },
-    /// A comma or a space in a number that parts no thousands: it may mean a decimal point.
+    /// A comma or a space in the number does not separate thousands and could mean a decimal point.
     #[error("`{text}` can be read in two ways: write a decimal point, or groups of three digits as in 30,000")]
     Ambiguous {
-        /// What was typed.
+        /// Text as typed.
         text: String,
     },
-    /// What follows the number is no unit.
+    /// The text after the number is not a unit.
     #[error("`{text}` has the unknown unit `{unit}`; expected {expected}")]
     UnknownUnit {
-        /// What was typed.
+        /// Text as typed.
         text: String,
-        /// What is no unit.
+        /// Unknown unit.
         unit: String,
-        /// What would have been right.
+        /// Expected quantity.
         expected: Quantity,
     },
-    /// A unit of something else.
+    /// The unit has the wrong dimension.
     #[error("`{text}` is {got}; expected {expected}")]
     WrongDimension {
-        /// What was typed.
+        /// Text as typed.
         text: String,
-        /// What that is.
+        /// Quantity of the text.
         got: Quantity,
-        /// What would have been right.
+        /// Expected quantity.
         expected: Quantity,
     },
 }
 
-/// A dimension in words, with the unit it is asked for in: "a pressure (Pa)".
+/// Dimension with the expected unit, shown as "a pressure (Pa)".
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     dimension: Dimension,
@@ -192,8 +192,8 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// How large a unit is: the factor apart from the power of ten, which is kept whole so that 3 mm is 0.003 m to the last
-/// digit.
+/// Size of a unit. The power of ten is kept apart from the factor, as an integer, so that 3 mm is exactly the f64
+/// 0.003.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scale {
     dimension: Dimension,
@@ -201,7 +201,7 @@ struct Scale {
     tens: i32,
 }
 
-/// A number with an optional unit, in `unit`: a text without one is in `unit` already.
+/// Parses a number with an optional unit and converts it to `unit`; a number without unit is in `unit` already.
 ///
 /// ```
 /// use warpbeam::scene::units::parse;
@@ -214,7 +214,7 @@ struct Scale {
 /// ```
 ///
 /// # Errors
-/// [`UnitError`]. Whether the number is in range is not asked here; it may be infinite.
+/// [`UnitError`]. The range is not checked; the number may be infinite.
 pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     let text = text.trim();
     let target = scale_of(unit).unwrap_or(Scale { dimension: NUMBER, factor: 1.0, tens: 0 });
@@ -233,13 +233,13 @@ pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
         return Err(UnitError::WrongDimension { text: shown(text), got, expected: expected() });
     }
     let value = if typed.factor == target.factor { number } else { number * (typed.factor / target.factor) };
-    // Powers of ten are exact as they are, their inverses are not.
+    // Positive powers of ten are exact, negative ones are not.
     let tens = typed.tens - target.tens;
     Ok(if tens < 0 { value / 10f64.powi(-tens) } else { value * 10f64.powi(tens) })
 }
 
-/// The text with the thousands of its number run together, `30,000` and `30 000` as `30000`, and a typographic minus as
-/// what it means; `None` where a comma or a space parts anything but groups of three digits.
+/// Removes thousands separators (`30,000` and `30 000` become `30000`) and replaces a typographic minus by `-`; `None`
+/// if a comma or a space separates anything but groups of three digits.
 fn without_groups(text: &str) -> Option<Cow<'_, str>> {
     let text = text.trim();
     let sign = text.chars().next().filter(|c| "+-\u{2212}".contains(*c));
@@ -248,7 +248,7 @@ fn without_groups(text: &str) -> Option<Cow<'_, str>> {
     let end = unsigned.find(|c: char| !(c.is_ascii_digit() || is_separator(c))).unwrap_or(unsigned.len());
     let mut whole = unsigned.get(..end)?;
     if unsigned.get(end..)?.starts_with('/') {
-        // The 1 of 1/s is the unit's.
+        // The 1 of 1/s belongs to the unit.
         whole = whole.get(..whole.rfind(is_separator).unwrap_or(end))?;
     }
     let whole = whole.trim_end_matches(char::is_whitespace);
@@ -273,15 +273,15 @@ fn without_groups(text: &str) -> Option<Cow<'_, str>> {
     Some(Cow::Owned(sign.into_iter().chain(digits).chain(rest.chars()).collect()))
 }
 
-/// The number that a text begins with, and what follows.
+/// Splits a text into the number at its start and the rest.
 fn split(text: &str) -> Option<(f64, &str)> {
-    // Longer than any number that is typed.
+    // Upper bound of the length of a typed number, characters.
     const LONGEST: usize = 64;
     let ends = text.char_indices().map(|(i, c)| i + c.len_utf8()).take(LONGEST);
     ends.filter_map(|end| Some((text.get(..end)?.parse().ok()?, text.get(end..)?))).last()
 }
 
-/// As much of a text as fits a message.
+/// Shortens a text for a message.
 fn shown(text: &str) -> String {
     const FITS: usize = 40;
     if text.chars().nth(FITS).is_none() {
@@ -290,18 +290,18 @@ fn shown(text: &str) -> String {
     text.chars().take(FITS).chain(['…']).collect()
 }
 
-/// Products and quotients of units: `N m`, `kg/m³`, `m/s^2`.
+/// Parses products and quotients of units: `N m`, `kg/m³`, `m/s^2`.
 fn scale_of(text: &str) -> Option<Scale> {
     let mut all = Scale { dimension: NUMBER, factor: 1.0, tens: 0 };
     for (i, part) in text.split('/').enumerate() {
         let mut factors = part.split([' ', '·', '\u{22c5}', '*']).filter(|f| !f.is_empty()).peekable();
-        // Nothing may be left out beside a stroke.
+        // Reject an empty numerator or denominator.
         if factors.peek().is_none() && !text.is_empty() {
             return None;
         }
         for (j, factor) in factors.enumerate() {
             let (unit, power) = with_power(factor)?;
-            // A stroke divides by what follows it at once: N/m m is N.
+            // A slash divides by the next factor only: N/m m is N.
             let power = if i > 0 && j == 0 { -power } else { power };
             all.factor *= unit.factor.powi(power);
             all.tens += unit.tens * power;
@@ -310,11 +310,11 @@ fn scale_of(text: &str) -> Option<Scale> {
             }
         }
     }
-    // A few units: what is beyond is no unit of anything.
+    // Reject exponents that no real unit has.
     (all.tens.abs() <= 60 && all.dimension.0.iter().all(|p| p.abs() <= 12)).then_some(all)
 }
 
-/// A unit and its exponent: `mm`, `cm³`, `s^-1`, `m2`.
+/// Parses a unit with its exponent: `mm`, `cm³`, `s^-1`, `m2`.
 fn with_power(text: &str) -> Option<(Scale, i32)> {
     if let Some(unit) = with_prefix(text) {
         return Some((unit, 1));
@@ -347,7 +347,7 @@ fn with_prefix(text: &str) -> Option<Scale> {
     })
 }
 
-/// The unit of what `key` holds; `None` for what is no such number.
+/// Returns the unit of the values of `key`; `None` if `key` holds no number with a unit.
 fn unit_of(key: &str) -> Option<&'static str> {
     let is_name = |part: &&str| part.parse::<usize>().is_err();
     let key: Vec<&str> = key.split('.').filter(is_name).collect();
@@ -355,22 +355,22 @@ fn unit_of(key: &str) -> Option<&'static str> {
     KEYS.iter().find(|(known, _)| *known == key).map(|(_, limit)| limit.unit)
 }
 
-/// What `key` holds; `None` where that is no number with a unit.
+/// Returns the quantity that `key` holds; `None` if `key` holds no number with a unit.
 pub(crate) fn quantity_of(key: &str) -> Option<Quantity> {
     unit_of(key).map(Quantity::in_unit)
 }
 
-/// A number that is typed as text for `key`; `None` where `key` holds no number with a unit.
+/// Parses a number typed as text for `key`; `None` if `key` holds no number with a unit.
 pub(crate) fn number_for(key: &str, text: &str) -> Option<Result<f64, Invalid>> {
     let unit = unit_of(key)?;
     Some(parse(text, unit).map_err(|error| Invalid::new(key, error.to_string())))
 }
 
-/// The text of a TOML file with every number that is typed with its unit replaced by the plain number, line by line, so
-/// that the lines of later errors are those of the file. `rename` says which key of a scene a key of the text is. A text
-/// that is no TOML is left to whoever reads it.
+/// Replaces every number that is written with its unit in a TOML text by the plain number, keeping line numbers, so
+/// that later errors refer to lines of the file. `rename` maps a key of the text to a key of the scene. A text that is
+/// not TOML is returned unchanged; a later parser reports it.
 pub(crate) fn plain<'a>(text: &'a str, rename: impl Fn(&str) -> String) -> Result<Cow<'a, str>, Invalid> {
-    // Most scenes have no unit in quotes; all of them have quotes.
+    // A search for quotes would not be enough to skip parsing: all scenes contain quotes, few contain units in quotes.
     let Ok(table) = DeTable::parse(text) else { return Ok(Cow::Borrowed(text)) };
     let mut found = Vec::new();
     for (name, value) in table.get_ref() {
@@ -383,7 +383,7 @@ pub(crate) fn plain<'a>(text: &'a str, rename: impl Fn(&str) -> String) -> Resul
     let (mut plain, mut at) = (String::with_capacity(text.len()), 0);
     for (span, value) in found {
         let (Some(before), Some(literal)) = (text.get(at..span.start), text.get(span.clone())) else { continue };
-        // Text in three quotes may go over lines, and the lines after it must stay where they are.
+        // A multi-line string is left as it is, because replacing it would shift the lines after it.
         if literal.contains('\n') {
             continue;
         }
@@ -440,7 +440,7 @@ mod tests {
                 );
             }
         }
-        // A value typed in radians, and a value that no one types.
+        // A value typed in radians, and a value that is not typed.
         assert_eq!(
             (editable(0.123_f64.to_radians().to_degrees(), "°").as_str(), editable(1.0 / 60.0, "s").as_str()),
             ("0.123°", "16.67 ms")

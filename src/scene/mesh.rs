@@ -1,18 +1,18 @@
-//! The mesh of a scene: its file, and the elements that it can be made of.
+//! Mesh of a scene: its file and possible element types.
 
 use std::path::Path;
 
 use super::{ElementKind, Invalid, MeshFile, Scene, SceneError, registry};
 use crate::mesh::{GmshError, Mesh};
 
-/// Room for the largest mesh that is solved.
+/// Largest accepted mesh file, bytes.
 const MAX_MESH_BYTES: u64 = 256 << 20;
 
 impl Scene {
-    /// A body of rubber whose mesh is in a Gmsh file, relative to this folder: nothing holds or pulls it yet.
+    /// Returns a rubber body whose mesh is in a Gmsh file, relative to `folder`, without supports and loads.
     ///
     /// # Errors
-    /// [`SceneError::Invalid`] where the file cannot be read.
+    /// [`SceneError::Invalid`] if the file cannot be read.
     pub fn mesh_file(file: &str, folder: impl AsRef<Path>) -> Result<Self, SceneError> {
         let mesh = MeshFile { file: file.to_owned(), element: None, scale: None, text: None };
         let mut scene = Self { mesh: Some(mesh), ..Self::named(file) };
@@ -22,14 +22,15 @@ impl Scene {
         }
     }
 
-    /// The elements that its mesh can be made of: all of a beam's, those of the same shape of a file's.
+    /// Returns the element types possible for the scene's mesh: all for a beam, those of the same shape for a mesh
+    /// file.
     pub fn elements(&self) -> impl Iterator<Item = ElementKind> + Clone + use<> {
         let (any, own) = (self.mesh.is_none(), self.element().entry());
         ElementKind::all().filter(move |e| any || e.entry().shares_cell(own))
     }
 
-    /// Unknowns of its mesh, those that supports fix included, without meshing it: two a node, see [`Mesh::beam_nodes`] and
-    /// [`Mesh::gmsh_nodes`]. 0 where the mesh is the caller's.
+    /// Returns the number of unknowns of the scene's mesh, including fixed ones, without meshing it: two per node, see
+    /// [`Mesh::beam_nodes`] and [`Mesh::gmsh_nodes`]. 0 if the mesh is given by the caller.
     #[must_use]
     pub fn unknowns(&self) -> u64 {
         let file = |mesh: &MeshFile| mesh.text.as_deref().map_or(0, |text| Mesh::gmsh_nodes(text, self.element()));
@@ -38,7 +39,8 @@ impl Scene {
     }
 }
 
-/// Reads the mesh file of a scene, relative to the scene's own folder; the meshes of built-in scenes are built in.
+/// Reads the mesh file of a scene, relative to the folder of the scene file; meshes of built-in scenes are part of the
+/// library.
 pub(super) fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
     const KEY: &str = "mesh.file";
     let Some(mesh) = &mut scene.mesh else { return Ok(()) };

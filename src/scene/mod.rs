@@ -1,7 +1,7 @@
-//! A scene: what a TOML file says of a beam, its material, supports, loads and probes.
+//! Scenes: TOML descriptions of a beam, its material, supports, loads and probes.
 //!
-//! Unknown keys are rejected with their line. [`Scene::validate`] checks every number against [`limits`], names against
-//! what exists, and says what was expected.
+//! Unknown keys are rejected with their line. [`Scene::validate`] checks every number against [`limits`] and every name
+//! against the existing ones; its errors contain the expected value.
 
 mod mesh;
 mod open;

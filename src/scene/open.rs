@@ -1,4 +1,4 @@
-//! From a name or a path, and `--set` assignments, to a validated scene; errors with file and line.
+//! Opens scenes from a name or path with `--set` assignments, and validates them; errors have file and line.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -12,16 +12,16 @@ use toml::{Table, Value};
 use super::mesh::read_mesh;
 use super::{Invalid, ReadError, Scene, SceneError, registry, required, units};
 
-/// Scene files are small; anything larger is refused before it is read.
+/// Largest accepted scene file, bytes; checked before reading.
 const MAX_FILE_BYTES: u64 = 4 << 20;
 
-/// The name of a scene that is read from standard input.
+/// Name that stands for standard input.
 pub const STANDARD_INPUT: &str = "-";
 
-/// Where a scene came from: its text and the assignments made to it.
+/// Origin of a scene: its text and the assignments made to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// The built-in name, the path, or [`STANDARD_INPUT`], as typed. A path may be no text.
+    /// Built-in name, path, or [`STANDARD_INPUT`], as typed. A path may be invalid UTF-8.
     pub name: PathBuf,
     /// `PATH=VALUE` assignments, in order.
     pub assignments: Vec<String>,
@@ -30,34 +30,34 @@ pub struct Source {
 /// Opens a built-in scene or a scene file and applies `PATH=VALUE` assignments.
 ///
 /// # Errors
-/// [`SceneError`], each with one message that says what was expected.
+/// [`SceneError`], whose message contains the expected value.
 pub fn open(source: &Source) -> Result<Scene, SceneError> {
-    // The folder of a stream is the current one.
+    // Paths in a stream are relative to the current folder.
     let folder = source.name.parent().filter(|_| !source.is_stream()).unwrap_or(Path::new(""));
     parse(&source.text()?, Some(&source.name), Some(folder), &source.assignments)
 }
 
-/// The place in its scene of what turned out to be wrong only when it was simulated: the `--set`, or file and line.
+/// Adds the location of an error that was found when the scene was simulated: the `--set` assignment, or file and line.
 #[must_use]
 pub fn locate(source: &Source, invalid: Invalid) -> SceneError {
     blame(&source.text().unwrap_or_default(), Some(&source.name), &source.assignments, invalid)
 }
 
 impl Source {
-    /// The built-in scene it names.
+    /// Returns the built-in scene with this name, `None` if there is none.
     #[must_use]
     pub fn built_in(&self) -> Option<&'static registry::BuiltIn> {
         self.name.to_str().and_then(registry::find)
     }
 
-    /// Folder that the scene's mesh file is relative to: empty for a built-in scene, else absolute.
+    /// Returns the folder that the scene's mesh file is relative to: empty for a built-in scene, else absolute.
     #[must_use]
     pub fn folder(&self) -> PathBuf {
         if self.built_in().is_some() {
             return PathBuf::new();
         }
         let folder = self.name.parent().filter(|_| !self.is_stream()).unwrap_or(Path::new(""));
-        // An empty path has no absolute one.
+        // `std::path::absolute` rejects an empty path.
         std::path::absolute(folder.join(".")).unwrap_or_else(|_| folder.to_owned())
     }
 
@@ -69,7 +69,7 @@ impl Source {
         }
     }
 
-    /// `true` for standard input and for pipes (`<(…)` in a shell), which can be read only once.
+    /// Returns `true` for standard input and for pipes (`<(…)` in a shell), which can be read only once.
     #[must_use]
     pub fn is_stream(&self) -> bool {
         self.name == Path::new(STANDARD_INPUT)
@@ -77,7 +77,7 @@ impl Source {
                 && std::fs::metadata(&self.name).is_ok_and(|file| !file.is_file() && !file.is_dir())
     }
 
-    /// Text of a stream, kept for later calls.
+    /// Reads the text of a stream and keeps it for later calls.
     fn read_stream(&self) -> Result<String, SceneError> {
         static TEXTS: Mutex<BTreeMap<PathBuf, Result<String, ReadError>>> = Mutex::new(BTreeMap::new());
         let is_input = self.name == Path::new(STANDARD_INPUT);
@@ -91,7 +91,7 @@ impl Source {
     }
 }
 
-/// Reads all text there is, but no more than a scene may have.
+/// Reads a text up to the size limit of scenes.
 fn read_to_limit(stream: impl Read) -> Result<String, ReadError> {
     let mut text = String::new();
     let bytes = stream.take(MAX_FILE_BYTES + 1).read_to_string(&mut text)? as u64;
@@ -108,8 +108,7 @@ fn unreadable(path: &Path, reason: ReadError) -> SceneError {
 }
 
 impl Scene {
-    /// Reads a scene from TOML text. No other file is read: a scene whose mesh is in one can be simulated after
-    /// [`Self::from_toml_in`] only.
+    /// Reads a scene from TOML text. Reads no other file: a scene with a mesh file needs [`Self::from_toml_in`].
     ///
     /// # Errors
     /// [`SceneError::Syntax`] or [`SceneError::Invalid`], with the line.
@@ -117,7 +116,7 @@ impl Scene {
         parse(text, None, None, &[])
     }
 
-    /// Reads a scene from TOML text, and its mesh from a file of this folder if it names one.
+    /// Reads a scene from TOML text, and its mesh file, if it names one, from `folder`.
     ///
     /// # Errors
     /// [`SceneError::Syntax`] or [`SceneError::Invalid`], with the line.
@@ -138,10 +137,10 @@ fn read(path: &Path) -> Result<String, SceneError> {
     std::fs::read_to_string(path).map_err(|e| failed(e.into()))
 }
 
-/// Reads a scene from the text of `file`, with assignments, and its mesh from `folder`.
+/// Reads a scene from the text of `file`, applies assignments, and reads its mesh from `folder`.
 fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[String]) -> Result<Scene, SceneError> {
     let plain = units::plain(text, str::to_owned).map_err(|invalid| located(text, file, invalid))?;
-    // The lines of the plain text are those of the file.
+    // The plain text has the same lines as the file.
     let text = plain.as_ref();
     let syntax = |e: toml::de::Error| {
         let (file, line) = (file.map(Path::to_owned), e.span().map(|span| line_of(text, span.start)));
@@ -150,7 +149,7 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
             None => SceneError::Syntax { file, line, message: e.message().trim().replace('\n', ", ") },
         }
     };
-    // The file alone first, so that its own errors have lines.
+    // Parse the file without assignments first, so that its own errors have lines.
     let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
     if !assignments.is_empty() {
         let mut table: Table = toml::from_str(text).map_err(syntax)?;
@@ -169,7 +168,7 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     Ok(scene)
 }
 
-/// What is wrong, with the `--set` that made it so, else with its line.
+/// Returns an error that names the `--set` assignment of the invalid key, or else its line.
 fn blame(text: &str, file: Option<&Path>, assignments: &[String], invalid: Invalid) -> SceneError {
     let blamed = assignments.iter().rev().find(|a| a.split('=').next().is_some_and(|k| same_key(k, &invalid.key)));
     match blamed {
@@ -178,7 +177,7 @@ fn blame(text: &str, file: Option<&Path>, assignments: &[String], invalid: Inval
     }
 }
 
-/// `Invalid` with the line its key is written on, if it is.
+/// Returns an error with the line of the invalid key, if the key is written in the text.
 fn located(text: &str, file: Option<&Path>, invalid: Invalid) -> SceneError {
     let line = DeTable::parse(text).ok().and_then(|table| find_line(text, table.get_ref(), &invalid.key));
     SceneError::Invalid { file: file.map(Path::to_owned), line, invalid }
@@ -197,7 +196,7 @@ impl Scene {
     }
 }
 
-/// Why an assignment has no place to go.
+/// Reason why an assignment cannot be applied.
 #[derive(Debug, Error)]
 enum AssignError {
     #[error("expected PATH=VALUE")]
@@ -212,7 +211,7 @@ enum AssignError {
     Value(#[from] Invalid),
 }
 
-/// Sets `a.0.b=value` in the table. A value that is no TOML is taken as a string, so that quotes can be left out.
+/// Sets `a.0.b=value` in the table. A value that is not TOML is taken as a string, so that quotes can be left out.
 fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), AssignError> {
     let (key, text) = assignment.split_once('=').ok_or(AssignError::NoAssignment)?;
     let (key, text) = (key.trim(), text.trim());
@@ -227,7 +226,7 @@ fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), Assign
     Ok((key.to_owned(), value))
 }
 
-/// What is assigned to a key: TOML, or text without its quotes, with numbers in any unit.
+/// Parses an assigned value: TOML, or text without quotes, with numbers in any unit.
 fn value(key: &str, text: &str) -> Result<Value, AssignError> {
     let typed = format!("value = {text}");
     let plain = units::plain(&typed, |name| name.replacen("value", key, 1))?;
@@ -258,7 +257,7 @@ impl<'a> PlaceMut<'a> {
         }
     }
 
-    /// The value there. A table that the file leaves out, such as `[solver]`, comes into being.
+    /// Returns the value at `part`. A missing table, such as `[solver]`, is created.
     fn slot(self, part: &str) -> Result<&'a mut Value, AssignError> {
         match self {
             Self::Table(table) => Ok(table.entry(part).or_insert_with(|| Value::Table(Table::new()))),
@@ -272,7 +271,7 @@ impl<'a> PlaceMut<'a> {
     }
 }
 
-/// The line of the longest part of `key` that is written in the file.
+/// Returns the line of the longest prefix of `key` that is written in the file.
 fn find_line(text: &str, table: &DeTable<'_>, key: &str) -> Option<usize> {
     let mut parts = key.split('.');
     let first = parts.next()?;

@@ -1,12 +1,12 @@
-//! The built-in scenes. Window, command line, tests and benches all iterate this list: a new scene is a file in
+//! Built-in scenes. Window, command line, tests and benches iterate over this list: to add a scene, add a file to
 //! `assets/scenes` and a line here.
 
-/// A scene that ships inside the library.
+/// Scene that is part of the library.
 #[derive(Clone, Copy, Debug)]
 pub struct BuiltIn {
-    /// The name on the command line.
+    /// Name on the command line.
     pub id: &'static str,
-    /// The scene file.
+    /// Text of the scene file.
     pub toml: &'static str,
 }
 
@@ -16,7 +16,7 @@ macro_rules! built_in {
     };
 }
 
-/// Every built-in scene; the first is the default.
+/// Built-in scenes; the first is the default.
 pub const BUILT_IN: &[BuiltIn] = built_in![
     "article",
     "cantilever",
@@ -41,22 +41,22 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
     "chime",
 ];
 
-/// The mesh files of built-in scenes, as the scenes name them.
+/// Mesh files of built-in scenes, by the paths that the scenes use.
 const MESHES: &[(&str, &str)] = &[
     ("../meshes/cook.msh", include_str!("../../assets/meshes/cook.msh")),
     ("../meshes/bracket.msh", include_str!("../../assets/meshes/bracket.msh")),
     ("../meshes/clip.msh", include_str!("../../assets/meshes/clip.msh")),
 ];
 
-/// A mesh file of a built-in scene.
+/// Returns the text of a mesh file of a built-in scene.
 pub(super) fn mesh(file: &str) -> Option<&'static str> {
     MESHES.iter().find(|(name, _)| *name == file).map(|(_, text)| *text)
 }
 
-/// The scene shown when none is named.
+/// Default scene.
 pub const DEFAULT: &str = "article";
 
-/// The built-in scene of that name.
+/// Returns the built-in scene with this name.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static BuiltIn> {
     BUILT_IN.iter().find(|b| b.id == id)

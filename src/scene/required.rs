@@ -1,4 +1,4 @@
-//! Keys that a scene cannot do without, and what is expected there.
+//! Required keys of a scene and their expected values.
 
 use serde::de::value::{MapDeserializer, SeqDeserializer};
 use serde::de::{Deserialize, Deserializer, IntoDeserializer, Visitor};
@@ -7,8 +7,8 @@ use toml::{Table, Value};
 
 use super::{Invalid, Scene, units};
 
-/// Every key that has no default, without its places in lists, and in words what it holds where that is no number in a
-/// unit. The parser looks for the scene's own last.
+/// Keys without default, without list indices, and the expected value for keys that hold no number with a unit. The
+/// parser checks the keys of the scene itself last.
 const KEYS: &[(&str, &str)] = &[
     ("beam.length", ""),
     ("beam.height", ""),
@@ -25,7 +25,7 @@ const KEYS: &[(&str, &str)] = &[
     ("material", "the table [material]"),
 ];
 
-/// Why a table is no scene, with a key that is missing apart from everything else.
+/// Deserialisation error that distinguishes missing keys from all other errors.
 #[derive(Debug, Error)]
 enum Refusal {
     #[error("`{0}` is missing")]
@@ -44,7 +44,7 @@ impl serde::de::Error for Refusal {
     }
 }
 
-/// A value of a scene file that is read with [`Refusal`] as the error.
+/// Value of a scene file, deserialised with [`Refusal`] as the error type.
 struct Node(Value);
 
 impl IntoDeserializer<'_, Refusal> for Node {
@@ -94,7 +94,7 @@ impl<'de> Deserializer<'de> for Node {
     }
 }
 
-/// The key that a scene lacks, if that is the first thing wrong with it.
+/// Returns the missing key, if it is the first error in the scene.
 pub(super) fn missing(table: Table) -> Option<Invalid> {
     let scene = Value::Table(table);
     let Err(Refusal::Missing(field)) = Scene::deserialize(Node(scene.clone())) else { return None };
@@ -106,7 +106,7 @@ pub(super) fn missing(table: Table) -> Option<Invalid> {
     })
 }
 
-/// The first place, as `--set` writes it, where a key is not written though the table that has it is.
+/// Returns the path, as in `--set`, of the first table that exists but lacks the key.
 fn place_without(value: &Value, key: &[&str]) -> Option<String> {
     match (value, key) {
         (Value::Array(items), _) => {

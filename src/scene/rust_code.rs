@@ -1,4 +1,4 @@
-//! A scene as a Rust program that builds it with this library and solves it.
+//! Conversion of a scene to a Rust program that builds and solves it with this library.
 
 use std::collections::BTreeSet;
 use std::fmt::Debug;
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::mesh::Mesh;
 
-/// Longest line that rustfmt leaves as it is.
+/// Longest line that rustfmt does not wrap.
 const LINE: usize = 100;
 
 const HEADER: &str = "\
@@ -34,8 +34,8 @@ const PRINT: &str = r#"    for probe in simulation.solution().probes {
 "#;
 
 impl Scene {
-    /// The scene as a Rust program, which builds it with this library and solves it. The program names what differs from
-    /// the defaults only, and reads a mesh file relative to `folder`.
+    /// Returns the scene as a Rust program that builds and solves it with this library. The program sets only values
+    /// that differ from the defaults, and reads a mesh file relative to `folder`.
     ///
     /// ```
     /// use warpbeam::Scene;
@@ -61,30 +61,30 @@ impl Scene {
     }
 }
 
-/// The parts of the program.
+/// Parts of the program.
 #[derive(Debug, Default)]
 struct Code {
-    /// Names that it uses of this library.
+    /// Names imported from this library.
     uses: BTreeSet<&'static str>,
-    /// Calls of builders.
+    /// Builder calls.
     calls: String,
-    /// Assignments to what has no builder.
+    /// Assignments to fields without builder.
     assignments: String,
 }
 
 impl Code {
-    /// Adds the call of a builder.
+    /// Adds a builder call.
     fn call(&mut self, name: &str, arguments: &[String]) {
         self.calls += &format!("\n        .{name}({})", arguments.join(", "));
     }
 
-    /// Adds the call of a builder with a variant of an enumeration.
+    /// Adds a builder call with a variant of an enumeration as the argument.
     fn choose(&mut self, name: &str, kind: &'static str, variant: impl Debug) {
         self.uses.insert(kind);
         self.call(name, &[format!("{kind}::{variant:?}")]);
     }
 
-    /// Adds an assignment to a field of the scene where its value is not the default.
+    /// Adds an assignment to a field of the scene if its value is not the default.
     fn assign<T: Debug + PartialEq>(&mut self, field: &str, value: T, default: T) {
         if value != default {
             self.assignments += &format!("    scene.{field} = {value:?};\n");
@@ -217,7 +217,7 @@ impl Code {
         self.assign("dynamics.damping.stiffness", damping.stiffness, plain.damping.stiffness);
     }
 
-    /// Puts the parts together.
+    /// Assembles the program from its parts.
     fn program(mut self, start: &str, scene: &Scene) -> String {
         self.assign_text("about", &scene.about, "");
         let Self { uses, calls, assignments } = &self;
@@ -240,7 +240,7 @@ impl Code {
     }
 }
 
-/// A literal of a number, with all its digits.
+/// Formats a number literal with all its digits.
 fn number(value: f64) -> String {
     const LARGE: f64 = 1e6;
     if value.abs() < LARGE { format!("{value:?}") } else { format!("{value:e}") }

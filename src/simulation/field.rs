@@ -1,4 +1,4 @@
-//! Scalar fields to colour a body with.
+//! Scalar fields for colouring a body.
 
 use nalgebra::Matrix2;
 
@@ -7,7 +7,7 @@ use crate::scene::Material;
 use crate::state::State;
 use crate::stress::{ErrorEstimate, Local, NodalStress, visit_points};
 
-/// A quantity that is known at every quadrature point, and, recovered, at every node.
+/// Quantity with a value at every quadrature point, and recovered at every node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {
@@ -18,11 +18,11 @@ pub enum Field {
     BiotVonMises,
     /// Strain energy density, J/m³.
     EnergyDensity,
-    /// The principal strain of largest magnitude, without sign.
+    /// Largest magnitude of a principal strain.
     LargestStrain,
     /// Angle of the polar rotation, degrees.
     RotationAngle,
-    /// Where the mesh's own error lies: of elements, not of points; see [`ErrorEstimate::elements`], percent.
+    /// Distribution of the estimated mesh error, percent; one value per element, see [`ErrorEstimate::elements`].
     MeshError,
 }
 
@@ -37,7 +37,7 @@ impl Field {
         Self::MeshError,
     ];
 
-    /// The name people read.
+    /// Returns the name for display.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -50,7 +50,7 @@ impl Field {
         }
     }
 
-    /// Its unit, empty for pure numbers.
+    /// Returns the unit, empty for pure numbers.
     #[must_use]
     pub fn unit(self) -> &'static str {
         match self {
@@ -62,21 +62,21 @@ impl Field {
         }
     }
 
-    /// Values that differ by this are the same.
+    /// Returns the period of the values: values that differ by it are equivalent.
     #[must_use]
     pub fn period(self) -> Option<f64> {
         (self == Self::RotationAngle).then_some(360.0)
     }
 
-    /// Whether it has one value an element, and none at nodes.
+    /// Returns `true` if the field has one value per element and none at nodes.
     #[must_use]
     pub fn is_of_elements(self) -> bool {
         self == Self::MeshError
     }
 
-    /// The field's value at every quadrature point of a state: element by element in the mesh's order, the points of an
-    /// element in the order of [`crate::element::ElementType::points`]. `None` where its arithmetic leaves the range of
-    /// f64, and of the Cauchy stress where an element is turned inside out.
+    /// Computes the field at every quadrature point of a state: element by element in the mesh's order, the points of
+    /// an element in the order of [`crate::element::ElementType::points`]. `None` if the arithmetic leaves the range of
+    /// f64, and for the Cauchy stress if an element is inverted.
     pub fn values(self, problem: &Problem, state: &State, kinematics: Kinematics, values: &mut Vec<Option<f64>>) {
         values.clear();
         if self.is_of_elements() {
@@ -90,7 +90,7 @@ impl Field {
         visit_points(problem, state, kinematics, &mut |_, local| values.push(self.of(&local, material, kinematics)));
     }
 
-    /// The field's value at every node; of a field of elements none.
+    /// Computes the field at every node; all values are `None` for fields of elements.
     pub fn nodal_values(self, nodal: &NodalStress, values: &mut Vec<Option<f64>>) {
         values.clear();
         let (material, kinematics) = (nodal.material(), nodal.kinematics());
@@ -110,7 +110,7 @@ impl Field {
     }
 }
 
-/// The eigenvalue of a symmetric 2×2 matrix that is largest in magnitude, without sign.
+/// Returns the largest magnitude of an eigenvalue of a symmetric 2×2 matrix.
 pub(super) fn largest_principal(m: &Matrix2<f64>) -> f64 {
     let mean = 0.5 * m.trace();
     mean.abs() + (0.5 * (m.m11 - m.m22)).hypot(m.m12)

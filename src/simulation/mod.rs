@@ -1,5 +1,5 @@
-//! A scene at work, one [`Simulation::step`] an iteration on the way to its equilibrium, or a step in time; and what is
-//! known of the result.
+//! Simulation of a scene: each [`Simulation::step`] is one iteration towards the equilibrium, or one time step; and
+//! results of the current state.
 
 use std::sync::Arc;
 
@@ -35,11 +35,11 @@ pub use results::{
 };
 pub use status::Status;
 
-/// Why a scene cannot be simulated.
+/// Reason why a scene cannot be simulated.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// The scene gives no equations.
+    /// The scene has no valid equations.
     #[error(transparent)]
     System(#[from] SystemError),
     /// Not enough memory.
@@ -53,61 +53,61 @@ impl From<Invalid> for SimulationError {
     }
 }
 
-/// The numbers of a state, together.
+/// Results of a state.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution {
-    /// Free unknowns.
+    /// Number of free unknowns.
     pub dofs: usize,
-    /// How the iteration ended.
+    /// Status of the iteration.
     pub status: Status,
-    /// Solves taken.
+    /// Number of solves.
     pub iterations: u32,
-    /// Load steps taken.
+    /// Number of load steps.
     pub load_steps: u32,
-    /// ‖f_ext − f_int‖ / ‖Σ|fₑ|‖.
+    /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖.
     pub residual: f64,
-    /// See [`Simulation::residual_floor`].
+    /// Bound of the residual's rounding error; see [`Simulation::residual_floor`].
     pub residual_floor: Option<f64>,
-    /// Stability, and ρ, if [`Simulation::certify`] has been asked.
+    /// Stability and ρ, if [`Simulation::certify`] has been called.
     pub certificate: Option<Certificate>,
-    /// How far the body is deformed.
+    /// Largest rotation and strain.
     pub deformation: Deformation,
-    /// The probes.
+    /// Results at the probes.
     pub probes: Vec<ProbeResult>,
     /// Energies.
     pub energy: Energy,
-    /// Support reactions, all together.
+    /// Total reaction of all supports.
     pub reaction: Reaction,
-    /// The reaction of each.
+    /// Reaction of each support.
     pub supports: Vec<SupportReaction>,
-    /// Time since the last edit, by stage.
+    /// Computing time since the last edit, by stage.
     pub time: Timings,
-    /// What `auto` skipped; `None` for other methods.
+    /// Decisions of `auto`; `None` for other methods.
     pub auto: Option<AutoReport>,
-    /// What there is beside of a body in motion.
+    /// Further results of a motion.
     pub motion: Option<MotionResult>,
 }
 
-/// The numbers of a motion.
+/// Results of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MotionResult {
     /// Time since the start, s.
     pub time: f64,
-    /// Steps and solves.
+    /// Numbers of steps and solves.
     pub counts: Counts,
-    /// Where the energy has gone.
+    /// Energies.
     pub ledger: Ledger,
-    /// Momentum, linear and angular.
+    /// Momentum and angular momentum.
     pub momentum: Momentum,
-    /// The longest stable step, s, of an integrator that has one.
+    /// Longest stable step, s, for explicit integrators.
     pub critical_step: Option<f64>,
-    /// What `auto` decided; `None` for other methods.
+    /// Decisions of `auto`; `None` for other methods.
     pub auto: Option<MotionReport>,
 }
 
-/// A scene at work: on its way to equilibrium, or in motion.
+/// Simulation of a scene: search for an equilibrium, or motion.
 ///
 /// ```
 /// use warpbeam::{Scene, Simulation, Status};
@@ -126,7 +126,7 @@ pub struct Simulation {
     status: Status,
 }
 
-/// A scene, its equations, and where the body is.
+/// Scene with its equations and current state.
 #[derive(Clone, Debug)]
 struct Body {
     scene: Scene,
@@ -135,7 +135,7 @@ struct Body {
 }
 
 impl Body {
-    /// Whether a solve that starts where the body is has a chance.
+    /// Returns `true` if a solve may start from the current state.
     fn is_useful_start(&self, same_unknowns: bool) -> bool {
         let system = self.problem.system();
         let holds = || same_unknowns || system.pattern().are_fixed_at_rest(&self.state.displacement);
@@ -143,12 +143,12 @@ impl Body {
     }
 }
 
-/// What a step does.
+/// Kind of simulation.
 #[derive(Debug)]
 enum Process {
-    /// An iteration.
+    /// Search for an equilibrium; a step is an iteration.
     Search(Box<Search>),
-    /// A time step.
+    /// Motion; a step is a time step.
     Motion(Box<Motion>),
 }
 
@@ -161,36 +161,37 @@ impl Process {
     }
 }
 
-/// Frequency of a body's mass on the spring of a hand, Hz: firm, and still a spring.
+/// Frequency of the body's mass on the mouse spring, Hz; high enough to feel firm.
 const HAND_FREQUENCY: f64 = 5.0;
-/// Damping ratio of that vibration.
+/// Damping ratio of this vibration.
 const HAND_DAMPING: f64 = 0.7;
-/// Stiffness of a hand's spring over that of the body where it is held: the body follows the pointer.
+/// Stiffness of the mouse spring relative to that of the body at the grabbed point, so that the body follows the
+/// pointer.
 const HAND_FIRMNESS: f64 = 10.0;
 
 impl Simulation {
-    /// The scene at its start.
+    /// Returns a simulation in the initial state of the scene.
     ///
     /// # Errors
-    /// What is wrong with the scene, or that its mesh is too large.
+    /// [`SimulationError`] if the scene is invalid or its mesh too large.
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
         Self::with_system(scene, Arc::new(System::new(scene)?))
     }
 
-    /// The scene on a mesh of the caller's, which it keeps through every edit. The scene's own `[beam]` or `[mesh]`, if
-    /// it has one, is not read.
+    /// Returns a simulation of the scene on a given mesh, which is kept through every edit. The scene's own `[beam]` or
+    /// `[mesh]`, if any, is not read.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Same errors as [`Self::new`].
     pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, SimulationError> {
         Self::with_system(scene, Arc::new(System::with_mesh(scene, mesh)?))
     }
 
-    /// The scene at its start on equations made before: shared as they are where they are the scene's, adapted where
-    /// they are not.
+    /// Returns a simulation in the initial state of the scene on an existing system, which is shared if it fits the
+    /// scene, and adapted otherwise.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Same errors as [`Self::new`].
     pub fn with_system(scene: &Scene, system: Arc<System>) -> Result<Self, SimulationError> {
         Self::with_problem(scene.clone(), Problem::new(scene, system)?)
     }
@@ -211,7 +212,7 @@ impl Simulation {
         };
     }
 
-    /// Back to the start of the scene: at rest, or with the velocity that it gives the body.
+    /// Returns to the initial state of the scene: at rest, or with its initial velocity.
     pub fn reset(&mut self) {
         match &mut self.process {
             Process::Search(search) => {
@@ -223,11 +224,12 @@ impl Simulation {
         self.judge();
     }
 
-    /// Starts over from this displacement, m, one vector a node of the mesh, at rest; what supports fix is where they
-    /// take it.
+    /// Restarts from this displacement, m, one vector per node, with zero velocity; fixed components are set to the
+    /// supports' displacements.
     ///
     /// # Errors
-    /// [`StateError`] where there are not as many vectors as nodes, or one is not finite. Nothing is changed then.
+    /// [`StateError`] if the number of vectors differs from the number of nodes, or one is not finite. Nothing is
+    /// changed then.
     pub fn start_from(&mut self, u: &[Vector2<f64>]) -> Result<(), StateError> {
         let system = self.body.problem.system();
         let mut state = system.at_rest().with_displacement(u.to_vec())?;
@@ -237,10 +239,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Starts over from a state of this body: a clone of an earlier [`Self::state`].
+    /// Restarts from a state of this body: a clone of an earlier [`Self::state`].
     ///
     /// # Errors
-    /// [`StateError`] where it is another body's state. Nothing is changed then.
+    /// [`StateError`] if it is a state of another body. Nothing is changed then.
     pub fn restore(&mut self, state: &State) -> Result<(), StateError> {
         self.body.state.accept(state)?;
         self.body.state.copy_from(state);
@@ -248,24 +250,25 @@ impl Simulation {
         Ok(())
     }
 
-    /// The motion as it stands, to go back to; `None` of a search.
+    /// Returns a snapshot of the motion for [`Self::return_to`]; `None` for a search.
     #[must_use]
     pub fn moment(&self) -> Option<Moment> {
         self.motion().map(|motion| Moment::of(motion, &self.body))
     }
 
-    /// Stores the motion as it stands in an earlier moment of the same body, without allocating. Nothing of a search.
+    /// Overwrites an earlier snapshot of the same body with the current motion, without allocating. Does nothing for a
+    /// search.
     pub fn copy_moment(&self, moment: &mut Moment) {
         if let Process::Motion(motion) = &self.process {
             moment.copy_from(motion, &self.body);
         }
     }
 
-    /// Goes back to a moment of this motion. Steps from there are those after [`Self::restore`]; energies and counts are
-    /// those of the moment. A search restores the state alone.
+    /// Returns to an earlier moment of this motion. Steps from there are the same as after [`Self::restore`]; energies
+    /// and counts are those of the moment. For a search, only the state is restored.
     ///
     /// # Errors
-    /// [`StateError`] where it is another body's moment. Nothing is changed then.
+    /// [`StateError`] if it is a moment of another body. Nothing is changed then.
     pub fn return_to(&mut self, moment: &Moment) -> Result<(), StateError> {
         self.body.state.accept(moment.state())?;
         match &mut self.process {
@@ -276,7 +279,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Forgets what was, and goes on from where the body is.
+    /// Restarts search or motion from the current state.
     fn begin(&mut self) {
         match &mut self.process {
             Process::Search(search) => search.restart(&mut self.body, Restart::AtRest),
@@ -285,14 +288,14 @@ impl Simulation {
         self.judge();
     }
 
-    /// Takes another scene on, at the price of what has changed. The state is kept where the mesh is: an edited load is
-    /// followed from where the body is, and in mid-motion it keeps its velocity. A search starts at rest after a
-    /// divergence, for another method, and where the state is of no use as a start (not finite, absurdly far away,
-    /// crushed); either does where a new support holds what has moved away. Another `analysis` goes on from where the
-    /// body is, without velocity.
+    /// Changes the scene, recomputing only what has changed. The state is kept if the mesh is unchanged: a search
+    /// follows an edited load from the current state, and a motion keeps its velocity. A search restarts at rest after
+    /// a divergence, for another method, and if the state is not a useful start (not finite, too far away, crushed);
+    /// both restart if a new support fixes nodes that have moved. After a change of `analysis` the current displacement
+    /// is kept without velocity.
     ///
     /// # Errors
-    /// As [`Self::new`]; the simulation is unchanged then.
+    /// Same errors as [`Self::new`]; the simulation is then unchanged.
     pub fn change_scene(&mut self, scene: &Scene) -> Result<(), SimulationError> {
         let Self { body, process, .. } = self;
         let change = body.problem.update(scene)?;
@@ -319,8 +322,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// A copy of a search as it stands, for who looks on while the search goes on elsewhere. It has no memory for
-    /// iterations: that is made where it goes on itself. `None` of a motion.
+    /// Returns a snapshot of a search, for display while a background solve runs. It has no work memory; that is
+    /// allocated if the snapshot is itself continued. `None` for a motion.
     #[must_use]
     pub fn snapshot(&self) -> Option<Self> {
         let process = Process::Search(Box::new(self.search()?.copy()));
@@ -330,7 +333,7 @@ impl Simulation {
     /// Sets the components of a force, N; `load` counts the scene's loads from 0.
     ///
     /// # Errors
-    /// Where there is no such force, or its size is out of range. Nothing is changed then.
+    /// If there is no such force, or its size is out of range. Nothing is changed then.
     pub fn set_force(&mut self, load: usize, force: [f64; 2]) -> Result<(), SimulationError> {
         self.edit(|scene| scene.set_force(load, force))
     }
@@ -338,7 +341,7 @@ impl Simulation {
     /// Sets a moment, N m; `load` counts the scene's loads from 0.
     ///
     /// # Errors
-    /// Where there is no such moment, or its size is out of range. Nothing is changed then.
+    /// If there is no such moment, or its size is out of range. Nothing is changed then.
     pub fn set_moment(&mut self, load: usize, moment: f64) -> Result<(), SimulationError> {
         self.edit(|scene| scene.set_moment(load, moment))
     }
@@ -346,17 +349,17 @@ impl Simulation {
     /// Sets the acceleration of a weight, m/s²; `load` counts the scene's loads from 0.
     ///
     /// # Errors
-    /// Where there is no such gravity, or its size is out of range. Nothing is changed then.
+    /// If there is no such gravity, or its size is out of range. Nothing is changed then.
     pub fn set_gravity(&mut self, load: usize, acceleration: [f64; 2]) -> Result<(), SimulationError> {
         self.edit(|scene| scene.set_gravity(load, acceleration))
     }
 
-    /// Sets where a support takes its place, m, and how far it turns it about its middle, rad; `support` counts the
+    /// Sets the prescribed displacement, m, and rotation about its middle, rad, of a support; `support` counts the
     /// scene's supports from 0.
     ///
     /// # Errors
-    /// Where there is no such support, it does not fix what is to move, or a number is out of range. Nothing is changed
-    /// then.
+    /// If there is no such support, it does not fix the direction of the motion, or a number is out of range. Nothing
+    /// is changed then.
     pub fn move_support(&mut self, support: usize, displacement: [f64; 2], turn: f64) -> Result<(), SimulationError> {
         self.edit(|scene| scene.move_support(support, displacement, turn))
     }
@@ -364,7 +367,7 @@ impl Simulation {
     /// Sets the material.
     ///
     /// # Errors
-    /// Where a number is out of range. Nothing is changed then.
+    /// If a number is out of range. Nothing is changed then.
     pub fn set_material(&mut self, material: Material) -> Result<(), SimulationError> {
         self.edit(|scene| {
             scene.material = material;
@@ -372,18 +375,18 @@ impl Simulation {
         })
     }
 
-    /// Takes on the scene that `change` makes of the present one.
+    /// Applies a change to the scene.
     fn edit(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), Invalid>) -> Result<(), SimulationError> {
         let mut scene = self.body.scene.clone();
         change(&mut scene)?;
         self.change_scene(&scene)
     }
 
-    /// Takes hold of a material point with a damped spring, which holds it where it is until [`Self::pull_to`] says
-    /// where to. Returns whether there is such a point.
+    /// Attaches a mouse spring to a material point; its target is the current position until [`Self::pull_to`] is
+    /// called. Returns `true` if there is such a point.
     ///
-    /// The spring makes the body's mass vibrate at 5 Hz, or is ten times as stiff as the body is there, whichever is
-    /// stiffer; it pulls no harder than stretched by a quarter of the body's size.
+    /// The spring's stiffness is the larger of that for which the body's mass vibrates at 5 Hz and ten times the body's
+    /// stiffness at the point; its force is capped at an elongation of a quarter of the body's size.
     pub fn grab(&mut self, point: MaterialPoint) -> bool {
         let Body { scene, problem, state } = &mut self.body;
         let mass = Mass::new(problem.system(), scene.material.area_density()).total();
@@ -400,10 +403,11 @@ impl Simulation {
         true
     }
 
-    /// Pulls the point that is held to a position, m, within the next time step. Nothing happens where none is held.
+    /// Moves the target of the mouse spring to a position, m, within the next time step. Does nothing without a mouse
+    /// spring.
     ///
     /// # Errors
-    /// [`StateError::NotFinite`]; the pull is unchanged then.
+    /// [`StateError::NotFinite`]; the target is then unchanged.
     pub fn pull_to(&mut self, position: Vector2<f64>) -> Result<(), StateError> {
         if !is_finite(&[position]) {
             return Err(StateError::NotFinite { what: "position of the pointer" });
@@ -420,14 +424,14 @@ impl Simulation {
         Ok(())
     }
 
-    /// Lets go.
+    /// Removes the mouse spring.
     pub fn release(&mut self) {
         if self.body.problem.hand_mut().take().is_some() {
             self.pulled(false);
         }
     }
 
-    /// The hand that holds the body, and its force on the body, N.
+    /// Returns the mouse spring and its force on the body, N.
     #[must_use]
     pub fn hand(&self) -> Option<(&Hand, Vector2<f64>)> {
         let State { displacement, velocity, .. } = &self.body.state;
@@ -447,9 +451,9 @@ impl Simulation {
         self.judge();
     }
 
-    /// One iteration (assemble, factorize, solve, and the rotations and residual of the new state), or one time step. A
-    /// search does nothing once its status is no longer [`Status::Running`]; a motion goes on until it is
-    /// [`Status::Stopped`].
+    /// Performs one iteration (assemble, factorize, solve, and the rotations and residual of the new state), or one
+    /// time step. A search does nothing once its status is no longer [`Status::Running`]; a motion continues until it
+    /// is [`Status::Stopped`].
     pub fn step(&mut self) -> &Status {
         match &mut self.process {
             Process::Search(search) => search.step(&mut self.body),
@@ -459,9 +463,9 @@ impl Simulation {
         &self.status
     }
 
-    /// Whether another step would change nothing: a search has ended, or a motion has been given up or come to rest
-    /// (nothing has moved for half a second by more than a millionth of the body's size a second, and no pulse is to
-    /// come).
+    /// Returns `true` if another step would change nothing: the search has ended, or the motion has stopped or come to
+    /// rest (for half a second no node has moved faster than a millionth of the body's size per second, and no pulse is
+    /// to come).
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         match &self.process {
@@ -480,7 +484,7 @@ impl Simulation {
         &self.status
     }
 
-    /// Ends a search or a motion that has not come to its end, with the best state there is.
+    /// Interrupts a search or a motion, leaving the best available state.
     pub fn stop(&mut self) {
         match &mut self.process {
             Process::Search(search) => search.stop(&mut self.body),
@@ -489,9 +493,9 @@ impl Simulation {
         self.judge();
     }
 
-    /// Finds out what is known of the final state whatever method found it, at the price of some solves; remembered
-    /// until the next change. Nothing is known of linear theory's results, before the end, in motion, and while a hand
-    /// pulls.
+    /// Computes properties of the final state that do not depend on the method, at the cost of some solves; the result
+    /// is kept until the next change. All properties are `None` for linear theory, before the end, for motions, and
+    /// with a mouse spring.
     pub fn certify(&mut self) -> Certificate {
         match &mut self.process {
             Process::Search(search) => search.certify(&self.body.problem, &self.body.state),
@@ -499,13 +503,13 @@ impl Simulation {
         }
     }
 
-    /// What [`Self::certify`] has found, if it has been asked since the last change.
+    /// Returns the result of [`Self::certify`], if it was called since the last change.
     #[must_use]
     pub fn certificate(&self) -> Option<Certificate> {
         self.search().and_then(Search::certificate)
     }
 
-    /// The numbers of the current state.
+    /// Returns the results of the current state.
     #[must_use]
     pub fn solution(&self) -> Solution {
         let Body { problem, state, .. } = &self.body;
@@ -544,30 +548,30 @@ impl Simulation {
         }
     }
 
-    /// Stress and strain at every node, recovered from the current state.
+    /// Recovers stress and strain at every node from the current state.
     #[must_use]
     pub fn nodal_stress(&self) -> NodalStress {
         NodalStress::of(&self.body.problem, &self.body.state, self.kinematics())
     }
 
-    /// The estimate of the mesh's own error in the current state; see [`ErrorEstimate`].
+    /// Returns the estimate of the mesh's error in the current state; see [`ErrorEstimate`].
     #[must_use]
     pub fn mesh_error(&self, nodal: &NodalStress) -> ErrorEstimate {
         ErrorEstimate::of(&self.body.problem, &self.body.state, nodal)
     }
 
-    /// How the current state is seen.
+    /// Returns the strain measure of the current state.
     fn kinematics(&self) -> Kinematics {
         if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
-    /// A field's value at every quadrature point; see [`Field::values`].
+    /// Computes a field at every quadrature point; see [`Field::values`].
     pub fn field(&self, field: Field, values: &mut Vec<Option<f64>>) {
         field.values(&self.body.problem, &self.body.state, self.kinematics(), values);
     }
 
-    /// A field's values as people expect them, recovered at the nodes; of a field of elements, those of
-    /// [`Self::field`]. `nodal` and `scratch` are room to work in, kept from state to state.
+    /// Computes a field recovered at the nodes, for display; for a field of elements, the values of [`Self::field`].
+    /// `nodal` and `scratch` are work memory, reused between states.
     pub fn smooth_field(
         &self,
         field: Field,
@@ -583,20 +587,20 @@ impl Simulation {
         field.nodal_values(nodal, values);
     }
 
-    /// Stress where people look for it: the largest, that of the probes, and how far the mesh is to be trusted.
+    /// Returns the stress results: the largest stress, those at the probes, and the estimated mesh error.
     #[must_use]
     pub fn stress_result(&self) -> StressResult {
         let nodal = self.nodal_stress();
         StressResult::of(&self.body.problem, &nodal, &self.mesh_error(&nodal))
     }
 
-    /// Displacement of a probe, m, the mean over its edge; `None` where there is no such probe.
+    /// Returns the displacement of a probe, m, the mean over its edge; `None` if there is no such probe.
     #[must_use]
     pub fn probe(&self, name: &str) -> Option<Vector2<f64>> {
         self.nodal_probe(name).map(|probe| probe.mean(&self.body.state.displacement))
     }
 
-    /// Velocity of a probe, m/s; `None` where there is no such probe.
+    /// Returns the velocity of a probe, m/s; `None` if there is no such probe.
     #[must_use]
     pub fn probe_velocity(&self, name: &str) -> Option<Vector2<f64>> {
         self.nodal_probe(name).map(|probe| probe.mean(&self.body.state.velocity))
@@ -606,25 +610,25 @@ impl Simulation {
         self.body.problem.probes().iter().find(|p| p.name == name)
     }
 
-    /// The scene as it stands.
+    /// Returns the current scene.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.body.scene
     }
 
-    /// The equations of the scene, with their numbers.
+    /// Returns the equations of the scene with numerical values.
     #[must_use]
     pub fn problem(&self) -> &Problem {
         &self.body.problem
     }
 
-    /// The equations without their numbers: mesh, elements, sparsity.
+    /// Returns the equations without numerical values: mesh, elements, sparsity.
     #[must_use]
     pub fn system(&self) -> &Arc<System> {
         self.body.problem.system()
     }
 
-    /// The method that steps.
+    /// Returns the solution method.
     #[must_use]
     pub fn method(&self) -> MethodKind {
         self.body.scene.solver.method
@@ -637,7 +641,7 @@ impl Simulation {
         }
     }
 
-    /// What is known of the motion; `None` of a search for an equilibrium.
+    /// Returns the motion; `None` for a search for an equilibrium.
     #[must_use]
     pub fn motion(&self) -> Option<&Motion> {
         match &self.process {
@@ -646,27 +650,27 @@ impl Simulation {
         }
     }
 
-    /// Keeps the energy ledger of a motion, which costs two more sweeps over the elements a step, or not. It is kept
-    /// unless told otherwise; taken up again it starts anew.
+    /// Switches the energy ledger of a motion on or off; it costs two additional loops over the elements per step. It
+    /// is on by default, and starts again from zero when switched on.
     pub fn keep_ledger(&mut self, keep: bool) {
         if let Process::Motion(motion) = &mut self.process {
             motion.keep_ledger(keep, &self.body);
         }
     }
 
-    /// Where the body is; a clone can be given back to [`Self::restore`].
+    /// Returns the current state; a clone can be passed to [`Self::restore`].
     #[must_use]
     pub fn state(&self) -> &State {
         &self.body.state
     }
 
-    /// Displacement x − X of every node, m.
+    /// Returns the displacement x − X of every node, m.
     #[must_use]
     pub fn displacement(&self) -> &[Vector2<f64>] {
         &self.body.state.displacement
     }
 
-    /// Forces of the current state; of a motion, those of its last stage.
+    /// Returns the forces of the current state; for a motion, those of its last stage.
     #[must_use]
     pub fn forces(&self) -> &Forces {
         match &self.process {
@@ -675,20 +679,21 @@ impl Simulation {
         }
     }
 
-    /// Fraction of the load that is on the body, and load steps taken so far.
+    /// Returns the load factor currently applied and the number of load steps so far.
     #[must_use]
     pub fn load_stepping(&self) -> (f64, u32) {
         self.search().map_or((1.0, 1), Search::load_stepping)
     }
 
-    /// What each support does to the body, in the scene's order.
+    /// Returns the reaction of each support, in the scene's order.
     #[must_use]
     pub fn support_reactions(&self) -> Vec<SupportReaction> {
         let kinematics = if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated };
         support_reactions(&self.body.problem, &self.body.state, kinematics, self.forces())
     }
 
-    /// Whether the state is linear theory's; if not, its elements are turned back before their strain is measured.
+    /// Returns `true` if the state is one of linear theory; otherwise strains are measured in the rotated frames of the
+    /// elements.
     #[must_use]
     pub fn is_linear(&self) -> bool {
         match &self.process {
@@ -697,19 +702,19 @@ impl Simulation {
         }
     }
 
-    /// What was skipped because the scene does not need it; `None` for methods that do not decide.
+    /// Returns the decisions of `auto`; `None` for other methods.
     #[must_use]
     pub fn auto_report(&self) -> Option<AutoReport> {
         self.search().and_then(Search::auto_report)
     }
 
-    /// Where it stands.
+    /// Returns the status of the simulation.
     #[must_use]
     pub fn status(&self) -> &Status {
         &self.status
     }
 
-    /// Solves since the last edit, or since the motion began.
+    /// Returns the number of solves since the last edit, or since the start of the motion.
     #[must_use]
     pub fn iterations(&self) -> u32 {
         match &self.process {
@@ -718,8 +723,8 @@ impl Simulation {
         }
     }
 
-    /// ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ of the current state; of a motion what the last stage has left unsolved, over the
-    /// largest of its forces.
+    /// Returns ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ of the current state; for a motion, the residual of the last stage relative to
+    /// the largest of its forces.
     #[must_use]
     pub fn residual(&self) -> f64 {
         match &self.process {
@@ -728,21 +733,21 @@ impl Simulation {
         }
     }
 
-    /// Where a solve has converged to working precision only: a bound of what rounding changes in [`Self::residual`],
-    /// which is within it and above the tolerance. `None` where the tolerance is met, or nothing is.
+    /// Returns the bound of the rounding error of [`Self::residual`], if a solve has ended within this bound but above
+    /// the tolerance. `None` if the tolerance is met, or the solve has not converged.
     #[must_use]
     pub fn residual_floor(&self) -> Option<f64> {
         let floor = self.search().and_then(Search::residual_floor);
         floor.filter(|_| self.residual() > self.body.scene.solver.tolerance)
     }
 
-    /// Length of the last step over that of the one before: below 1 the iteration contracts.
+    /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.
     #[must_use]
     pub fn step_ratio(&self) -> Option<f64> {
         self.search().and_then(Search::step_ratio)
     }
 
-    /// Time of the last iteration or time step, by stage.
+    /// Returns the computing time of the last iteration or time step, by stage.
     #[must_use]
     pub fn last_iteration(&self) -> &Timings {
         match &self.process {
@@ -751,7 +756,7 @@ impl Simulation {
         }
     }
 
-    /// Time of all iterations since the last edit, or of all time steps, by stage.
+    /// Returns the computing time of all iterations since the last edit, or of all time steps, by stage.
     #[must_use]
     pub fn timings(&self) -> &Timings {
         match &self.process {
@@ -761,7 +766,8 @@ impl Simulation {
     }
 }
 
-/// The largest displacement that a unit force on a point makes of it, m/N; `None` for a body that is not held.
+/// Returns the largest displacement of a point under a unit force on it, m/N; `None` if supports leave the body free to
+/// move.
 fn compliance(problem: &Problem, state: &State, point: MaterialPoint) -> Option<f64> {
     let system = problem.system();
     let weights = system.mesh().weights(point)?;

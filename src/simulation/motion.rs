@@ -1,4 +1,4 @@
-//! The march in time: one time step a step.
+//! Motion: time stepping of a scene.
 
 use nalgebra::Vector2;
 
@@ -13,21 +13,22 @@ use crate::solver::SolverError;
 use crate::state::{State, largest};
 use crate::timings::Timings;
 
-/// Halvings of a step before the motion is given up.
+/// Largest number of halvings of a step before the motion stops.
 const MOST_HALVINGS: u32 = 10;
-/// Sizes of the body that it may go away: beyond, its strains have lost half of their digits.
+/// Largest displacement, in sizes of the body; beyond, strains have lost half of their digits.
 const FARTHEST: f64 = 1e6;
-/// A fraction of a step that is rounding of the time.
+/// Fraction of a step that counts as rounding error of the time.
 const NO_TIME: f64 = 1e-6;
-/// Of the energy of a body and of the work on it, a step that adds more has failed.
+/// Largest energy added by a step, relative to the energy of the body and the work on it; a step that adds more has
+/// failed.
 const MOST_ADDED: f64 = 0.25;
-/// A body whose points all move by less than this fraction of its size a second …
+/// Speed below which a node counts as at rest, body sizes per second.
 const UNSEEN: f64 = 1e-6;
-/// … for so long, s, and as many steps, is at rest.
+/// Duration, s, for which all nodes must be at rest; also at least [`QUIET_STEPS`] steps.
 const QUIET: f64 = 0.5;
 const QUIET_STEPS: u32 = 10;
 
-/// A body in motion.
+/// Body in motion.
 #[derive(Debug)]
 pub struct Motion {
     mass: Mass,
@@ -39,18 +40,18 @@ pub struct Motion {
     report: MotionReport,
     ledger: Ledger,
     keeps_ledger: bool,
-    /// Steps are checked for energy that comes from nowhere. A hand pulls harder on few nodes than loads do: a step that
-    /// solves its stages once can then be far off.
+    /// `true` if steps are checked for spurious energy. A mouse spring exerts larger forces on few nodes than loads do,
+    /// so that a step with a single solve per stage can be inaccurate.
     is_guarded: bool,
     stopped: Option<StopReason>,
-    /// Steps in a row in which nothing has been seen to move.
+    /// Number of successive steps in which no node moved.
     quiet_steps: u32,
     critical_step: Option<f64>,
     timings: Timings,
     last_step: Timings,
 }
 
-/// A motion at an instant: its state, energies and counts. [`super::Simulation::return_to`] goes back to it.
+/// Snapshot of a motion: state, energies and counts. [`super::Simulation::return_to`] returns to it.
 #[derive(Clone, Debug)]
 pub struct Moment {
     state: State,
@@ -69,7 +70,7 @@ impl Moment {
         Self { state: state.clone(), ledger, counts, report, is_linear, method }
     }
 
-    /// Becomes another moment of the same body, without allocating.
+    /// Copies another moment of the same body without allocating.
     pub(super) fn copy_from(&mut self, motion: &Motion, Body { state, scene, .. }: &Body) {
         self.state.copy_from(state);
         self.method = scene.solver.method;
@@ -77,19 +78,19 @@ impl Moment {
         self.is_linear = motion.linear.is_in_use();
     }
 
-    /// State of the body.
+    /// Returns the state of the body.
     #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Energy ledger up to this moment.
+    /// Returns the energy ledger up to this moment.
     #[must_use]
     pub fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// Memory that it takes, bytes.
+    /// Returns the memory used, bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + self.state.bytes()
@@ -97,7 +98,7 @@ impl Moment {
 }
 
 impl Motion {
-    /// One that begins where the body is, with the velocity it has.
+    /// Returns a motion that starts from the current state and velocity.
     pub(super) fn new(body: &mut Body) -> Result<Self, SolverError> {
         let Body { scene, problem, state } = body;
         let mass = Mass::new(problem.system(), scene.material.area_density());
@@ -122,7 +123,7 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Begins where the body is, with the velocity it has.
+    /// Starts a motion from the current state and velocity.
     pub(super) fn begin(&mut self, body: &mut Body) {
         self.linear.forget();
         body.problem.system().follow(&mut body.state, self.kinematics(&body.scene));
@@ -134,13 +135,13 @@ impl Motion {
         self.find_critical_step(scene, problem);
     }
 
-    /// Goes back to a moment, with the energies and counts of then. The next step is as after [`Self::begin`].
+    /// Returns to a moment, with its energies and counts. The next step is as after [`Self::begin`].
     pub(super) fn return_to(&mut self, body: &mut Body, moment: &Moment) {
         let Moment { state, ledger, counts, report, is_linear, method } = moment;
         body.state.copy_from(state);
         self.linear.forget();
         self.linear.set_in_use(*is_linear);
-        // Rotations of edges that are found again differ by rounding.
+        // Recomputed edge angles would differ by rounding errors.
         if *method != body.scene.solver.method {
             body.problem.system().follow(&mut body.state, self.kinematics(&body.scene));
         }
@@ -148,10 +149,10 @@ impl Motion {
         (self.ledger, self.counts, self.report) = (*ledger, *counts, *report);
     }
 
-    /// Forgets how the body came to where it is.
+    /// Discards all data of previous steps.
     fn begin_steps(&mut self, body: &mut Body) {
         let Body { problem, state, .. } = body;
-        // What came before must not be seen in what comes.
+        // Results must not depend on earlier steps.
         self.memory.corrector.forget();
         self.memory.residual = 0.0;
         problem.set_time(state.time);
@@ -162,7 +163,7 @@ impl Motion {
         self.last_step = Timings::default();
     }
 
-    /// Goes on after an edit; `before` is the scene that was. Position and velocity are kept.
+    /// Continues after an edit; `before` is the previous scene. Displacement and velocity are kept.
     pub(super) fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SolverError> {
         let Body { scene, problem, state } = body;
         let mass_changes = scene.material.area_density() != before.material.area_density();
@@ -198,7 +199,7 @@ impl Motion {
         Ok(())
     }
 
-    /// Back to the start of the scene.
+    /// Returns to the initial state of the scene.
     pub(super) fn reset(&mut self, body: &mut Body) {
         start(&body.scene, &body.problem, &self.mass, &mut body.state);
         self.begin(body);
@@ -209,7 +210,7 @@ impl Motion {
             if entry(scene).is_explicit() { critical_step(problem, &self.mass, scene.dynamics.damping) } else { None };
     }
 
-    /// A time step; one that fails is taken in halves. Nothing once the motion has been given up.
+    /// Performs a time step; a failed step is split into halves. Does nothing once the motion has stopped.
     pub(super) fn step(&mut self, body: &mut Body) {
         if self.stopped.is_some() {
             return;
@@ -225,7 +226,8 @@ impl Motion {
                 Ok(()) => left -= 1,
                 Err(error) => {
                     body.state.copy_from(&self.start);
-                    // Beyond its critical step an explicit scheme is to be seen to fail; a hand must not make it fail.
+                    // An explicit scheme beyond its critical step should fail visibly; failures due to a mouse spring
+                    // are handled by halving.
                     let gives_up = entry(&body.scene).is_explicit() && !self.is_guarded;
                     if halvings == MOST_HALVINGS || gives_up {
                         self.stopped = Some(self.reason(error, part));
@@ -238,7 +240,7 @@ impl Motion {
             }
         }
         if left == 0 {
-            // Sums of parts round; the steps' own times do not.
+            // Use the exact end time instead of the rounded sum of the parts.
             body.state.time = end;
             self.counts.steps += 1;
             let still = largest(&body.state.velocity) < UNSEEN * body.problem.system().size();
@@ -255,7 +257,7 @@ impl Motion {
         self.timings.add(&self.last_step);
     }
 
-    /// Enters a step into the books; fails where they show that it has failed.
+    /// Records a step in the ledger; fails if the ledger shows spurious energy.
     fn book(&mut self, booking: &Booking, body: &Body) -> Result<(), StepError> {
         if self.keeps_books() {
             let (Body { scene, problem, state }, mut ledger) = (body, self.ledger);
@@ -272,7 +274,7 @@ impl Motion {
         self.keeps_ledger || self.is_guarded
     }
 
-    /// A step of h; `auto` takes it under linear theory where that serves.
+    /// Performs a step of length h; `auto` uses linear theory if it is accurate enough.
     fn take_step(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
         let asked = asked_error(&body.scene);
         let decides = decides(&body.scene);
@@ -305,7 +307,7 @@ impl Motion {
         self.try_step(body, self.kinematics(&body.scene), h)
     }
 
-    /// Sees the start of a step under another theory.
+    /// Recomputes the start of a step with another strain measure.
     fn see(&mut self, body: &mut Body, kinematics: Kinematics) {
         body.problem.system().follow(&mut body.state, kinematics);
         body.state.knows_net_force = false;
@@ -355,14 +357,14 @@ impl Motion {
         if linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
-    /// Ends a motion that has not come to its end.
+    /// Interrupts a motion that has not ended.
     pub(super) fn stop(&mut self, body: &Body) {
         if self.status(&body.scene, &body.state) == Status::Running {
             self.stopped = Some(StopReason::Interrupted);
         }
     }
 
-    /// Whether strains are those of linear theory.
+    /// Returns `true` if strains are those of linear theory.
     pub(super) fn is_linear(&self, scene: &Scene) -> bool {
         self.kinematics(scene) == Kinematics::Linear
     }
@@ -376,14 +378,14 @@ impl Motion {
         }
     }
 
-    /// Whether nothing has moved for a while, and nothing will unless somebody does something.
+    /// Returns `true` if nothing has moved for a while, and no pulse is to come.
     pub(super) fn is_at_rest(&self, scene: &Scene, state: &State) -> bool {
         let quiet = f64::from(self.quiet_steps) * scene.dynamics.time_step;
         let pulses_are_over = scene.loads.iter().filter_map(Load::pulse).all(|p| p.start + p.duration <= state.time);
         self.quiet_steps >= QUIET_STEPS && quiet >= QUIET && pulses_are_over
     }
 
-    /// A hand has taken hold, moved or let go.
+    /// Updates the motion after a mouse spring was attached, moved or removed.
     pub(super) fn pulled(&mut self, body: &Body) {
         if !self.keeps_books() {
             self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);
@@ -393,7 +395,7 @@ impl Motion {
         self.memory.corrector.matrix_changes();
     }
 
-    /// What the last stage has left unsolved, over the largest of its forces.
+    /// Returns the residual of the last stage relative to the largest of its forces.
     pub(super) fn residual(&self) -> f64 {
         self.memory.residual
     }
@@ -421,33 +423,34 @@ impl Motion {
         Momentum::of(&body.problem, &self.mass, inertia(&body.scene), &body.state)
     }
 
-    /// Where the energy has gone since the start.
+    /// Returns the energy ledger since the start.
     #[must_use]
     pub fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// Steps and solves since the start.
+    /// Returns the numbers of steps and solves since the start.
     #[must_use]
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// What `auto` has decided since the start; `None` for other methods, and for integrators that solve nothing.
+    /// Returns the decisions of `auto` since the start; `None` for other methods and for explicit integrators.
     #[must_use]
     pub fn auto_report(&self, scene: &Scene) -> Option<MotionReport> {
         let Counts { solves, factorizations, .. } = self.counts;
         decides(scene).then_some(MotionReport { solves, factorizations, ..self.report })
     }
 
-    /// The longest stable step about rest, s; `None` for an integrator that has no such limit.
+    /// Returns the longest stable step about rest, s; `None` for integrators without such a limit.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
         self.critical_step
     }
 }
 
-/// Length of the step that begins at a time, s, and the time it ends at: the step that reaches the duration ends there.
+/// Returns the length of the step that begins at a time, s, and its end time; the last step ends exactly at the
+/// duration.
 fn next_step(settings: &DynamicsSettings, time: f64) -> (f64, f64) {
     let DynamicsSettings { time_step, duration, .. } = *settings;
     if time < duration && time + time_step > duration - NO_TIME * time_step {
@@ -461,12 +464,12 @@ fn entry(scene: &Scene) -> &'static IntegratorEntry {
     scene.dynamics.integrator.entry()
 }
 
-/// Whether `auto` decides how steps are solved.
+/// Returns `true` if `auto` decides how steps are solved.
 fn decides(scene: &Scene) -> bool {
     scene.solver.method == MethodKind::Auto && !entry(scene).is_explicit()
 }
 
-/// The error asked of a motion, as a fraction.
+/// Returns the error requested for a motion, as a fraction.
 fn asked_error(scene: &Scene) -> f64 {
     0.01 * scene.solver.max_error_percent
 }
@@ -475,7 +478,7 @@ fn inertia(scene: &Scene) -> Inertia {
     entry(scene).inertia
 }
 
-/// Puts a body at rest and gives it the velocity a scene starts with.
+/// Sets a body to rest and to the initial velocity of the scene.
 fn start(scene: &Scene, problem: &Problem, mass: &Mass, state: &mut State) {
     state.reset();
     let Start { velocity, spin } = scene.start;
@@ -488,7 +491,7 @@ fn start(scene: &Scene, problem: &Problem, mass: &Mass, state: &mut State) {
     problem.system().pattern().stop_fixed(&mut state.velocity);
 }
 
-/// The state a scene starts with.
+/// Returns the initial state of a scene.
 pub(super) fn start_of(scene: &Scene, problem: &Problem) -> State {
     let mut state = problem.system().at_rest();
     if scene.start != Start::default() {

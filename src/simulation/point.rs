@@ -1,4 +1,4 @@
-//! What a body does at one of its material points.
+//! State at a material point.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -13,14 +13,14 @@ use crate::stress::{Local, NodalStress, PlaneTensor, visit_points};
 /// Source of the deformation at a material point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointValues {
-    /// Recovered at the nodes and interpolated between them.
+    /// Recovered at the nodes and interpolated.
     Recovered,
-    /// The element's own, interpolated between its quadrature points.
+    /// Values of the element itself, interpolated between its quadrature points.
     Raw,
 }
 
-/// Displacement, deformation and stress at a material point, all of one deformation: F = R S, ε = S − I, and σ follows from ε
-/// by the law of the material. In linear theory ε = sym F − I, R = I and S = I + ε.
+/// Displacement, deformation and stress at a material point, all of one deformation: F = R S, ε = S − I, and σ follows
+/// from ε by the material law. In linear theory ε = sym F − I, R = I and S = I + ε.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PointState {
@@ -38,16 +38,16 @@ pub struct PointState {
     pub rotation: Rotation,
     /// S = RᵀF, symmetric.
     pub stretch: Matrix2<f64>,
-    /// The strain ε, in the frame turned back.
+    /// Strain ε, in the rotated frame.
     pub strain: PlaneTensor,
-    /// The Cauchy stress, Pa; `None` where there is none.
+    /// Cauchy stress, Pa; `None` if it is undefined.
     pub cauchy: Option<PlaneTensor>,
     local: Local,
     material: Material,
 }
 
 impl PointState {
-    /// The value of a field there; `None` where it has none, as one of elements.
+    /// Returns the value of a field at the point; `None` if it has none, such as fields of elements.
     #[must_use]
     pub fn field(&self, field: Field) -> Option<f64> {
         let kinematics = if self.is_linear { Kinematics::Linear } else { Kinematics::Corotated };
@@ -56,15 +56,15 @@ impl PointState {
 }
 
 impl Field {
-    /// The value at a material point of what has been recovered at the nodes of this mesh; `None` where there is no such
-    /// point, or no value.
+    /// Returns the value at a material point, interpolated from values recovered at the nodes of `mesh`; `None` if
+    /// there is no such point, or no value.
     #[must_use]
     pub fn smooth_at(self, mesh: &Mesh, nodal: &NodalStress, point: MaterialPoint) -> Option<f64> {
         self.of(&nodal.mean(&mesh.weights(point)?), nodal.material(), nodal.kinematics())
     }
 
-    /// The value at a material point of what [`Self::values`] has given for a body on this mesh; `None` where there is
-    /// no such point, or no value.
+    /// Returns the value at a material point, interpolated from the result of [`Self::values`] for a body on `mesh`;
+    /// `None` if there is no such point, or no value.
     #[must_use]
     pub fn raw_at(mesh: &Mesh, values: &[Option<f64>], point: MaterialPoint) -> Option<f64> {
         let weights = (mesh.entry().point_weights)(point.at);
@@ -75,8 +75,8 @@ impl Field {
 }
 
 impl Simulation {
-    /// Deformation and stress at a material point; `None` where there is no such point, or its arithmetic leaves the range
-    /// of f64. A sweep over the whole body.
+    /// Computes deformation and stress at a material point; `None` if there is no such point, or the arithmetic leaves
+    /// the range of f64. Takes a loop over the whole body.
     #[must_use]
     pub fn point_state(&self, point: MaterialPoint, values: PointValues) -> Option<PointState> {
         let (problem, state) = (self.problem(), self.state());
@@ -116,7 +116,8 @@ impl Simulation {
         (numbers.copied().all(f64::is_finite) && result.strain.is_finite()).then_some(result)
     }
 
-    /// Antisymmetric part of the displacement gradient at a material point, which linear theory has no strain for.
+    /// Returns the antisymmetric part of the displacement gradient at a material point, which causes no strain in
+    /// linear theory.
     fn spin(&self, point: MaterialPoint, values: PointValues, nodes: &[(u32, f64)]) -> Matrix2<f64> {
         let (problem, state) = (self.problem(), self.state());
         let system = problem.system();
@@ -136,8 +137,8 @@ impl Simulation {
     }
 }
 
-/// Weight of a quadrature point, by its number in the mesh, in the interpolation to a material point; `None` for those of other
-/// elements.
+/// Returns the weight of a quadrature point, by its index in the mesh, in the interpolation to a material point; `None`
+/// for points of other elements.
 fn weight_of(mesh: &Mesh, point: MaterialPoint, number: usize) -> Option<f64> {
     let count = mesh.entry().points.len();
     if number / count != point.element {

@@ -1,4 +1,4 @@
-//! The numbers of a state.
+//! Result types of a state.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -9,11 +9,11 @@ use crate::scene::Place;
 use crate::state::State;
 use crate::stress::{ErrorEstimate, NodalStress, PlaneTensor, Singularity};
 
-/// What a probe sees.
+/// Result at a probe.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProbeResult {
-    /// Its name.
+    /// Name of the probe.
     pub name: String,
     /// Current position, m.
     pub x: Vector2<f64>,
@@ -25,17 +25,17 @@ pub struct ProbeResult {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Energy {
-    /// Stored in the body.
+    /// Elastic energy of the body.
     pub elastic: f64,
-    /// Work of the loads at their present size, from rest.
+    /// Work of the loads at their current size, from rest.
     pub external: f64,
-    /// Work of the supports that move, the integral of their reactions along the load path from rest: 0 where none moves. In
-    /// linear theory half of the final reactions times the displacements; else `None`, as it takes the path, which
-    /// [`crate::study::LoadPath`] follows.
+    /// Work of supports with prescribed displacements, the integral of their reactions along the load path from rest; 0
+    /// if there are none. In linear theory it is half of the final reactions times the displacements; else it is
+    /// `None`, because it depends on the path, which [`crate::study::LoadPath`] computes.
     pub supports: Option<f64>,
 }
 
-/// What the supports do to the body.
+/// Total reaction of the supports on the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reaction {
     /// Total force, N.
@@ -44,21 +44,21 @@ pub struct Reaction {
     pub moment: f64,
 }
 
-/// What one support does to the body.
+/// Reaction of one support on the body.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SupportReaction {
-    /// Where it is.
+    /// Place of the support.
     pub place: Place,
-    /// Where its middle is now, m.
+    /// Current position of its middle, m.
     pub middle: Vector2<f64>,
-    /// Its force, N.
+    /// Force, N.
     pub force: Vector2<f64>,
-    /// Its moment about its middle, N m, counter-clockwise: of linear theory at rest, else where it is now.
+    /// Moment about the middle, N m, counter-clockwise; at rest in linear theory, else in the current configuration.
     pub moment: f64,
 }
 
-/// How far a state is deformed.
+/// Measures of the deformation of a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Deformation {
@@ -66,12 +66,12 @@ pub struct Deformation {
     pub max_rotation_deg: f64,
     /// Largest magnitude of a principal strain.
     pub max_strain: f64,
-    /// Elements with det F ≤ 0 somewhere.
+    /// Number of elements with det F ≤ 0 at a point.
     pub inverted_elements: usize,
 }
 
 impl Deformation {
-    /// Of a state.
+    /// Computes the measures for a state.
     #[must_use]
     pub fn of(problem: &Problem, state: &State) -> Self {
         let elements = problem.system().elements();
@@ -93,7 +93,7 @@ impl Deformation {
     }
 }
 
-/// What every probe of a problem sees of a state.
+/// Returns the results of every probe of a problem for a state.
 #[must_use]
 pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
     let mesh = problem.system().mesh();
@@ -104,14 +104,14 @@ pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
     see.collect()
 }
 
-/// Energies of a state at a load factor.
+/// Computes the energies of a state at a load factor.
 #[must_use]
 pub fn energy(problem: &Problem, state: &State, load_factor: f64) -> Energy {
     let external = -problem.loads().potential(state, load_factor);
     Energy { elastic: problem.elastic_energy(state), external, supports: None }
 }
 
-/// f_int − f_ext on the fixed unknowns.
+/// Returns the total reaction, f_int − f_ext on the fixed unknowns.
 #[must_use]
 pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Reaction {
     let mut total = Reaction::default();
@@ -125,8 +125,8 @@ pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Reaction {
     total
 }
 
-/// What each support does to the body: f_int − f_ext on the unknowns it fixes. An unknown that several fix is the first
-/// one's.
+/// Returns the reaction of each support on the body: f_int − f_ext on the unknowns it fixes. An unknown fixed by
+/// several supports belongs to the first.
 #[must_use]
 pub fn support_reactions(
     problem: &Problem,
@@ -155,54 +155,54 @@ pub fn support_reactions(
     react.collect()
 }
 
-/// Work of the reactions of supports that move, J, for a unit of the load factor: what they do at their present size times the
-/// whole displacement and rotation of each.
+/// Returns the derivative of the work of moving supports with respect to the load factor, J: their current reactions
+/// times the whole displacement and rotation of each.
 #[must_use]
 pub fn supports_power(problem: &Problem, reactions: &[SupportReaction]) -> f64 {
     let pairs = problem.supports().all().iter().zip(reactions);
     pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.turn).sum()
 }
 
-/// The largest von Mises stress of the recovered Cauchy stresses.
+/// Largest von Mises stress of the recovered Cauchy stresses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LargestStress {
-    /// Pa.
+    /// Von Mises stress, Pa.
     pub von_mises: f64,
-    /// The node that has it, by its number in the mesh; [`crate::Mesh::node_name`] says what people call it.
+    /// Node number in the mesh; [`crate::Mesh::node_name`] returns the number for display.
     pub node: u32,
-    /// That node's rest position, m.
+    /// Rest position of the node, m.
     pub at: Vector2<f64>,
 }
 
-/// What is at a probe: of the mean of what has been recovered at its nodes.
+/// Strain and stress at a probe, computed from the mean of strain and rotation over its nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProbeStress {
-    /// The angle of R, degrees, within half a turn.
+    /// Angle of R, degrees, from −180 to 180.
     pub rotation_deg: f64,
-    /// The Biot strain ε, in the frame turned back.
+    /// Biot strain ε, in the rotated frame.
     pub strain: PlaneTensor,
-    /// The Cauchy stress, Pa; `None` where there is none.
+    /// Cauchy stress, Pa; `None` if it is undefined.
     pub cauchy: Option<PlaneTensor>,
 }
 
-/// Stress where people look for it.
+/// Stress results of a state.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StressResult {
-    /// The largest von Mises (Cauchy) stress; `None` where no node has one.
+    /// Largest von Mises (Cauchy) stress; `None` if no node has one.
     pub largest: Option<LargestStress>,
-    /// Why that stress depends on the mesh; `None` where it does not.
+    /// Cause of a mesh-dependent largest stress; `None` if the stress is bounded.
     pub singularity: Option<Singularity>,
-    /// At every probe.
+    /// Stress at every probe.
     pub probes: Vec<ProbeStress>,
-    /// The estimate of the mesh's own error in the energy norm, percent; see [`ErrorEstimate`].
+    /// Estimate of the mesh's error in the energy norm, percent; see [`ErrorEstimate`].
     pub mesh_error_percent: Option<f64>,
 }
 
 impl StressResult {
-    /// Of what has been recovered of a state.
+    /// Computes the results from recovered stresses.
     #[must_use]
     pub fn of(problem: &Problem, nodal: &NodalStress, error: &ErrorEstimate) -> Self {
         let (mesh, material) = (problem.system().mesh(), nodal.material());

@@ -1,4 +1,4 @@
-//! The search for an equilibrium: one iteration a step.
+//! Search for an equilibrium by iteration.
 
 use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
@@ -13,17 +13,17 @@ use crate::solver::SolverError;
 use crate::state::State;
 use crate::timings::{Timings, timed};
 
-/// A method at work.
+/// Search for an equilibrium with a method.
 #[derive(Debug)]
 pub(super) struct Search {
     method: Box<dyn Method>,
-    /// Displacement and turns before the present iteration.
+    /// Displacement and edge angles before the current iteration.
     previous: (Displacement, Vec<f64>),
     forces: Forces,
-    /// Made when it is needed first.
+    /// Work memory, allocated on first use.
     workspace: Option<Workspace>,
     residual: f64,
-    /// What bounds the residual of a solve that ended at rounding.
+    /// Bound of the residual's rounding error, if the solve ended at it.
     floor: Option<f64>,
     iterations: u32,
     status: Status,
@@ -37,7 +37,7 @@ fn tolerances(settings: &SolverSettings) -> Tolerances {
 }
 
 impl Search {
-    /// One that starts where the body is.
+    /// Returns a search that starts from the current state.
     pub fn new(body: &mut Body) -> Result<Self, SolverError> {
         let mut search = Self {
             method: (body.scene.solver.method.entry().start)(),
@@ -56,7 +56,7 @@ impl Search {
         Ok(search)
     }
 
-    /// What is known of it: a copy without the memory for iterations, which it makes where it goes on.
+    /// Copies the search without its work memory, which is allocated again if the copy is continued.
     pub fn copy(&self) -> Self {
         Self {
             method: self.method.copy(),
@@ -73,20 +73,20 @@ impl Search {
         }
     }
 
-    /// Memory to work in, to be given back; where there is none the search ends.
+    /// Takes the work memory out of the search, allocating it if necessary; the search ends if that fails.
     fn take_workspace(&mut self, problem: &Problem) -> Option<Workspace> {
         let workspace = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
         workspace.map_err(|error| self.status = Reason::Iteration(error.into()).into()).ok()
     }
 
-    /// The workspace's matrix is no tangent of the present state any more.
+    /// Marks the workspace's matrix as outdated.
     fn forget_tangent(&mut self) {
         if let Some(workspace) = &mut self.workspace {
             workspace.tangent = None;
         }
     }
 
-    /// Goes on after an edit; `before` is the scene that was. The state is kept unless it is of no use.
+    /// Continues after an edit; `before` is the previous scene. The state is kept unless it is not a useful start.
     pub fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SolverError> {
         let why = match change {
             Change::Mesh | Change::Unknowns => {
@@ -98,7 +98,7 @@ impl Search {
         };
         let moments = |scene: &Scene| scene.loads.iter().any(|load| load.is_moment());
         if moments(before) || moments(&body.scene) {
-            // The exact tangent has the moments in it.
+            // The exact tangent contains the moments.
             self.forget_tangent();
         }
         let same_method = body.scene.solver.method == before.solver.method;
@@ -120,15 +120,15 @@ impl Search {
         Ok(())
     }
 
-    /// Whether the body can go on from where it is to where other supports take it: not where these turn far, or were
-    /// still turning. It would not be known how often they have gone round.
+    /// Returns `true` if the search can continue from the current state with changed supports: not if they rotate far,
+    /// or their rotation was not completed, because the number of full rotations would be unknown.
     fn can_follow(&self, before: &[Support], after: &[Support]) -> bool {
         let far = |angle: f64| angle.abs() > LARGEST_TURN;
         let mut pairs = before.iter().zip(after);
         before == after || !pairs.any(|(a, b)| far(b.turn - a.turn) || far(a.turn) && self.status != Status::Converged)
     }
 
-    /// Forgets iterations and times, and measures the state it starts from.
+    /// Resets counts and times, and computes the forces of the current state.
     pub fn restart(&mut self, body: &mut Body, why: Restart) {
         self.iterations = 0;
         self.floor = None;
@@ -139,7 +139,7 @@ impl Search {
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         let mut unmeasured = Timings::default();
         if why == Restart::NewLoads {
-            // Forces within the body are what they were.
+            // The internal forces are unchanged.
             let (kinematics, load_factor) = (self.method.kinematics(), self.method.load_factor());
             self.residual = body.problem.balance(&body.state, kinematics, load_factor, &mut self.forces);
         } else {
@@ -154,16 +154,16 @@ impl Search {
         self.workspace = Some(workspace);
     }
 
-    /// A hand has taken hold, moved or let go.
+    /// Restarts the search after a mouse spring was attached, moved or removed.
     pub fn pulled(&mut self, body: &mut Body, moved_only: bool) {
         let why = if moved_only { Restart::NewLoads } else { Restart::NewStiffness };
-        // The tangent has the hand in it.
+        // The tangent contains the mouse spring.
         self.forget_tangent();
         self.method.restart(why);
         self.restart(body, why);
     }
 
-    /// One iteration; nothing once the status is final.
+    /// Performs one iteration; does nothing once the status is final.
     pub fn step(&mut self, body: &mut Body) {
         if self.status != Status::Running {
             return;
@@ -194,7 +194,7 @@ impl Search {
         self.last_iteration = timings;
     }
 
-    /// Lets the method work on the current state.
+    /// Runs `work` with the method on the current state.
     fn with_method<T>(
         &mut self,
         body: &mut Body,
@@ -214,7 +214,7 @@ impl Search {
         work(self.method.as_mut(), &mut iteration)
     }
 
-    /// Does what the method's verdict asks for.
+    /// Carries out the method's decision.
     fn follow(&mut self, body: &mut Body, workspace: &mut Workspace, verdict: Verdict, timings: &mut Timings) {
         match verdict {
             Verdict::Continue => {}
@@ -235,8 +235,8 @@ impl Search {
         }
     }
 
-    /// Ends before convergence, and measures the residual under the whole load. A result that is accepted stays as it is;
-    /// else the method goes back to the best state there is.
+    /// Ends the search before convergence, and computes the residual under the whole load. An accepted result is kept;
+    /// otherwise the method restores the best available state.
     fn end(&mut self, body: &mut Body, workspace: &mut Workspace, status: Status, timings: &mut Timings) {
         self.status = status;
         if self.status != Status::Accepted {
@@ -245,7 +245,7 @@ impl Search {
         self.measure_forces(body, workspace, true, (None, 1.0), timings);
     }
 
-    /// Ends a search that is still running.
+    /// Interrupts a running search.
     pub fn stop(&mut self, body: &mut Body) {
         if self.status != Status::Running {
             return;
@@ -255,15 +255,15 @@ impl Search {
         self.workspace = Some(workspace);
     }
 
-    /// Rotations, forces and residual of the current state under the load that is on the body at present, and the
-    /// tangent that the next iteration needs.
+    /// Computes rotations, forces and residual of the current state under the current load, and the tangent that the
+    /// next iteration needs.
     fn measure(&mut self, body: &mut Body, workspace: &mut Workspace, timings: &mut Timings) {
         let wanted = (self.method.tangent(), self.method.load_factor());
         self.measure_forces(body, workspace, true, wanted, timings);
     }
 
-    /// Forces and residual, and a tangent where one is wanted, under a load factor; rotations `follow` a displacement that
-    /// is new.
+    /// Computes forces and residual under a load factor, and a tangent if requested; if `follow` is `true`, the
+    /// displacement is new and the rotations are updated.
     fn measure_forces(
         &mut self,
         body: &mut Body,
@@ -283,7 +283,7 @@ impl Search {
         );
     }
 
-    /// See [`super::Simulation::certify`].
+    /// Implements [`super::Simulation::certify`].
     pub fn certify(&mut self, problem: &Problem, state: &State) -> Certificate {
         if let Some(certificate) = self.certificate {
             return certificate;

@@ -1,32 +1,32 @@
-//! Where a simulation stands.
+//! Status of a simulation.
 
 use crate::dynamics::StopReason;
 use crate::method::Reason;
 
-/// Where a simulation stands.
+/// Status of a simulation.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Status {
-    /// Not there yet.
+    /// Not finished.
     #[default]
     Running,
-    /// The residual is below the tolerance, or within what rounding changes in it; see
-    /// [`crate::Simulation::residual_floor`].
+    /// The residual is below the tolerance, or within its rounding error; see [`crate::Simulation::residual_floor`].
     Converged,
-    /// It has made the iterations after which the scene accepts its result: [`crate::scene::SolverSettings::accept_after`].
+    /// The number of iterations was reached after which the scene accepts the result:
+    /// [`crate::scene::SolverSettings::accept_after`].
     Accepted,
-    /// It stopped while still improving, or near its end.
+    /// The search stopped while still improving, or close to convergence.
     NotConverged(Reason),
-    /// The iteration does not lead to an equilibrium; the state shown is its last finite one.
+    /// The iteration diverged; the state is its last finite one.
     Diverged(Reason),
-    /// A motion has come to the end of the scene's duration.
+    /// A motion has reached the end of the scene's duration.
     Finished,
-    /// A motion cannot go on; the state shown is its last finite one.
+    /// A motion cannot continue; the state is its last finite one.
     Stopped(StopReason),
 }
 
 impl Status {
-    /// The word in JSON.
+    /// Returns the identifier in JSON.
     #[must_use]
     pub fn id(&self) -> &'static str {
         match self {
@@ -40,19 +40,19 @@ impl Status {
         }
     }
 
-    /// The word people read.
+    /// Returns the word for display.
     #[must_use]
     pub fn word(&self) -> String {
         self.id().replace('_', " ")
     }
 
-    /// Whether it has come to its result.
+    /// Returns `true` if the simulation ended successfully.
     #[must_use]
     pub fn is_success(&self) -> bool {
         matches!(self, Self::Converged | Self::Accepted | Self::Finished)
     }
 
-    /// Why it has ended without its result.
+    /// Returns the reason why the simulation ended without success; `None` otherwise.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
         match self {

@@ -2,11 +2,12 @@
 
 use nalgebra::DMatrix;
 
-/// The smallest and the largest eigenvalue that Lanczos' method finds of B⁻¹C in so many steps, C symmetric and B
-/// positive definite, both n × n: `multiply` turns v into C v, `solve` turns b into B⁻¹ b. The largest in magnitude is
-/// right to a few digits after some twenty steps where it stands apart. `None` where a number is not finite.
+/// Estimates the smallest and the largest eigenvalue of B⁻¹C by `steps` steps of Lanczos' method, C symmetric and B
+/// positive definite, both n × n: `multiply` computes C v from v, `solve` computes B⁻¹ b from b. The eigenvalue that is
+/// largest in magnitude is accurate to a few digits after about twenty steps if it is well separated. `None` if a
+/// number is not finite.
 ///
-/// In the inner product of B, with full reorthogonalization.
+/// The method uses the inner product of B and full reorthogonalization.
 pub(crate) fn extreme_eigenvalues(
     n: usize,
     steps: usize,
@@ -14,7 +15,7 @@ pub(crate) fn extreme_eigenvalues(
     mut solve: impl FnMut(&mut [f64]),
 ) -> Option<[f64; 2]> {
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
-    // Any start that is not orthogonal to the mode wanted: here one without symmetry.
+    // Start vector: any that is not orthogonal to the eigenvector; this one has no symmetry.
     let mut image: Vec<f64> = (0..n).map(|i| ((i as f64 + 1.0) * 0.754_877_666).fract() - 0.3).collect();
     let mut v = image.clone();
     solve(&mut v);
@@ -29,7 +30,7 @@ pub(crate) fn extreme_eigenvalues(
             *last = norm;
         }
         v.iter_mut().chain(&mut image).for_each(|x| *x /= norm);
-        // w = B⁻¹C v, and B w = C v.
+        // Compute w = B⁻¹C v, with B w = C v.
         let mut product = vec![0.0; n];
         multiply(&v, &mut product);
         diagonal.push(dot(&v, &product));
@@ -45,7 +46,7 @@ pub(crate) fn extreme_eigenvalues(
                 image.iter_mut().zip(basis_image).for_each(|(v, b)| *v -= along * b);
             }
         }
-        // A vanishing remainder: the Krylov space is exhausted.
+        // If the remainder vanishes, the Krylov space is exhausted.
         if dot(&v, &image) <= 1e-24 * diagonal.iter().map(|d| d * d).fold(0.0, f64::max) {
             break;
         }

@@ -1,5 +1,5 @@
-//! Sparse factorizations with faer: analysed once, refactorized every iteration without allocating. The only file that
-//! names faer.
+//! Sparse factorizations with faer: analysed once, refactorized every iteration without allocating. No other file uses
+//! faer.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use thiserror::Error;
 
 pub(crate) mod lanczos;
 
-/// Why there is no factor.
+/// Reason why there is no factor.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum SolverError {
     /// The matrix is not positive definite, or not finite.
@@ -28,7 +28,7 @@ pub enum SolverError {
     TooLarge,
 }
 
-/// Which factor is held.
+/// Type of the current factorization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// L Lᵀ.
@@ -37,15 +37,15 @@ enum Kind {
     Indefinite,
 }
 
-/// The order of elimination and the sparsity of the factors of a pattern. Made once and shared: a clone is a pointer.
+/// Elimination order and sparsity of the factors of a pattern. Computed once and shared: a clone copies a pointer.
 #[derive(Clone)]
 pub struct Symbolic(Arc<Analysis>);
 
 struct Analysis {
     structure: SymbolicSparseColMat<usize>,
-    /// Of L Lᵀ: simplicial where that is faster.
+    /// Sparsity of L Lᵀ; simplicial if that is faster.
     definite: SymbolicCholesky<usize>,
-    /// Of L B Lᵀ, where it is another: simplicial factors do not pivot.
+    /// Sparsity of L B Lᵀ, if it differs: simplicial factors do not pivot.
     indefinite: Option<SymbolicCholesky<usize>>,
     price: f64,
 }
@@ -67,9 +67,9 @@ impl std::fmt::Debug for Symbolic {
 
 impl Symbolic {
     /// Orders (AMD: Amestoy, Davis and Duff 1996) and analyses the lower triangle of a symmetric matrix, in compressed
-    /// columns with sorted rows: the start of each column and the end of the last, and the row of every entry. The factor
-    /// is simplicial up to 14 entries an unknown (`SPARSE`), supernodal beyond; faer's own choice is up to 2.6 times
-    /// slower on these meshes.
+    /// columns with sorted rows: `column_starts` holds the start of each column and the end of the last, `row_indices` the
+    /// row of every entry. The factor is simplicial up to 14 entries per unknown (`SPARSE`), supernodal beyond; faer's own
+    /// choice is up to 2.6 times slower on these meshes.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -88,21 +88,21 @@ impl Symbolic {
         Ok(Self(Arc::new(Analysis { structure, definite, indefinite, price })))
     }
 
-    /// Rows of the matrix.
+    /// Returns the number of rows of the matrix.
     #[must_use]
     pub fn size(&self) -> usize {
         self.0.structure.ncols()
     }
 }
 
-/// Up to so many entries an unknown a simplicial factor is faster, factorization and solve together: measured on
-/// cantilevers, by 6 to 22 % on three-node triangles (7 to 13.5 entries), by 5 % on six-node triangles (12.5); with 16 and
-/// more, from some two thousand unknowns on, it is slower, by 10 % and more.
+/// Largest number of factor entries per unknown for which a simplicial factor is faster, factorization and solve
+/// together. Measured on cantilevers: 6 to 22 % faster on three-node triangles (7 to 13.5 entries), 5 % on six-node
+/// triangles (12.5); with 16 and more entries, from about two thousand unknowns on, 10 % slower and more.
 const SPARSE: usize = 14;
-/// Larger systems have more: it is not looked for.
+/// Number of unknowns above which a simplicial factor is not tried, because it has more entries.
 const MOST_SIMPLICIAL: usize = 2500;
 
-/// The sparsity of a factor: simplicial or supernodal, as the threshold forces it to be.
+/// Computes the sparsity of a factor; `threshold` forces it to be simplicial or supernodal.
 fn symbolic_cholesky(
     structure: &SymbolicSparseColMat<usize>,
     threshold: SupernodalThreshold,
@@ -112,7 +112,7 @@ fn symbolic_cholesky(
     factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, ordering, params).map_err(|_| SolverError::TooLarge)
 }
 
-/// The operations of a factorization and of a back substitution.
+/// Returns the numbers of operations of a factorization and of a back substitution.
 fn operations(symbolic: &SymbolicCholesky<usize>) -> [f64; 2] {
     let (mut factorization, mut substitution) = (0.0, 0.0);
     match symbolic.raw() {
@@ -135,11 +135,11 @@ fn operations(symbolic: &SymbolicCholesky<usize>) -> [f64; 2] {
     [factorization, substitution]
 }
 
-/// See [`Factor::price`]: from the operations that the sparsity says, not from a clock.
+/// Computes [`Factor::price`] from the sparsity, not from measured times.
 fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
-    // What small columns and fronts take, and the price of an operation of a factorization over that of a back
-    // substitution, which waits for memory: fitted to beams, simplicial of 100 to 1 200 unknowns, supernodal of 40 to
-    // 33 000.
+    // Overhead of small columns and fronts, and cost of an operation of a factorization relative to one of a back
+    // substitution, which is limited by memory bandwidth: fitted to beams, simplicial with 100 to 1 200 unknowns,
+    // supernodal with 40 to 33 000.
     let (least, operation) = match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(_) => (4.2, 0.9),
         SymbolicCholeskyRaw::Supernodal(_) => (1.5, 0.25),
@@ -148,11 +148,11 @@ fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
     if substitution > 0.0 { least + operation * factorization / substitution } else { least }
 }
 
-/// A factor of a symmetric matrix with a fixed pattern.
+/// Factor of a symmetric matrix with a fixed pattern.
 pub struct Factor {
     symbolic: Symbolic,
     values: Vec<f64>,
-    /// What the indefinite factor has beside L: B's subdiagonal, and pivots within supernodes.
+    /// Data of the indefinite factor apart from L: B's subdiagonal, and pivots within supernodes.
     subdiagonal: Vec<f64>,
     pivots: Vec<usize>,
     inverse_pivots: Vec<usize>,
@@ -167,7 +167,7 @@ impl std::fmt::Debug for Factor {
 }
 
 impl Factor {
-    /// Makes room for factors.
+    /// Allocates memory for factors.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -196,7 +196,7 @@ impl Factor {
         })
     }
 
-    /// About how many back substitutions take as long as a factorization; the same on every machine.
+    /// Returns the approximate cost of a factorization in back substitutions; the same on every machine.
     #[must_use]
     pub fn price(&self) -> f64 {
         self.symbolic.0.price
@@ -205,7 +205,7 @@ impl Factor {
     /// Factorizes the positive definite matrix with these lower-triangle values, in the pattern's order.
     ///
     /// # Errors
-    /// [`SolverError::NotPositiveDefinite`]; the factor then is of no use until the next success.
+    /// [`SolverError::NotPositiveDefinite`]; the factor is then invalid until the next success.
     pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), SolverError> {
         let analysis = &*self.symbolic.0;
         let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
@@ -223,7 +223,7 @@ impl Factor {
         factorized.map(|_| ()).map_err(|_| SolverError::NotPositiveDefinite)
     }
 
-    /// Factorizes a symmetric matrix, as positive definite if it is that; says whether it is.
+    /// Factorizes a symmetric matrix, as positive definite if possible; returns `true` if it is positive definite.
     pub fn factorize_symmetric(&mut self, matrix: &[f64]) -> bool {
         let definite = self.factorize(matrix).is_ok();
         if !definite {
@@ -232,8 +232,7 @@ impl Factor {
         definite
     }
 
-    /// Factorizes a symmetric matrix that need not be definite. One that is singular gives solutions that are not
-    /// finite.
+    /// Factorizes a symmetric matrix that may be indefinite. A singular matrix gives solutions that are not finite.
     fn factorize_indefinite(&mut self, matrix: &[f64]) {
         let analysis = &*self.symbolic.0;
         let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
@@ -252,7 +251,8 @@ impl Factor {
         );
     }
 
-    /// Number of negative eigenvalues of the matrix of the last factor (Sylvester's law of inertia: those of B in L B Lᵀ).
+    /// Returns the number of negative eigenvalues of the matrix of the last factor (Sylvester's law of inertia: those
+    /// of B in L B Lᵀ).
     #[must_use]
     pub fn negative_eigenvalues(&self) -> usize {
         let symbolic = self.symbolic.0.symbolic(self.kind);
@@ -275,7 +275,7 @@ impl Factor {
                     continue;
                 }
                 let (a, b) = (diagonal(i), diagonal(i + 1));
-                // A block with a negative determinant has one eigenvalue of either sign.
+                // A block with a negative determinant has one positive and one negative eigenvalue.
                 negative += match a * b - coupling * coupling < 0.0 {
                     true => 1,
                     false => 2 * usize::from(a < 0.0),

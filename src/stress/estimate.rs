@@ -1,4 +1,4 @@
-//! The mesh's own error, without a truth to compare with.
+//! Estimate of the mesh's error, without a reference solution.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -8,34 +8,35 @@ use crate::mesh::Mesh;
 use crate::rotation::Rotation;
 use crate::state::State;
 
-/// An estimate of what the mesh does wrong (Zienkiewicz and Zhu 1987, *A simple error estimator and adaptive procedure
-/// for practical engineering analysis*; with recovered stresses 1992): the distance of the stresses that the elements
-/// have, T, from those recovered at the nodes and interpolated with the shape functions, T*, in the energy norm,
+/// Estimate of the discretisation error (Zienkiewicz and Zhu 1987, *A simple error estimator and adaptive procedure for
+/// practical engineering analysis*; with recovered stresses 1992): the distance between the elements' stresses T and
+/// the stresses T* recovered at the nodes and interpolated with the shape functions, in the energy norm,
 ///
 /// η² = ∫ (T* − T) : C⁻¹ : (T* − T) t dA = ∫ (ε* − ε) : C : (ε* − ε) t dA,
 ///
 /// relative to the energy of the body, ‖u‖² = 2 U + η².
 ///
-/// Recovery does not see what neighbours get wrong alike. Elements with one rotation for all of their points do: bent by an
-/// angle θ, such an element keeps its height H in its frame, so that its sides, which lean by ±θ/2, are H/cos(θ/2) long. A
-/// moment M acts on them by forces M cos(θ/2)/H, whose part along the frame is M cos²(θ/2)/H: cos²(θ/2) of what it should
-/// be, and so is the stress. For that η² has ∫ (3 φ²)² ε : C : ε t dA more, φ(X) the angle from the element's rotation to
-/// the recovered one: 3 φ² has the mean θ²/4 ≈ sin²(θ/2).
+/// Recovery does not detect errors common to neighbouring elements. Elements with one rotation for all of their points
+/// have such an error: bent by an angle θ, such an element keeps its height H in its frame, so that its sides, which
+/// are inclined by ±θ/2, are H/cos(θ/2) long. A moment M acts on them by forces M cos(θ/2)/H, whose component along the
+/// frame is M cos²(θ/2)/H: force and stress are cos²(θ/2) of the correct values. For this error the term ∫ (3 φ²)² ε :
+/// C : ε t dA is added to η², φ(X) the angle from the element's rotation to the recovered one: 3 φ² has the mean θ²/4 ≈
+/// sin²(θ/2).
 ///
-/// A single row of four-node elements gives no estimate: in bending each of them has the same linear stress over the height as
-/// its neighbours, and the curvature of the true one is seen by none.
+/// A single row of four-node elements gives no estimate: in bending all elements have the same linear stress over the
+/// height, so that none shows the curvature of the exact stress.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
-    /// 100 η / ‖u‖; `None` where nothing is deformed, for a single row of four-node elements, and where the arithmetic leaves the
-    /// range of f64.
+    /// 100 η / ‖u‖; `None` if nothing is deformed, for a single row of four-node elements, and if the arithmetic leaves
+    /// the range of f64.
     pub percent: Option<f64>,
-    /// Where it lies: of every element the root of its η² over its area, over that of ‖u‖² over the body's area, percent.
-    /// The mean square of it over the body is the square of the whole.
+    /// Distribution over the elements: the root of each element's η² per area, relative to that of ‖u‖² per area of the
+    /// body, percent. Its mean square over the body is the square of [`Self::percent`].
     pub elements: Vec<f64>,
 }
 
 impl ErrorEstimate {
-    /// Of a state and what has been recovered of it.
+    /// Computes the estimate for a state and its recovered stresses.
     #[must_use]
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
         let mut result = Self::default();
@@ -91,7 +92,7 @@ impl ErrorEstimate {
     }
 }
 
-/// `true` if every node is on the outline.
+/// Returns `true` if every node is on the outline.
 fn is_a_single_row(mesh: &Mesh) -> bool {
     let mut inner = vec![true; mesh.nodes().len()];
     for side in mesh.outline() {
@@ -100,7 +101,8 @@ fn is_a_single_row(mesh: &Mesh) -> bool {
     mesh.connectivity().iter().all(|&node| !inner[node as usize])
 }
 
-/// The share of its stress that an element misses by having one rotation: 3 φ², φ the angle from it to the recovered one.
+/// Returns the fraction of its stress that an element misses by having one rotation: 3 φ², φ the angle from it to the
+/// recovered one.
 fn missed(rotation: Rotation, recovered: Rotation) -> f64 {
     let back = rotation.apply_inverse(Vector2::new(recovered.c, recovered.s));
     3.0 * back.y.atan2(back.x).powi(2)

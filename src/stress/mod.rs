@@ -1,14 +1,14 @@
-//! Stress and strain at a point, by either definition; and fields of them, recovered at the nodes.
+//! Stress and strain at a point by both definitions, and their fields recovered at the nodes.
 //!
-//! The method computes the strain ε = S − I of the element turned back, F = R S, and the **Biot stress** T = 2 μ ε + λ tr(ε) I
-//! in that frame. Other codes and handbooks mean the **Cauchy stress**, the force on the deformed area in the frame of
-//! space:
+//! The method computes the strain ε = S − I in the rotated frame of the element, F = R S, and the **Biot stress** T = 2
+//! μ ε + λ tr(ε) I in that frame. Other codes and handbooks mean the **Cauchy stress**, the force per deformed area in
+//! the spatial frame:
 //!
 //! σ = J⁻¹ P Fᵀ = J⁻¹ R T S Rᵀ,
 //!
-//! as the corotated energy's first Piola–Kirchhoff stress is P = R T. J is the ratio of volumes: det S in plane strain; in
-//! plane stress det S (1 + ε₃₃), as the sheet thins by ε₃₃ = −ν/(1 − ν) tr ε. T and S have the same principal axes, so σ is
-//! symmetric. Linear theory does not tell the two stresses apart: there σ is T.
+//! because the first Piola–Kirchhoff stress of the corotated energy is P = R T. J is the ratio of volumes: det S in
+//! plane strain; in plane stress det S (1 + ε₃₃), because the sheet thins by ε₃₃ = −ν/(1 − ν) tr ε. T and S have the
+//! same principal axes, so σ is symmetric. Linear theory does not distinguish the two stresses: there σ is T.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -23,34 +23,34 @@ mod singularity;
 pub use estimate::ErrorEstimate;
 pub use singularity::Singularity;
 
-/// A symmetric tensor of second order without shear out of the plane: stress (Pa) or strain.
+/// Symmetric second-order tensor without shear out of the plane: stress (Pa) or strain.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlaneTensor {
-    /// The components in the plane.
+    /// Components in the plane.
     pub plane: Matrix2<f64>,
-    /// The normal component out of the plane.
+    /// Normal component out of the plane.
     pub zz: f64,
 }
 
 impl PlaneTensor {
-    /// xx, yy, zz, xy.
+    /// Returns xx, yy, zz, xy.
     #[must_use]
     pub fn components(&self) -> [f64; 4] {
         [self.plane.m11, self.plane.m22, self.zz, self.plane.m12]
     }
 
-    /// Nine components, row by row.
+    /// Returns all nine components, row by row.
     #[must_use]
     pub fn rows(&self) -> [f64; 9] {
         [self.plane.m11, self.plane.m12, 0.0, self.plane.m12, self.plane.m22, 0.0, 0.0, 0.0, self.zz]
     }
 
-    /// The von Mises stress √(3/2 s:s) of a stress with deviator s, Pa.
+    /// Returns the von Mises stress √(3/2 s:s) of a stress with deviator s, Pa.
     #[must_use]
     pub fn von_mises(&self) -> f64 {
         let [x, y, z, xy] = self.components();
         let (a, b, c) = (x - y, y - z, z - x);
-        // Scaled, so that squares of very large or small stresses stay in range.
+        // Scaled so that squares of very large or small stresses stay in range.
         let scale = a.abs().max(b.abs()).max(c.abs()).max(xy.abs());
         if scale == 0.0 {
             return 0.0;
@@ -59,25 +59,24 @@ impl PlaneTensor {
         scale * (0.5 * (a * a + b * b + c * c) + 3.0 * d * d).sqrt()
     }
 
-    /// Whether every component is finite.
+    /// Returns `true` if every component is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.components().iter().all(|v| v.is_finite())
     }
 }
 
-/// How the body is deformed at a point.
+/// Strain and rotation at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Local {
-    /// ε = S − I in the plane, in the frame turned back; in linear theory the symmetric part of the displacement
-    /// gradient.
+    /// ε = S − I in the plane, in the rotated frame; in linear theory the symmetric part of the displacement gradient.
     pub strain: Matrix2<f64>,
     /// R; the identity in linear theory.
     pub rotation: Rotation,
 }
 
 impl Local {
-    /// Mean strain and rotation of weighted places, weights that sum to 1.
+    /// Returns the mean strain and rotation of values with weights that sum to 1.
     pub(crate) fn mean(weighted: impl Iterator<Item = (Self, f64)>) -> Self {
         let (mut strain, mut turn) = (Matrix2::zeros(), Vector2::zeros());
         for (local, weight) in weighted {
@@ -90,7 +89,7 @@ impl Local {
         Self { strain, rotation }
     }
 
-    /// ε with its part out of the plane: −ν/(1 − ν) tr ε in plane stress, 0 in plane strain.
+    /// Returns ε with its component out of the plane: −ν/(1 − ν) tr ε in plane stress, 0 in plane strain.
     #[must_use]
     pub fn strain(&self, material: &Material) -> PlaneTensor {
         let zz = match material.plane {
@@ -100,15 +99,15 @@ impl Local {
         PlaneTensor { plane: self.strain, zz }
     }
 
-    /// The Biot stress T, Pa, in the frame turned back.
+    /// Returns the Biot stress T, Pa, in the rotated frame.
     #[must_use]
     pub fn biot(&self, material: &Material) -> PlaneTensor {
         let plane = material.lame().stress(&self.strain);
         PlaneTensor { plane, zz: material.out_of_plane_stress(plane.trace()) }
     }
 
-    /// The Cauchy stress σ, Pa, in the frame of space; `None` where the body is crushed to nothing or turned inside out,
-    /// which no Cauchy stress belongs to, and where the arithmetic leaves the range of f64.
+    /// Returns the Cauchy stress σ, Pa, in the spatial frame; `None` if the body is crushed or inverted, where the
+    /// Cauchy stress is undefined, and if the arithmetic leaves the range of f64.
     #[must_use]
     pub fn cauchy(&self, material: &Material, kinematics: Kinematics) -> Option<PlaneTensor> {
         let PlaneTensor { plane: t, zz } = self.biot(material);
@@ -124,7 +123,7 @@ impl Local {
                 }
                 let r = self.rotation.matrix();
                 let turned = r * (t * s) * r.transpose() / volume;
-                // Symmetric but for rounding.
+                // Symmetric up to rounding.
                 let xy = 0.5 * (turned.m12 + turned.m21);
                 PlaneTensor { plane: Matrix2::new(turned.m11, xy, xy, turned.m22), zz: zz * z / volume }
             }
@@ -133,10 +132,10 @@ impl Local {
     }
 }
 
-/// Strain beyond which the linear law between T and ε is stretched beyond its use.
+/// Largest strain for which the linear law between T and ε is realistic.
 pub const LAW_HOLDS: f64 = 0.1;
 
-/// What is to be said of a strain beyond [`LAW_HOLDS`].
+/// Returns a warning for strains beyond [`LAW_HOLDS`].
 #[must_use]
 pub fn strain_warning(max_strain: f64) -> Option<String> {
     let percent = 100.0 * max_strain;
@@ -148,14 +147,14 @@ pub fn strain_warning(max_strain: f64) -> Option<String> {
     })
 }
 
-/// Calls `visit` with every quadrature point's number and what is there.
+/// Calls `visit` with the index of every quadrature point and its strain and rotation.
 pub fn visit_points(problem: &Problem, state: &State, kinematics: Kinematics, visit: &mut dyn FnMut(usize, Local)) {
     let elements = problem.system().elements();
     let (u, r) = (state.displacement(), state.rotations());
     elements.visit_strains(problem.material().lame(), u, r, &mut |q, h, strain| {
         let rotation = match kinematics {
             Kinematics::Linear => Rotation::IDENTITY,
-            // Where the polar factor is undefined the state has the one before.
+            // Where the polar factor is undefined, the state's rotation is the previous one.
             Kinematics::Corotated => polar_or(&(Matrix2::identity() + h), r[elements.rotation_of(q)]),
         };
         visit(q, Local { strain: *strain, rotation });
@@ -164,8 +163,8 @@ pub fn visit_points(problem: &Problem, state: &State, kinematics: Kinematics, vi
 
 /// Stress and strain of a state at the nodes of its mesh; see [`crate::mesh::Recovery`].
 ///
-/// Recovered are the components of ε and of R, which are smooth where the body is; the stresses are those of the
-/// recovered ε and R. So every number here belongs to one deformation.
+/// The components of ε and of R are recovered, because they are smooth wherever the body is; the stresses are computed
+/// from the recovered ε and R. So all values at a node belong to one deformation.
 #[derive(Clone, Debug)]
 pub struct NodalStress {
     material: Material,
@@ -173,7 +172,7 @@ pub struct NodalStress {
     nodes: Vec<Local>,
 }
 
-/// Room to recover in, kept from state to state.
+/// Work memory of the recovery, reused between states.
 #[derive(Debug, Default)]
 pub struct RecoveryScratch {
     at_points: Vec<[f64; 5]>,
@@ -181,7 +180,7 @@ pub struct RecoveryScratch {
 }
 
 impl NodalStress {
-    /// Of a state, as its method sees it.
+    /// Recovers the stress of a state.
     #[must_use]
     pub fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
         let mut result = Self::empty(*problem.material());
@@ -189,13 +188,13 @@ impl NodalStress {
         result
     }
 
-    /// Of no node yet.
+    /// Returns an object without nodes.
     #[must_use]
     pub(crate) fn empty(material: Material) -> Self {
         Self { material, kinematics: Kinematics::Corotated, nodes: Vec::new() }
     }
 
-    /// Becomes that of another state, without allocating where the mesh is the same.
+    /// Recovers another state, without allocating if the mesh is the same.
     pub fn follow(
         &mut self,
         problem: &Problem,
@@ -221,37 +220,37 @@ impl NodalStress {
         }));
     }
 
-    /// What is at every node.
+    /// Returns strain and rotation at every node.
     #[must_use]
     pub fn nodes(&self) -> &[Local] {
         &self.nodes
     }
 
-    /// The material that the stresses are of.
+    /// Returns the material of the body.
     #[must_use]
     pub fn material(&self) -> &Material {
         &self.material
     }
 
-    /// How the state is seen.
+    /// Returns the strain measure of the state.
     #[must_use]
     pub fn kinematics(&self) -> Kinematics {
         self.kinematics
     }
 
-    /// The Cauchy stress at every node, Pa.
+    /// Returns the Cauchy stress at every node, Pa.
     pub fn cauchy(&self) -> impl ExactSizeIterator<Item = Option<PlaneTensor>> + '_ {
         self.nodes.iter().map(|local| local.cauchy(&self.material, self.kinematics))
     }
 
-    /// The node with the largest von Mises (Cauchy) stress, and that, Pa.
+    /// Returns the node with the largest von Mises (Cauchy) stress, and this stress, Pa.
     #[must_use]
     pub fn largest_von_mises(&self) -> Option<(u32, f64)> {
         let values = (0..).zip(self.cauchy()).filter_map(|(node, stress)| Some((node, stress?.von_mises())));
         values.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
     }
 
-    /// The mean over weighted nodes, weights that sum to 1: stress and strain of the mean deformation and rotation there.
+    /// Returns the weighted mean of strain and rotation over nodes, with weights that sum to 1.
     #[must_use]
     pub fn mean(&self, weights: &[(u32, f64)]) -> Local {
         Local::mean(weights.iter().filter_map(|&(node, weight)| Some((*self.nodes.get(node as usize)?, weight))))

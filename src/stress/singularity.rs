@@ -1,4 +1,4 @@
-//! Places where the stress of linear elasticity has no bound, so that a finer mesh only finds a larger one.
+//! Stress singularities of linear elasticity, where a finer mesh only gives a larger stress.
 
 use nalgebra::Vector2;
 
@@ -6,17 +6,17 @@ use crate::assembly::Problem;
 use crate::mesh::{Mesh, Segment};
 use crate::scene::{Load, Material, Place, Plane};
 
-/// Cause of a stress without bound.
+/// Cause of an unbounded stress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Singularity {
-    /// A force on a single node.
+    /// Force on a single node.
     PointForce,
-    /// A support of a single node.
+    /// Support of a single node.
     PointSupport,
-    /// The end of a support's edge.
+    /// End of a supported edge.
     SupportEnd,
-    /// A corner that points into the body.
+    /// Re-entrant corner.
     ReentrantCorner,
 }
 
@@ -32,7 +32,7 @@ impl std::fmt::Display for Singularity {
     }
 }
 
-/// Conditions on a side of the outline.
+/// Support of a side of the outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hold {
     Free,
@@ -41,11 +41,12 @@ enum Hold {
     Clamped,
 }
 
-/// A corner this much larger than a straight angle, rad, is one: less comes of curved outlines made of straight sides.
+/// Smallest excess of a corner's angle over 180°, rad, that counts as a corner; smaller ones occur on curved outlines
+/// made of straight sides.
 const CORNER: f64 = 0.6;
 
 impl Singularity {
-    /// The cause of an unbounded stress at a node; `None` where the stress is bounded.
+    /// Returns the cause of an unbounded stress at a node; `None` if the stress is bounded.
     #[must_use]
     pub fn at(problem: &Problem, node: u32) -> Option<Self> {
         let mesh = problem.system().mesh();
@@ -71,7 +72,7 @@ impl Singularity {
             (Hold::Clamped, Hold::Free) | (Hold::Free, Hold::Clamped) => {
                 is_singular_clamp(angle, problem.material()).then_some(Self::SupportEnd)
             }
-            // The mirror image continues the body beyond a roller.
+            // A roller is a symmetry condition: the mirror image continues the body.
             (Hold::Roller, Hold::Free) | (Hold::Free, Hold::Roller) => {
                 (2.0 * angle > straight + CORNER).then_some(Self::SupportEnd)
             }
@@ -96,7 +97,7 @@ impl Hold {
     }
 }
 
-/// The angle that the elements around a node fill, rad; a straight one around a node between corners.
+/// Returns the angle of the body at a node, rad; π at a node between corners of an element.
 fn interior_angle(mesh: &Mesh, node: u32) -> f64 {
     let entry = mesh.element().entry();
     let corners = entry.cell.corners;
@@ -115,13 +116,13 @@ fn interior_angle(mesh: &Mesh, node: u32) -> f64 {
     if angle == 0.0 { std::f64::consts::PI } else { angle }
 }
 
-/// `true` if stresses at a corner of this angle, one side clamped and the other free, have no bound: if
-/// sin²(λω) = ((κ + 1)² − 4 λ² sin² ω) / 4κ has a root with a real part below 1 (Williams 1952, *Stress singularities resulting
-/// from various boundary conditions in angular corners of plates in extension*). Displacements go with the distance to the power
-/// λ. Beyond a right angle there is always one, complex or not.
+/// Returns `true` if stresses at a corner of this angle between a clamped and a free side are unbounded: if sin²(λω) =
+/// ((κ + 1)² − 4 λ² sin² ω) / 4κ has a root with a real part below 1 (Williams 1952, *Stress singularities resulting
+/// from various boundary conditions in angular corners of plates in extension*). Displacements are proportional to the
+/// distance to the power λ. For angles above 90° there is always such a root, real or complex.
 fn is_singular_clamp(angle: f64, material: &Material) -> bool {
     const STEPS: u32 = 200;
-    /// A right angle and some rounding, rad.
+    /// 90° plus a tolerance for rounding errors, rad.
     const OBTUSE: f64 = 1.6;
     if angle > OBTUSE {
         return true;
@@ -135,7 +136,7 @@ fn is_singular_clamp(angle: f64, material: &Material) -> bool {
         let (turned, own) = ((lambda * angle).sin(), lambda * angle.sin());
         turned * turned - ((kappa + 1.0).powi(2) - 4.0 * own * own) / (4.0 * kappa)
     };
-    // At λ = 0 the gap is negative.
+    // The gap is negative at λ = 0, so a positive value means that there is a root.
     (1..STEPS).any(|i| gap(f64::from(i) / f64::from(STEPS)) > 0.0)
 }
 

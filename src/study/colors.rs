@@ -1,7 +1,7 @@
-//! Colours of methods and integrators in pictures and in the window.
+//! Colours of methods and integrators in figures and in the window.
 
-/// Red, green and blue of a method or an integrator, by its name in scene files: on a light ground, and on a dark one. Methods
-/// differ in brightness too.
+/// Red, green and blue of a method or an integrator, by its name in scene files: on a light background, and on a dark
+/// one. Methods differ in brightness too.
 const COLORS: &[(&str, [[u8; 3]; 2])] = &[
     ("linear", [[200, 90, 0], [240, 150, 60]]),
     ("warped", [[128, 50, 190], [202, 160, 255]]),
@@ -13,10 +13,10 @@ const COLORS: &[(&str, [[u8; 3]; 2])] = &[
     ("symplectic-euler", [[200, 90, 0], [240, 150, 60]]),
 ];
 
-/// Grey, for a name without a colour.
+/// Grey, used for unknown names.
 const OTHER: [[u8; 3]; 2] = [[110, 110, 110], [170, 170, 170]];
 
-/// Returns the colour of a method or an integrator on a dark or a light ground, by its name in scene files.
+/// Returns the colour of a method or an integrator on a dark or a light background, by its name in scene files.
 ///
 /// ```
 /// use warpbeam::study::color;

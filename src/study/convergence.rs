@@ -1,33 +1,33 @@
-//! The error that is left in solutions on meshes whose elements are halved from one to the next.
+//! Bound of the remaining error of solutions on uniformly refined meshes.
 
 use nalgebra::Vector2;
 
-/// Slowest rate at which a mean displacement of finite energy converges when elements are halved: around the tip of a crack,
-/// where the error goes with the element size. Clamped and re-entrant corners are faster (Szabó and Babuška 1991, *Finite
-/// Element Analysis*, chapter 10).
+/// Slowest rate at which a mean displacement with finite energy converges when elements are halved: at the tip of a
+/// crack, where the error is proportional to the element size. Clamped and re-entrant corners are faster (Szabó and
+/// Babuška 1991, *Finite Element Analysis*, chapter 10).
 const SLOWEST: f64 = 0.5;
-/// Rate of an element that bends, or is constant, exactly: the error goes with the square of the element size.
+/// Rate without singularities: the error is proportional to the square of the element size.
 const ORDINARY: f64 = 0.25;
-/// Bound over estimate.
+/// Safety factor of the bound relative to the estimate.
 const SAFETY: f64 = 2.0;
-/// Ratio of two changes from which on a sequence is not seen to converge …
+/// Largest ratio of two changes for which a sequence counts as converging.
 const STALLED: f64 = 0.85;
-/// … and the ratio it is given where the change before those was larger: by chance errors of two kinds cancelled there.
+/// Ratio used if the previous change was small by chance, because errors of two kinds cancelled.
 const ERRATIC: f64 = 0.75;
-/// Changes smaller than this part of a displacement are rounding.
+/// Changes below this fraction of a displacement are rounding errors.
 const ROUNDING: f64 = 1e-7;
-/// Halvings for which a bound holds where each changes a displacement by the same amount.
+/// Number of further halvings covered by the bound if each changes the displacement by the same amount.
 const HALVINGS: f64 = 8.0;
 
-/// Bound of the distance from the last of these displacements, m, to the limit that they converge to on finer and finer
-/// meshes, m. `None` for a single displacement.
+/// Returns the bound of the distance from the last of these displacements, m, to their limit on finer and finer meshes,
+/// m. `None` for a single displacement.
 ///
-/// The changes d₁, d₂, … of a converging sequence fall by a ratio q, and the rest of them sums to d q/(1 − q). One change tells
-/// nothing of the ratio: the slowest is taken.
+/// The changes d₁, d₂, … of a converging sequence decrease by a ratio q, and the remaining ones sum to d q/(1 − q). A
+/// single change does not show the ratio: the slowest is assumed.
 ///
-/// Where the changes do not fall there may be no limit: under a force on a point (`has_point`) each halving adds the same
-/// displacement (Flamant 1892), and strains become large around it, so that a fast rate is not trusted. The bound then holds
-/// for meshes of elements down to 1/256 as large.
+/// If the changes do not decrease, there may be no limit: under a force on a point (`has_point`) each halving adds the
+/// same displacement (Flamant 1892), and strains become large around it, so that a fast rate is not trusted. The bound
+/// then holds for meshes with elements down to 1/256 of the size.
 pub(super) fn remaining_error(displacements: &[Vector2<f64>], has_point: bool) -> Option<f64> {
     let size = displacements.last()?.norm();
     let changes: Vec<f64> = displacements.windows(2).map(|w| (w[1] - w[0]).norm()).collect();
@@ -40,7 +40,7 @@ pub(super) fn remaining_error(displacements: &[Vector2<f64>], has_point: bool) -
     if last.max(before) <= ROUNDING * size {
         return Some(SAFETY * ROUNDING * size);
     }
-    // A change that is small by chance says little of the next.
+    // A change that is small by chance does not predict the next one.
     let change = last.max(ORDINARY * before);
     let ratio = last / before;
     let (ratio, constant) = if has_point {
@@ -62,7 +62,7 @@ mod tests {
 
     use super::*;
 
-    /// Displacements 1 + c qᵏ for k = 0, 1, ….
+    /// Returns the displacements 1 + c qᵏ for k = 0, 1, ….
     fn sequence(c: f64, q: f64, count: i32) -> Vec<Vector2<f64>> {
         (0..count).map(|k| Vector2::new(1.0 + c * q.powi(k), 0.0)).collect()
     }
@@ -105,7 +105,8 @@ mod tests {
         assert!(remaining_error(&u, false).unwrap() < 1e-6);
     }
 
-    /// A point force: the same change with every halving, for eight more of them.
+    /// A point force: the displacement changes by the same amount with every halving; the bound covers eight more
+    /// halvings.
     #[test]
     fn a_logarithm_is_bounded_for_some_more_halvings() {
         let u: Vec<_> = (0..4).map(|k| Vector2::new(1.0 + 0.01 * f64::from(k), 0.0)).collect();

@@ -1,4 +1,4 @@
-//! Solutions of a scene on finer and finer meshes, up to one whose own error is small.
+//! Reference solutions of a scene on refined meshes, up to one with a small error.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,15 +19,15 @@ use crate::words::{count, engineering, engineering_pair};
 /// Cost allowed for a reference solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
-    /// Meshes of at most about 10,000 unknowns, and the work of about 30 solves of them: a second or two.
+    /// Meshes of at most about 10,000 unknowns, and the work of about 30 solves on them: a second or two.
     #[default]
     Bounded,
-    /// Meshes as fine as an own error of 0.01 % takes, up to 700,000 unknowns.
+    /// Meshes fine enough for an error of 0.01 %, with up to 700,000 unknowns.
     Full,
 }
 
 impl Effort {
-    /// Largest number of unknowns of a mesh.
+    /// Returns the largest number of unknowns of a mesh.
     pub(super) fn most_unknowns(self) -> usize {
         match self {
             Self::Bounded => 10_000,
@@ -35,7 +35,7 @@ impl Effort {
         }
     }
 
-    /// Largest sum of unknowns over all solves.
+    /// Returns the largest sum of unknowns over all solves.
     fn most_work(self) -> f64 {
         match self {
             Self::Bounded => 3e5,
@@ -43,7 +43,7 @@ impl Effort {
         }
     }
 
-    /// Own error, over the displacement, below which no finer mesh is tried.
+    /// Returns the error, relative to the displacement, below which no finer mesh is tried.
     fn good_enough(self) -> f64 {
         match self {
             Self::Bounded => 1e-3,
@@ -52,15 +52,15 @@ impl Effort {
     }
 }
 
-/// A point of a scene at which a mesh has no node.
+/// Point of a scene that is not at a node of the mesh.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MovedPoint {
-    /// The table of the scene that names the point: `load.0`, `support.1`.
+    /// Table of the scene that names the point: `load.0`, `support.1`.
     pub key: String,
-    /// The point at rest, m.
+    /// Position at rest, m.
     pub at: [f64; 2],
-    /// Distance to the node that stands for it, m.
+    /// Distance to the node used instead, m.
     pub distance: f64,
 }
 
@@ -71,47 +71,49 @@ impl std::fmt::Display for MovedPoint {
     }
 }
 
-/// The solution on the finest mesh.
+/// Solution on the finest mesh.
 pub(super) struct Fine {
     /// Displacement of every probe, m.
     pub probes: Vec<Vector2<f64>>,
-    /// Bound of the error of each, m; `None` where it is not known.
+    /// Bound of the error of each probe, m; `None` if unknown.
     pub errors: Vec<Option<f64>>,
-    /// Closed lines around the body, m, node by node.
+    /// Closed outlines of the body, m, node by node.
     pub outline: Vec<Vec<Vector2<f64>>>,
-    /// Displacement of the first probe in linear theory on the same mesh, m.
+    /// Displacement of the first probe by linear theory on the same mesh, m.
     pub linear: Option<Vector2<f64>>,
-    /// Points that are not where the scene has them.
+    /// Points that are not at the places given in the scene.
     pub moved: Vec<MovedPoint>,
     /// `true` if the mesh comes from a file and all its sides are straight.
     pub is_polygon: bool,
-    /// Unknowns of the finest mesh.
+    /// Number of unknowns of the finest mesh.
     pub unknowns: usize,
 }
 
-/// The element of fine solutions: six-node triangles, which converge fastest, or what the quadrilaterals of a file can be.
+/// Returns the element of reference solutions: six-node triangles, which converge fastest, or the file's
+/// quadrilaterals.
 pub(super) fn finest_element(scene: &Scene) -> ElementKind {
     scene.elements().find(|&e| e == ElementKind::T6).unwrap_or_else(|| scene.element())
 }
 
-/// Refinements of the coarsest mesh of a beam, which has as many cells as make the finest about as large as the budget.
+/// Number of refinements of a beam's coarsest mesh, whose number of cells is chosen so that the finest mesh is about as
+/// large as the budget.
 const REFINEMENTS: i32 = 3;
-/// Distances of lines from the ends of a slender beam, over its height: there sections do not stay plane.
+/// Distances of mesh lines from the ends of a slender beam, relative to its height; sections do not stay plane there.
 const LAYERS: [f64; 3] = [0.25, 1.0, 4.0];
-/// Meshes whose changes show a rate of convergence.
+/// Number of meshes needed to show a rate of convergence.
 const LEAST_MESHES: usize = 3;
-/// Distance between two lines of a grid, over the size of its cells in the other direction, below which they are one.
+/// Distance between two mesh lines, relative to the cell size in the other direction, below which they are merged.
 const NARROWEST: f64 = 1e-4;
-/// Iterations of Newton's method that a mesh may take.
+/// Iteration limit of Newton's method per mesh.
 const MOST_ITERATIONS: u32 = 500;
-/// Residual at which a solution on a mesh has converged.
+/// Tolerance of the solutions.
 const TOLERANCE: f64 = 1e-11;
 
-/// Finds it. With `near`, a solution of the scene on a mesh of its own, the search begins there, so that of several
-/// equilibria it finds the same one.
+/// Computes the reference solution. With `near`, a solution of the scene on a mesh of its own, the search starts there,
+/// so that it finds the same one of several equilibria.
 ///
 /// # Errors
-/// [`StudyError`]: the mesh is too fine to be refined, no mesh has an equilibrium, or the search was cancelled.
+/// [`StudyError`] if the mesh is too fine to be refined, no mesh has an equilibrium, or the search was cancelled.
 pub(super) fn fine(
     scene: &Scene,
     near: Option<&Simulation>,
@@ -140,7 +142,7 @@ pub(super) fn fine(
         }
         let converged = match search.solve(&mut simulation)? {
             Status::Converged => true,
-            // Out of work: the meshes before have to do.
+            // The budget is spent; use the previous meshes.
             Status::Running if !solutions.is_empty() => break,
             _ => false,
         };
@@ -149,7 +151,8 @@ pub(super) fn fine(
             let u = simulation.displacement();
             solutions.push(simulation.problem().probes().iter().map(|p| p.mean(u)).collect());
         } else if !solutions.is_empty() {
-            // A finer mesh has no equilibrium near that of a coarser one: it was none of the body.
+            // If a finer mesh has no equilibrium near the coarser one's, the latter was not a solution of the
+            // continuous problem.
             return Err(StudyError::NoReference);
         }
         let fine_enough = solutions.len() >= LEAST_MESHES && is_good_enough(&solutions, has_point, effort);
@@ -183,7 +186,7 @@ pub(super) fn fine(
     })
 }
 
-/// `true` if an equilibrium is stable: descent of the energy can end in one that is not.
+/// Returns `true` if the equilibrium is stable; descent of the energy may end in an unstable one.
 fn stands(simulation: &Simulation) -> Result<bool, StudyError> {
     let (problem, state) = (simulation.problem(), simulation.state());
     let mut workspace = Workspace::new(simulation.system()).map_err(SimulationError::from)?;
@@ -191,22 +194,22 @@ fn stands(simulation: &Simulation) -> Result<bool, StudyError> {
     Ok(is_stable(problem, state, 1.0, &mut forces, &mut workspace))
 }
 
-/// The element of fine solutions of beams: four-node quadrilaterals, which lock neither in bending nor near
-/// incompressibility. Of a mesh from a file, the one of its shape that converges fastest.
+/// Returns the element used in the search: for beams four-node quadrilaterals, which lock neither in bending nor near
+/// incompressibility; for a mesh file, the element of its shape that converges fastest.
 fn element(scene: &Scene) -> ElementKind {
     if scene.beam.is_some() { ElementKind::Q4 } else { finest_element(scene) }
 }
 
-/// Bounds of the errors of the last solution, m, probe by probe.
+/// Returns the bounds of the errors of the last solution, m, for each probe.
 fn errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<Option<f64>> {
     let probes = solutions.last().map_or(0, Vec::len);
     let of = |probe: usize| solutions.iter().filter_map(|u| u.get(probe).copied()).collect::<Vec<_>>();
     (0..probes).map(|probe| remaining_error(&of(probe), has_point)).collect()
 }
 
-/// `true` if the errors of all probes that move much are small enough for a search to end.
+/// Returns `true` if the errors of all probes with significant displacement are small enough to stop the search.
 fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effort) -> bool {
-    /// Displacement over the largest of all probes below which a probe does not count.
+    /// Displacement relative to the largest of all probes below which a probe is ignored.
     const LITTLE: f64 = 0.01;
     let Some(last) = solutions.last() else { return false };
     let largest = last.iter().map(|u| u.norm()).fold(0.0, f64::max);
@@ -214,14 +217,14 @@ fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effo
     counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= effort.good_enough() * u.norm()))
 }
 
-/// `true` if a force or a support acts on a single point.
+/// Returns `true` if a force or a support acts on a single point.
 fn has_point(scene: &Scene) -> bool {
     let at = |place: &Place| matches!(place, Place::At(_));
     scene.supports.iter().any(|s| at(&s.place))
         || scene.loads.iter().any(|load| matches!(load, Load::Force { place, .. } if at(place)))
 }
 
-/// Solves within a budget, and reports progress.
+/// Solver with a budget and progress reports.
 struct Search<'a> {
     effort: Effort,
     /// Unknowns, summed over all solves.
@@ -243,14 +246,14 @@ impl Search<'_> {
         Ok(simulation.status().clone())
     }
 
-    /// `true` if the rest of the budget is enough for a few solves of so many unknowns.
+    /// Returns `true` if the remaining budget is enough for a few solves with this number of unknowns.
     fn has_work_for(&self, unknowns: usize) -> bool {
         const FEW: f64 = 4.0;
         self.work + FEW * unknowns as f64 <= self.effort.most_work()
     }
 }
 
-/// Starts a search from a solution on another mesh of the same body, unless it leads far away from it.
+/// Starts from a solution on another mesh of the same body, if it can be interpolated at all nodes.
 fn start_near(simulation: &mut Simulation, near: &Simulation) {
     let (mesh, from) = (simulation.system().mesh(), near.system().mesh());
     let (outline, size) = (from.outline(), near.system().size());
@@ -262,22 +265,22 @@ fn start_near(simulation: &mut Simulation, near: &Simulation) {
             Some(weights.iter().map(|&(node, w)| near.displacement()[node as usize] * w).sum())
         })
         .collect();
-    // From rest it leads somewhere as well.
+    // Otherwise the search starts at rest.
     if let Some(carried) = carried {
         let _ = simulation.start_from(&carried);
     }
 }
 
-/// Meshes that follow one another, each with every element of the one before cut into four.
+/// Sequence of meshes, each with every element of the previous one cut into four.
 struct Meshes {
-    /// The mesh before the beam is bent to its arch; the mesh itself where there is no arch.
+    /// Mesh before the beam is bent to its arch; the mesh itself if there is no arch.
     straight: Mesh,
-    /// The arch it is bent to.
+    /// Arch that the beam is bent to.
     arch: Option<Beam>,
 }
 
 impl Meshes {
-    /// The coarsest mesh of a scene. Points of the scene that it has no node at are moved to the nearest.
+    /// Returns the coarsest mesh of a scene. Points of the scene without a node are moved to the nearest one.
     fn of(scene: &mut Scene, near: Option<&Simulation>, effort: Effort) -> Result<(Self, Vec<MovedPoint>), StudyError> {
         match scene.beam.clone() {
             Some(beam) => {
@@ -291,13 +294,13 @@ impl Meshes {
                     Some(near) => near.system().mesh().clone(),
                     None => System::mesh_of(scene).map_err(SimulationError::from)?,
                 };
-                // A mesh that the caller has given stays what it is.
+                // A mesh given by the caller is kept.
                 let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
                 let entry = element.entry();
                 if 4 * unknowns_of(&own, entry) > effort.most_unknowns() {
                     return Err(StudyError::TooFine { elements: own.element_count() });
                 }
-                // The same nodes stand for the points of the scene on every mesh, and on that of the scene.
+                // The same nodes are used for the scene's points on every mesh, including the scene's own.
                 let moved = points_off_nodes(scene, &own);
                 snap(scene, &own);
                 let straight = if own.element() == element {
@@ -310,7 +313,7 @@ impl Meshes {
         }
     }
 
-    /// The present mesh.
+    /// Returns the current mesh.
     fn mesh(&self) -> Result<Mesh, StudyError> {
         match &self.arch {
             None => Ok(self.straight.clone()),
@@ -320,7 +323,7 @@ impl Meshes {
         }
     }
 
-    /// Goes on to the next mesh; returns a displacement of the present one carried over to it.
+    /// Refines the mesh; returns a displacement of the previous mesh interpolated to it.
     fn refine(&mut self, displacement: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
         let carried = self.straight.prolonged(displacement);
         self.straight = self.straight.refined();
@@ -328,17 +331,18 @@ impl Meshes {
     }
 }
 
-/// About how many unknowns a mesh has where its elements become others: Euler's formula for a mesh without holes.
+/// Returns the approximate number of unknowns of a mesh converted to another element, by Euler's formula for a mesh
+/// without holes.
 fn unknowns_of(mesh: &Mesh, element: &ElementType) -> usize {
     let elements = mesh.element_count();
     let corners = element.cell.corners.len();
-    // Every side belongs to two elements: as many sides as elements times half their corners.
+    // Every side belongs to two elements, so there are as many sides as elements times half their corners.
     let vertices = elements * (corners - 2) / 2;
     let on_sides = element.sides[0].len() - 2;
     2 * (vertices + on_sides * elements * corners / 2)
 }
 
-/// Every point at which a scene puts a support or a force, with the key of its table.
+/// Returns every point at which a scene has a support or a force, with the key of its table.
 fn points(scene: &Scene) -> Vec<(String, &[f64; 2])> {
     fn of<'a>(kind: &str, i: usize, place: &'a Place) -> Option<(String, &'a [f64; 2])> {
         match place {
@@ -354,13 +358,13 @@ fn points(scene: &Scene) -> Vec<(String, &[f64; 2])> {
     supports.chain(loads).collect()
 }
 
-/// Points of a simulation's scene, supports' and loads', at which its mesh has no node.
+/// Returns the points of a simulation's scene, of supports and loads, at which its mesh has no node.
 #[must_use]
 pub fn moved_points(simulation: &Simulation) -> Vec<MovedPoint> {
     points_off_nodes(simulation.scene(), simulation.system().mesh())
 }
 
-/// Points of a scene with the nearest node of a mesh farther away than rounding.
+/// Returns the points of a scene whose nearest node is farther away than rounding errors.
 fn points_off_nodes(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
     const ROUNDING: f64 = 1e-9;
     let (low, high) = mesh.bounds();
@@ -371,7 +375,7 @@ fn points_off_nodes(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
     distances.filter(|point| point.distance > ROUNDING * (high - low).norm()).collect()
 }
 
-/// Puts the points of a scene on the nearest nodes of a mesh.
+/// Moves the points of a scene to the nearest nodes of a mesh.
 fn snap(scene: &mut Scene, mesh: &Mesh) {
     let to_node = |place: &mut Place| {
         if let Place::At(at) = place {
@@ -386,8 +390,9 @@ fn snap(scene: &mut Scene, mesh: &Mesh) {
     }
 }
 
-/// The coarsest mesh of the straight rectangle of a beam, cells about as long as high where there are enough, with lines
-/// through every point of the scene and finer cells at the ends of a slender beam. `None` where its cells are too thin.
+/// Returns the coarsest mesh of a beam's straight rectangle, with cells about as long as high if there are enough, with
+/// lines through every point of the scene and finer cells at the ends of a slender beam. `None` if its cells are too
+/// thin.
 fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let size = [beam.length, beam.height];
     let probes = scene.probes.iter().filter_map(|p| if let Place::At(at) = &p.place { Some(at) } else { None });
@@ -395,7 +400,7 @@ fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let points = points.map(|at| straightened(beam, (*at).into())).map(|[along, across]| [along * size[0], across]);
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);
-    // The unknowns of the finest mesh are 2 (2³ nx + 1) (2³ ny + 1).
+    // The finest mesh has 2 (2³ nx + 1) (2³ ny + 1) unknowns.
     let nodes = 0.5 * Effort::Bounded.most_unknowns() as f64;
     let cells = |short: f64, extra: usize| {
         (((nodes / (halvings * short + 1.0) - 1.0) / halvings).floor() - extra as f64).max(1.0)
@@ -423,8 +428,8 @@ fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     uniform.moved(graded).ok()
 }
 
-/// Boundaries of about `cells` intervals of one size from 0 to `end`, with one at each of `wanted` that is not nearer than
-/// `narrowest` to another.
+/// Returns the boundaries of about `cells` equal intervals from 0 to `end`, with one at each value of `wanted` that is
+/// not nearer than `narrowest` to another.
 fn lines(end: f64, mut wanted: Vec<f64>, cells: f64, narrowest: f64) -> Vec<f64> {
     wanted.retain(|v| (narrowest..=end - narrowest).contains(v));
     wanted.sort_by(f64::total_cmp);
@@ -440,9 +445,9 @@ fn lines(end: f64, mut wanted: Vec<f64>, cells: f64, narrowest: f64) -> Vec<f64>
     lines
 }
 
-/// Where a part of the way, 0 to 1, through equal cells is on these lines.
+/// Maps a fraction, 0 to 1, of equal cells to the position on these lines.
 fn on_lines(lines: &[f64], part: f64) -> f64 {
-    // Nodes are at corners of cells and half way between: a line is hit without rounding.
+    // Nodes are at corners of cells and half way between them, so that lines are met without rounding errors.
     let halves = (2.0 * part * (lines.len() - 1) as f64).round() as usize;
     let (line, odd) = (halves / 2, halves % 2 == 1);
     match lines.get(line..) {
@@ -452,7 +457,7 @@ fn on_lines(lines: &[f64], part: f64) -> f64 {
     }
 }
 
-/// `true` if no side of the outline is curved.
+/// Returns `true` if no side of the outline is curved.
 fn has_straight_sides(mesh: &Mesh) -> bool {
     const STRAIGHT: f64 = 1e-9;
     mesh.outline().iter().all(|side| {
@@ -461,7 +466,7 @@ fn has_straight_sides(mesh: &Mesh) -> bool {
     })
 }
 
-/// The closed lines around a body, m, node by node.
+/// Returns the closed outlines of a body, m, node by node.
 fn outline(simulation: &Simulation) -> Vec<Vec<Vector2<f64>>> {
     let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
     let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();

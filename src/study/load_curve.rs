@@ -1,4 +1,4 @@
-//! Load against deflection of a cantilever: linear theory, the truth, and what each method makes of the full load.
+//! Load–deflection curve of a cantilever: linear theory, the exact beam, and the results of all methods at full load.
 
 use std::sync::Arc;
 
@@ -10,77 +10,77 @@ use crate::scene::{MethodKind, Place, Scene};
 use crate::simulation::{Simulation, Status};
 use crate::truth::{BeamTruth, error_percent};
 
-/// A load factor with its deflections.
+/// Load factor with its deflections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Fraction of the scene's load.
+    /// Load factor, relative to the scene's load.
     pub factor: f64,
     /// Displacement of the tip by linear beam theory, m.
     pub linear: Vector2<f64>,
-    /// By the geometrically exact beam, m.
+    /// Displacement of the tip by the geometrically exact beam, m.
     pub truth: Vector2<f64>,
-    /// Turn of the tip, rad.
+    /// Rotation of the tip, rad.
     pub rotation: f64,
     /// Largest bending strain: half the height times the curvature at the clamp.
     pub strain: f64,
 }
 
 impl Sample {
-    /// The distance of linear theory from the truth, over the true displacement, percent.
+    /// Returns the difference between linear theory and the exact beam, relative to the exact displacement, percent.
     #[must_use]
     pub fn linear_error_percent(&self) -> f64 {
         error_percent(self.linear, self.truth).unwrap_or(0.0)
     }
 }
 
-/// Where linear theory leaves the truth by more than so much.
+/// Load at which the error of linear theory exceeds a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Departure {
-    /// Percent of the true displacement.
+    /// Limit, percent of the exact displacement.
     pub percent: f64,
-    /// The first sample beyond, interpolated.
+    /// Interpolated sample at the limit.
     pub at: Sample,
 }
 
-/// What a method makes of the full load.
+/// Result of a method at full load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodPoint {
-    /// The method.
+    /// Method.
     pub method: MethodKind,
-    /// Displacement of the tip, m: of the last finite state where it did not converge.
+    /// Displacement of the tip, m; of the last finite state if the method did not converge.
     pub tip: Vector2<f64>,
-    /// How it ended.
+    /// Status at the end.
     pub status: Status,
-    /// `false` if the end is an unstable equilibrium; `None` where that is not known.
+    /// `false` if the result is an unstable equilibrium; `None` if unknown.
     pub stable: Option<bool>,
 }
 
-/// The curve of a scene that has a cantilever's truth.
+/// Load–deflection curve of a cantilever scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadCurve {
-    /// From no load to past the full one.
+    /// Samples from zero load to beyond the full load.
     pub samples: Vec<Sample>,
-    /// Load factor at which the exact beam buckles, where the samples end; `None` where they go on to the end.
+    /// Load factor at which the exact beam buckles, where the samples end; `None` if they reach the last load factor.
     pub buckles_at: Option<f64>,
-    /// For 3, 5 and 10 percent, as far as the samples reach.
+    /// Loads at which the error of linear theory exceeds 3, 5 and 10 percent, within the samples.
     pub departures: Vec<Departure>,
-    /// Every method, on the scene's own mesh.
+    /// Results of every method, on the scene's own mesh.
     pub methods: Vec<MethodPoint>,
 }
 
-/// How far past the full load the curve goes.
+/// Largest load factor of the curve.
 const LARGEST_FACTOR: f64 = 1.25;
-/// Samples of the curve: enough for a smooth line and for limits to a percent of their load.
+/// Number of samples: enough for a smooth line and for limits accurate to a percent of their load.
 const SAMPLES: u32 = 50;
-/// The errors of linear theory at which it is said to leave the truth; the article says it is good to 3–5 %.
+/// Error limits of linear theory, percent; the article states that it is good to 3–5 %.
 const DEPARTURES: [f64; 3] = [3.0, 5.0, 10.0];
 
 impl LoadCurve {
-    /// The curve, if the scene has a cantilever's truth and a probe at its tip.
+    /// Returns the curve, if the scene is a cantilever with an exact solution and a probe at its tip.
     #[must_use]
     pub fn new(scene: &Scene) -> Option<Self> {
         let Some(BeamTruth::Cantilever(beam)) = BeamTruth::of(scene) else { return None };
-        // What cannot be simulated has no curve.
+        // A scene that cannot be simulated has no curve.
         let system = Simulation::new(scene).ok()?.system().clone();
         let height = scene.beam.as_ref()?.height;
         let linear = beam.linear_tip_displacement();
@@ -103,7 +103,7 @@ impl LoadCurve {
     }
 }
 
-/// Where the error of linear theory first passes `percent`.
+/// Returns the load at which the error of linear theory first exceeds `percent`.
 fn departure(samples: &[Sample], percent: f64) -> Option<Departure> {
     let pair = samples.windows(2).find(|w| w[1].linear_error_percent() > percent)?;
     let [a, b] = [pair[0], pair[1]];

@@ -1,5 +1,5 @@
-//! The load path of any scene at rest: its equilibria while loads are put on and supports taken on their way together,
-//! from nothing to the whole. Each is the one nearest to the one before; where there is none the body jumps.
+//! Load path of a static scene: its equilibria while loads and prescribed displacements grow together from zero to
+//! their full values. Each equilibrium is the one nearest to the one before; where there is none, the body jumps.
 
 use std::ops::ControlFlow;
 
@@ -13,27 +13,27 @@ use crate::simulation::{Simulation, Status, SupportReaction, supports_power};
 use crate::state::{State, largest};
 use crate::words::engineering;
 
-/// An equilibrium of the path.
+/// Equilibrium on the path.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PathState {
-    /// Fraction of the scene's loads, and of the way of its supports.
+    /// Load factor of the scene's loads and prescribed displacements.
     pub factor: f64,
     /// Displacement of every probe, m.
     pub probes: Vec<Vector2<f64>>,
-    /// The reaction of every support.
+    /// Reaction of every support.
     pub reactions: Vec<SupportReaction>,
-    /// Whether it is stable with the supports that move let go and pushed by their reactions instead: under force
-    /// control. Held by them it is stable anyway. `None` where that is not known.
+    /// `true` if the state is stable under force control: with moving supports released and loaded by their reactions
+    /// instead. With the supports held it is stable in any case. `None` if unknown.
     pub stable: Option<bool>,
 }
 
-/// Where the body leaves the path.
+/// Jump of the body away from the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jump {
-    /// The last fraction of the load with an equilibrium near those before.
+    /// Last load factor with an equilibrium near the previous ones.
     pub factor: f64,
-    /// How far some node jumps, m; 0 where no equilibrium was found to jump to.
+    /// Largest displacement of a node in the jump, m; 0 if no equilibrium was found after it.
     pub distance: f64,
 }
 
@@ -54,23 +54,23 @@ impl std::fmt::Display for Jump {
     }
 }
 
-/// A critical point that the path goes through: the exact tangent is singular, another path crosses this one.
+/// Critical point on the path, at which the exact tangent is singular and another path crosses this one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Bifurcation {
-    /// Fraction of the load, to a thousandth.
+    /// Load factor, accurate to a thousandth.
     pub factor: f64,
-    /// Negative eigenvalues of the exact tangent below it and beyond it: 0 where the path is stable.
+    /// Numbers of negative eigenvalues of the exact tangent below and beyond it: 0 where the path is stable.
     pub unstable_modes: [usize; 2],
 }
 
 impl Bifurcation {
-    /// Percent of the load, to a hundredth.
+    /// Formats the load factor in percent, to a hundredth.
     fn percent(&self) -> String {
         engineering((self.factor * 1e4).round() / 1e2, "%")
     }
 
-    /// A few words for a picture: `buckles at 49.3 %`.
+    /// Returns a short label for figures: `buckles at 49.3 %`.
     #[must_use]
     pub fn label(&self) -> String {
         let percent = engineering((self.factor * 1e3).round() / 10.0, "%");
@@ -93,23 +93,23 @@ impl std::fmt::Display for Bifurcation {
     }
 }
 
-/// Reason why a path ends before the whole load.
+/// Reason why a path ends before the full load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PathEndReason {
-    /// No equilibrium, stable or not, is near.
+    /// There is no equilibrium nearby, stable or not.
     NoEquilibrium,
-    /// The path took more solves than it may.
+    /// The limit of the number of solves was reached.
     Solves(u32),
     /// The command was interrupted.
     Interrupted,
 }
 
-/// Where a path ends before the whole load.
+/// End of a path before the full load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PathEnd {
-    /// Fraction of the load.
+    /// Load factor.
     pub factor: f64,
     /// Reason.
     pub reason: PathEndReason,
@@ -130,90 +130,92 @@ impl std::fmt::Display for PathEnd {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct PathSummary {
-    /// The jump on the way, if there was one.
+    /// First jump on the path, if any.
     pub jump: Option<Jump>,
-    /// The first critical point at which the path loses its stability.
+    /// First critical point at which the path loses its stability.
     pub buckling: Option<Bifurcation>,
-    /// Work of the supports that move, J; `None` where the path was not followed to the whole load.
+    /// Work of moving supports, J; `None` if the path was not followed to the full load.
     pub supports_work: Option<f64>,
 }
 
 impl PathSummary {
-    /// Its jump and its buckling, a sentence each.
+    /// Describes jump and buckling, one sentence each.
     pub fn sentences(&self) -> impl Iterator<Item = String> {
         let buckling = self.buckling.map(|buckling| buckling.to_string());
         self.jump.map(|jump| jump.to_string()).into_iter().chain(buckling)
     }
 }
 
-/// The path of a scene.
+/// Load path of a scene.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LoadPath {
-    /// The scene's title.
+    /// Title of the scene.
     pub scene: String,
-    /// The equilibria, from no load on.
+    /// Equilibria, from zero load on.
     pub states: Vec<PathState>,
-    /// Where it jumps, the first time.
+    /// First jump.
     pub jump: Option<Jump>,
-    /// Where its stability changes without a jump.
+    /// Points at which the stability changes without a jump.
     pub bifurcations: Vec<Bifurcation>,
-    /// Number of the first support that moves: the path is drawn over its way. Else over the load.
+    /// Index of the first moving support: the path is drawn over its displacement; `None` if it is drawn over the load.
     pub driven: Option<usize>,
-    /// Work of the supports that move, the integral of their reactions along the path, J.
+    /// Work of moving supports, the integral of their reactions along the path, J.
     pub supports_work: f64,
-    /// Where it ends before the whole load; `None` where it was followed to its end.
+    /// End of the path before the full load; `None` if it was followed to its end.
     pub end: Option<PathEnd>,
     /// Displacement at the end, m.
     last: Vec<Vector2<f64>>,
 }
 
-/// States of a path that is drawn.
+/// Number of states of a path that is drawn.
 const DRAWN: u32 = 60;
-/// States of a path that is followed only to see where it jumps.
+/// Number of states of a path that is followed only to detect jumps.
 const FOLLOWED: u32 = 8;
-/// States of a path along which the work of supports is integrated, by the trapezoidal rule.
+/// Number of states of a path along which the work of supports is integrated by the trapezoidal rule.
 const INTEGRATED: u32 = 40;
-/// A step of the load factor that is not divided any more.
+/// Smallest step of the load factor.
 const SMALLEST_STEP: f64 = 1e-4;
-/// A step that moves the body so many times as far as the steps before promised has left the path.
+/// Largest ratio of a step's displacement to that predicted from the previous step; beyond it the step has left the
+/// path.
 const FARTHER: f64 = 4.0;
-/// What is no jump however small the step was: part of the largest displacement. A column that buckles leaves the
-/// straight way fast, but without a jump.
+/// Displacement, relative to the largest displacement, below which a smallest step does not count as a jump. A buckling
+/// column leaves the straight configuration fast, but without a jump.
 const NO_JUMP: f64 = 0.05;
-/// Iterations that take a body to the next equilibrium of its path.
+/// Iteration limit from one equilibrium on the path to the next.
 const FEW_ITERATIONS: u32 = 20;
-/// Iterations that take a body which jumps to where it ends.
+/// Iteration limit for a jump.
 const ENOUGH_ITERATIONS: u32 = 500;
-/// Solves after which a path is given up.
+/// Number of solves after which the path ends.
 const MOST_SOLVES: u32 = 300;
-/// Width of the part of the load within which a change of stability is found.
+/// Width of the interval of the load factor in which a change of stability is located.
 const BRACKET: f64 = 1e-3;
-/// Unknowns beyond which a path is too dear to be a by-product of a solve.
+/// Number of unknowns above which a path is too expensive to be computed as part of a solve.
 const MOST_UNKNOWNS: usize = 6000;
 
-/// Receives the fraction that is done, and cancels with [`ControlFlow::Break`].
+/// Callback that receives the completed fraction, and cancels with [`ControlFlow::Break`].
 pub type PathObserver<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
 impl LoadPath {
-    /// Follows the path of a scene. `None` for a motion, for linear theory, and where the scene cannot be simulated.
+    /// Follows the path of a scene. `None` for a motion, for linear theory, and if the scene cannot be simulated.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         Self::follow(scene, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// [`Self::of`] with progress; a path that is cancelled ends early.
+    /// Follows as [`Self::of`] with progress reports; a cancelled path ends early.
     #[must_use]
     pub fn follow(scene: &Scene, observe: PathObserver<'_>) -> Option<Self> {
         Follower::new(scene)?.follow(DRAWN, observe)
     }
 
-    /// Follows the load path to a result of a scene, a displacement in m, and summarizes it; `None` where the path does not reach it.
+    /// Follows the load path to a result of a scene, a displacement in m, and summarizes it; `None` if the path does
+    /// not reach it.
     #[must_use]
     pub fn to_result(scene: &Scene, result: &[Vector2<f64>], observe: PathObserver<'_>) -> Option<PathSummary> {
-        /// Part of the largest displacement that is no other equilibrium.
+        /// Largest difference, relative to the largest displacement, that does not count as another equilibrium.
         const SAME: f64 = 0.02;
-        // Before equations are set up only to be refused.
+        // Return before setting up equations that would not be used.
         if 2 * result.len() > MOST_UNKNOWNS {
             return None;
         }
@@ -229,11 +231,11 @@ impl LoadPath {
         }
         let distance = path.last.iter().zip(result).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         let elsewhere = distance > SAME * largest(result).max(largest(&path.last));
-        // Another equilibrium than that of the path was reached by going through a jump of one's own.
+        // If the result is not on the path, the solver has jumped to another equilibrium.
         Some(PathSummary { jump: elsewhere.then_some(Jump { factor: 1.0, distance }), ..summary })
     }
 
-    /// Follows the load path of a scene and summarizes it; `None` where the path cannot be followed.
+    /// Follows the load path of a scene and summarizes it; `None` if the path cannot be followed.
     #[must_use]
     pub fn summary_of(scene: &Scene) -> Option<PathSummary> {
         let follower = Follower::new(scene)?;
@@ -253,8 +255,8 @@ impl LoadPath {
         }
     }
 
-    /// The way of the support that moves at a state: its displacement, m, or its turn, rad, where it only turns; and the
-    /// reaction along it, N or N m. `None` where none moves.
+    /// Returns the motion of the moving support at a state: its displacement, m, or its rotation, rad, if it only
+    /// rotates; and the reaction along it, N or N m. `None` if no support moves.
     #[must_use]
     pub fn driven_pair(&self, scene: &Scene, state: &PathState) -> Option<[f64; 2]> {
         let (support, reaction) = (scene.supports.get(self.driven?)?, state.reactions.get(self.driven?)?);
@@ -266,24 +268,25 @@ impl LoadPath {
     }
 }
 
-/// Follows a path.
+/// Solver that follows a path.
 struct Follower {
     scene: Scene,
     simulation: Simulation,
-    /// The whole scene, of which the path has parts.
+    /// Problem with the full loads.
     whole: Problem,
     workspace: Workspace,
     forces: Forces,
     reached: f64,
     state: State,
-    /// The accepted state before, and its load factor.
+    /// Previous accepted state, and its load factor.
     before: (f64, State),
-    /// Negative eigenvalues of the exact tangent at the last accepted state.
+    /// Number of negative eigenvalues of the exact tangent at the last accepted state.
     unstable_modes: usize,
-    /// Work of the supports so far, J, and their generalised force at the last accepted state, J a load factor.
+    /// Work of the supports so far, J, and its derivative with respect to the load factor at the last accepted state,
+    /// J.
     work: f64,
     power: f64,
-    /// How fast the body moves, m a load factor.
+    /// Derivative of the largest displacement with respect to the load factor, m.
     rate: f64,
     solves: u32,
 }
@@ -356,14 +359,14 @@ impl Follower {
         Some(path)
     }
 
-    /// Goes on to a load factor.
+    /// Continues to a load factor.
     fn go(&mut self, goal: f64, path: &mut LoadPath, observe: PathObserver<'_>) -> Result<(), PathEndReason> {
         let mut step = goal - self.reached;
         while self.reached < goal {
             if observe(self.reached).is_break() {
                 return Err(PathEndReason::Interrupted);
             }
-            // The last part of the way must not be left to rounding.
+            // The last step ends exactly at the goal, without rounding errors.
             let to = if goal - self.reached <= step * (1.0 + 1e-9) { goal } else { self.reached + step };
             let nearby = |moved: f64, rate: f64, from: f64| moved <= FARTHER * rate * (to - from);
             if self.unstable_modes > 0 {
@@ -389,7 +392,7 @@ impl Follower {
                 step = goal - self.reached;
                 continue;
             }
-            // No near equilibrium: wherever the solve goes is where the body goes.
+            // There is no equilibrium nearby: the body jumps to the result of a full solve.
             let converged = *self.simulation.solve() == Status::Converged;
             let moved = self.distance(self.simulation.displacement());
             if !converged {
@@ -408,8 +411,8 @@ impl Follower {
         Ok(())
     }
 
-    /// Goes on over a critical point to the unstable equilibrium beyond it, where the path has one near; returns `true` if it
-    /// does.
+    /// Continues over a critical point to the unstable equilibrium beyond it, if the path has one nearby; returns
+    /// `true` if it does.
     fn loses_stability(&mut self, to: f64, path: &mut LoadPath) -> bool {
         let mut state = self.predicted(to);
         let Some(modes) = self.correct(&mut state, to) else { return false };
@@ -425,7 +428,7 @@ impl Follower {
         true
     }
 
-    /// Goes on along a path that is unstable; returns the next step.
+    /// Continues along an unstable path; returns the next step.
     fn go_unstable(&mut self, to: f64, path: &mut LoadPath) -> Result<f64, PathEndReason> {
         let width = to - self.reached;
         let mut state = self.predicted(to);
@@ -452,7 +455,7 @@ impl Follower {
         }
     }
 
-    /// The state at a load factor that the last two states point to.
+    /// Returns the state at a load factor extrapolated from the last two states.
     fn predicted(&self, to: f64) -> State {
         let mut state = self.state.clone();
         let (factor, before) = &self.before;
@@ -467,10 +470,10 @@ impl Follower {
         state
     }
 
-    /// Takes a state to the equilibrium at a load factor by Newton's method with the exact tangent, whether that is stable or
-    /// not; returns the negative eigenvalues of the tangent there.
+    /// Computes the equilibrium at a load factor by Newton's method with the exact tangent, stable or not; returns the
+    /// number of negative eigenvalues of the tangent there.
     fn correct(&mut self, state: &mut State, factor: f64) -> Option<usize> {
-        /// A state in balance to this is an equilibrium.
+        /// Relative residual of an equilibrium.
         const BALANCED: f64 = 1e-9;
         let Self { whole, workspace, forces, .. } = self;
         let system = whole.system().clone();
@@ -495,8 +498,8 @@ impl Follower {
         None
     }
 
-    /// Solves at a load factor from where the body is, as long as that takes few iterations of one load step; says whether
-    /// it did.
+    /// Solves at a load factor from the current state, with few iterations and a single load step; returns `true` if it
+    /// converged.
     fn solve_near(&mut self, factor: f64) -> bool {
         self.solves += 1;
         if self.simulation.change_scene(&part(&self.scene, factor)).is_err() {
@@ -509,7 +512,7 @@ impl Follower {
         *self.simulation.status() == Status::Converged && self.simulation.load_stepping().1 == 1
     }
 
-    /// The largest distance of a node from where it is in the last accepted state, m.
+    /// Returns the largest distance of a node from its position in the last accepted state, m.
     fn distance(&self, displacement: &[Vector2<f64>]) -> f64 {
         let nodes = displacement.iter().zip(&self.state.displacement);
         nodes.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
@@ -535,12 +538,12 @@ impl Follower {
     }
 
     fn go_back(&mut self) {
-        // Both were accepted before.
+        // Cannot fail: both were accepted before.
         let _ = self.simulation.change_scene(&part(&self.scene, self.reached));
         let _ = self.simulation.restore(&self.state);
     }
 
-    /// The last accepted state.
+    /// Returns the last accepted state.
     fn seen(&mut self) -> PathState {
         let probes = self.whole.probes().iter().map(|p| p.mean(&self.state.displacement)).collect();
         let stable = if self.unstable_modes > 0 {
@@ -562,20 +565,20 @@ impl Follower {
     }
 }
 
-/// The scene with a part of its loads, its supports on a part of their way.
+/// Returns the scene with its loads and prescribed displacements times `factor`.
 fn part(scene: &Scene, factor: f64) -> Scene {
     let mut scene = scene.clone();
     scene.scale_loads(factor);
     scene
 }
 
-/// What a support is called in words: `support left`, `support (0.1, 0.0085)`.
+/// Describes a support: `support left`, `support (0.1, 0.0085)`.
 #[must_use]
 pub fn support_words(scene: &Scene, number: usize) -> String {
     scene.supports.get(number).map_or_else(|| "support".to_owned(), |support| format!("support {}", support.place))
 }
 
-/// What a support is called in the columns of tables: its edge, or its number.
+/// Returns the name of a support in tables: its edge, or its table in the scene.
 #[must_use]
 pub fn support_name(scene: &Scene, number: usize) -> String {
     match scene.supports.get(number).map(|s| &s.place) {

@@ -1,4 +1,4 @@
-//! Work that is not timed, on all cores. Nothing that is timed runs beside it.
+//! Parallel execution of untimed work on all cores. Timed work must not run at the same time.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,23 +8,23 @@ use std::time::Duration;
 
 use rayon::prelude::*;
 
-/// Time after which an observer is asked again, though nothing is done.
+/// Interval of calls of an observer while no item is finished.
 const ASK: Duration = Duration::from_millis(50);
 
-/// Whether work was called off: asked by work that takes long, to end early.
+/// Cancellation flag, polled by long work.
 #[derive(Debug, Default)]
 pub struct CalledOff(AtomicBool);
 
 impl CalledOff {
-    /// [`ControlFlow::Break`] once it was.
+    /// Returns [`ControlFlow::Break`] once cancelled.
     pub fn flow(&self) -> ControlFlow<()> {
         if self.0.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
-/// Works on all items on all cores, and returns what comes of them in their order. `observe` is told on the calling
-/// thread how many are done, and calls the rest off: of items that were not begun then there is `None`, and those that
-/// were are told.
+/// Processes all items on all cores, and returns the results in order. `observe` is called on the calling thread with
+/// the number of finished items, and can cancel the rest: items not started then give `None`, and running ones see the
+/// flag.
 pub fn map<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T, &CalledOff) -> R + Sync,
@@ -37,12 +37,12 @@ pub fn map<T: Sync, R: Send>(
             return None;
         }
         let result = work(item, &called_off);
-        // Nobody listens any more only where the caller panics.
+        // Sending fails only if the caller panics.
         let _ = sender.send(());
         Some(result)
     };
     thread::scope(|scope| {
-        // One by one: items are few and long beside what a task costs.
+        // Items are split one by one, because they are few and long compared with the overhead of a task.
         let worker = scope.spawn(|| items.par_iter().with_max_len(1).map_with(sender, one).collect());
         let mut done = 0;
         loop {
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn work_that_has_begun_is_told_that_it_is_called_off() {
-        // Without being told neither would ever end.
+        // Without the flag neither item would end.
         let until_told = |_: &u32, called_off: &CalledOff| {
             while called_off.flow().is_continue() {
                 thread::yield_now();

@@ -1,7 +1,7 @@
-//! Which measurements no other beats.
+//! Pareto front of measurements.
 
-/// For every pair of a time and an error, whether no other pair is less in one and no more in the other. Of equals the
-/// first is kept; a pair that is not finite is never kept.
+/// Returns for every pair of a time and an error `true` if no other pair is smaller in one and not larger in the other.
+/// Of equal pairs the first is kept; pairs that are not finite are not kept.
 pub(super) fn front(pairs: &[(f64, f64)]) -> Vec<bool> {
     let is_front = |i: usize, &(time, error): &(f64, f64)| {
         time.is_finite()

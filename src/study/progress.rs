@@ -1,4 +1,4 @@
-//! Progress of studies and of searches, and why they end without a result.
+//! Progress, errors and extent of studies and searches.
 
 use std::ops::ControlFlow;
 
@@ -6,46 +6,46 @@ use crate::dynamics::StopReason;
 use crate::simulation::SimulationError;
 use crate::words::{number, two_digits};
 
-/// Why a scene cannot be studied.
+/// Reason why a scene cannot be studied.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// The scene does not set up.
+    /// The scene cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// A body in motion has no equilibrium to compare with.
+    /// The scene is dynamic and has no equilibrium to compare with.
     #[error(
         "expected a scene with analysis = \"static\": this measures solves of its equilibrium, and it is in motion"
     )]
     InMotion,
-    /// A body at rest has no path to compare with.
+    /// The scene is static and has no path to compare with.
     #[error("expected a scene with analysis = \"dynamic\": this measures the path of its motion, and it is at rest")]
     AtRest,
-    /// The fine motion that would be the reference cannot go on.
+    /// The motion on the fine mesh, which would be the reference, stops.
     #[error("no reference solution: the fine motion of the scene stops: {0}")]
     NoPath(StopReason),
-    /// A mesh from a file cannot be made of other cells.
+    /// The scene has a mesh file, which cannot be meshed with other cells.
     #[error("expected a scene with [beam]: this measures it on coarser and finer meshes")]
     NoBeam,
-    /// Nothing to compare.
+    /// The scene has no probe that moves.
     #[error("expected a scene with a probe that moves; errors are measured there")]
     NoProbe,
-    /// A mesh from a file that has too many unknowns when it is refined.
+    /// The refined mesh of a file would have too many unknowns.
     #[error("no reference solution: the mesh of {elements} elements is too large to be refined")]
     TooFine {
-        /// Elements of the mesh.
+        /// Number of elements of the mesh.
         elements: usize,
     },
-    /// The equilibrium is unstable: the body would not stay there.
+    /// The equilibrium is unstable.
     #[error("no reference solution: the equilibrium is unstable")]
     Unstable,
     /// No equilibrium was found on fine meshes.
     #[error("no reference solution: the fine solution of the scene does not converge")]
     NoReference,
-    /// The solutions on finer and finer meshes do not approach each other, or too slowly.
+    /// The solutions on refined meshes do not converge, or too slowly.
     #[error("no reference solution: solutions on finer and finer meshes do not approach each other")]
     NoBound,
-    /// The reference solution is no better than what is asked of a result.
+    /// The reference solution is not more accurate than the requested result.
     #[error(
         "the reference solution's own error may be {} %, no less than the {} % asked",
         number(two_digits(*own_percent)),
@@ -54,16 +54,16 @@ pub enum StudyError {
     NotKnown {
         /// Bound of the reference's own error, percent.
         own_percent: f64,
-        /// Error asked for, percent.
+        /// Requested error, percent.
         asked_percent: f64,
     },
-    /// Called off.
+    /// Cancelled.
     #[error("called off")]
     Cancelled,
 }
 
 impl StudyError {
-    /// `true` if there is nothing wrong with the scene, but no reference solution that is good enough.
+    /// Returns `true` if the scene is valid, but no sufficiently accurate reference solution exists.
     #[must_use]
     pub fn is_unknown(&self) -> bool {
         matches!(
@@ -73,33 +73,34 @@ impl StudyError {
     }
 }
 
-/// How far a study is.
+/// Progress of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress<'a> {
-    /// Fraction that is done, 0 to 1: of the time that is expected, from sizes and from what has been timed so far.
+    /// Completed fraction, 0 to 1, of the expected time, which is estimated from sizes and from times measured so far.
     pub fraction: f64,
-    /// Setting being measured.
+    /// Current setting.
     pub now: &'a str,
 }
 
-/// Is told how far a study is, and calls it off with [`ControlFlow::Break`].
+/// Callback that receives the progress of a study, and cancels with [`ControlFlow::Break`].
 pub type Observer<'a> = &'a mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
 
-/// How many meshes a study looks at.
+/// Extent of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// Without the finer ones.
+    /// Coarser meshes only.
     Quick,
-    /// Up to some five thousand unknowns.
+    /// Meshes of up to about five thousand unknowns.
     Full,
 }
 
-/// Goes on, or is called off.
+/// Converts [`ControlFlow::Break`] to [`StudyError::Cancelled`].
 pub(super) fn check(flow: ControlFlow<()>) -> Result<(), StudyError> {
     if flow.is_break() { Err(StudyError::Cancelled) } else { Ok(()) }
 }
 
-/// Results of all items of [`super::parallel::map`], or the error of the first that failed or was called off.
+/// Returns the results of all items of [`super::parallel::map`], or the error of the first that failed or was
+/// cancelled.
 pub(super) fn all_done<T>(results: Vec<Option<Result<T, StudyError>>>) -> Result<Vec<T>, StudyError> {
     results.into_iter().map(|result| result.ok_or(StudyError::Cancelled)?).collect()
 }

@@ -1,5 +1,5 @@
-//! Reference solutions: the displacements that errors are measured against, each with a bound of its own error. The exact
-//! beam of [`crate::truth`] where solutions on fine meshes confirm it, else the finest of these.
+//! Reference solutions: displacements that errors are measured against, each with a bound of its own error. The exact
+//! beam of [`crate::truth`] if solutions on fine meshes confirm it, else the finest of these.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ pub enum ReferenceSource {
 }
 
 impl ReferenceSource {
-    /// The name it has in JSON.
+    /// Returns the identifier in JSON.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -49,33 +49,33 @@ impl std::fmt::Display for ReferenceSource {
     }
 }
 
-/// The displacement that a result at a probe is compared with.
+/// Reference displacement of a probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProbeReference {
     /// Displacement, m.
     pub displacement: Vector2<f64>,
-    /// Bound of its own error, percent of its length.
+    /// Bound of the reference's own error, percent of its length.
     pub own_error_percent: f64,
     /// Origin.
     pub source: ReferenceSource,
 }
 
 impl ProbeReference {
-    /// Distance of a result from the reference, percent of the reference's displacement. The true error differs from it by at
-    /// most [`Self::own_error_percent`].
+    /// Returns the distance of a result from the reference, percent of the reference's displacement. The exact error
+    /// differs from it by at most [`Self::own_error_percent`].
     #[must_use]
     pub fn error_percent(&self, result: &ProbeResult) -> Option<f64> {
         error_percent(result.u, self.displacement)
     }
 
-    /// Distance between two displacements, percent of the reference's displacement.
+    /// Returns the distance between two displacements, percent of the reference's displacement.
     #[must_use]
     pub fn percent(&self, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
         100.0 * (a - b).norm() / self.displacement.norm()
     }
 
-    /// Its own error in words: `its own error at most 0.012 %`.
+    /// Describes the reference's own error: `its own error at most 0.012 %`.
     #[must_use]
     pub fn own_error(&self) -> String {
         format!("its own error at most {} %", number(two_digits(self.own_error_percent)))
@@ -88,25 +88,26 @@ impl std::fmt::Display for ProbeReference {
     }
 }
 
-/// The reference solution of a scene.
+/// Reference solution of a scene.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reference {
-    /// One for every probe of the scene; `None` where the probe does not move, or no bound of the error is known.
+    /// Reference of every probe of the scene; `None` if the probe does not move, or no bound of the error is known.
     probes: Vec<Option<ProbeReference>>,
-    /// Distance of the exact beam from the fine solution that replaces it, percent; `None` where it does not, or there is none.
+    /// Distance of the exact beam from the fine solution used instead, percent; `None` if the beam is used, or there is
+    /// none.
     pub beam_off_by_percent: Option<f64>,
-    /// Outline of the deformed body, m: closed lines.
+    /// Closed outlines of the deformed body, m.
     pub outline: Vec<Vec<Vector2<f64>>>,
-    /// Displacement of the first probe in linear theory on a fine mesh, m: the rest of the way to the reference is the
-    /// theory's error.
+    /// Displacement of the first probe by linear theory on a fine mesh, m: its distance from the reference is the error
+    /// of linear theory.
     pub linear: Option<Vector2<f64>>,
-    /// Points of the scene that the reference solution has no node at.
+    /// Points of the scene at which the reference solution has no node.
     pub moved: Vec<MovedPoint>,
-    /// `true` if the mesh comes from a file whose sides are all straight: errors are those of the polygon, not of a curved
-    /// part that it stands for.
+    /// `true` if all sides of a mesh file are straight: errors then refer to the polygon, not to a curved part that it
+    /// approximates.
     pub is_polygon: bool,
-    /// Unknowns of the finest mesh.
+    /// Number of unknowns of the finest mesh.
     pub unknowns: usize,
 }
 
@@ -120,28 +121,28 @@ impl std::fmt::Display for Reference {
     }
 }
 
-/// A reference is not known where its own error may be larger than this, percent.
+/// Largest bound of a reference's own error, percent; with a larger bound there is no reference.
 const LARGEST_OWN_ERROR: f64 = 20.0;
-/// Largest distance between the exact beam and a fine solution at which the beam is taken, percent.
+/// Largest distance between the exact beam and a fine solution with which the beam is used, percent.
 const CONFIRMED: f64 = 0.25;
-/// Largest such distance over the own error of the fine solution at which the beam is taken as well.
+/// Largest ratio of this distance to the fine solution's own error with which the beam is also used.
 const MARGIN: f64 = 1.5;
 
 impl Reference {
-    /// Finds the reference solution of a scene at bounded cost.
+    /// Computes the reference solution of a scene at bounded cost.
     ///
     /// # Errors
-    /// As [`Self::find`].
+    /// Same errors as [`Self::find`].
     pub fn of(scene: &Scene) -> Result<Self, StudyError> {
         Self::find(scene, None, Effort::Bounded, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// Finds the reference solution of a scene. Where the scene has several equilibria it is the one next to `near`, a
-    /// solution of the scene on its own mesh, or without that the one that is reached from rest.
+    /// Computes the reference solution of a scene. If the scene has several equilibria it is the one nearest to `near`,
+    /// a solution of the scene on its own mesh, or without `near` the one reached from rest.
     ///
     /// # Errors
-    /// [`StudyError`]: the scene moves or has no probe, its mesh is too fine to be refined, the fine solutions do not
-    /// converge, or the search was cancelled.
+    /// [`StudyError`]: the scene is dynamic or has no probe, its mesh is too fine to be refined, the fine solutions do
+    /// not converge, or the search was cancelled.
     pub fn find(
         scene: &Scene,
         near: Option<&Simulation>,
@@ -188,7 +189,8 @@ impl Reference {
         }
     }
 
-    /// The exact beam at the probes of its tip where a fine solution confirms it, the fine solution at the others.
+    /// Returns the exact beam's values for probes at its tip if a fine solution confirms them, the fine solution for
+    /// all others.
     fn confirmed(scene: &Scene, beam: Option<BeamTruth>, tip: Vector2<f64>, fine: Fine) -> Self {
         let own: Vec<Option<f64>> = fine.errors.clone();
         let ends = fine.probes.clone();
@@ -200,7 +202,7 @@ impl Reference {
             let off = (ends[i] - tip).norm();
             let confirmed = off <= 0.01 * CONFIRMED * tip.norm() || own[i].is_some_and(|own| off <= MARGIN * own);
             if confirmed {
-                // Where the fine solution has no bound of its own it is about as wrong as the two are apart.
+                // Without a bound the error of the fine solution is taken as its distance from the beam.
                 let error = off + own[i].unwrap_or(off);
                 reference.probes[i] = probe(tip, error, ReferenceSource::ExactBeam);
                 if i == 0
@@ -215,10 +217,10 @@ impl Reference {
         reference
     }
 
-    /// The exact beam of a body too slender for any mesh: sections that stay plane are right but for terms of the height over
-    /// the length. `None` where that is not small, or a probe is not at the tip.
+    /// Returns the exact beam for a body too slender for any mesh: the assumption of plane sections has an error of the
+    /// order of height over length. `None` if this ratio is not small, or a probe is not at the tip.
     fn of_slender(scene: &Scene, beam: Option<BeamTruth>, tip: Vector2<f64>) -> Option<Self> {
-        /// Height over length from which on nothing is known of the beam's own error.
+        /// Largest height over length for which the beam's own error is known.
         const STUBBY: f64 = 0.02;
         let rectangle = scene.beam.as_ref()?;
         let at_tip = scene.probes.iter().all(|p| p.place == Place::from("right"));
@@ -237,14 +239,14 @@ impl Reference {
         })
     }
 
-    /// The references of the probes, in the scene's order; `None` where a probe does not move, or no bound of its error is
-    /// known.
+    /// Returns the references of the probes, in the scene's order; `None` if a probe does not move, or no bound of its
+    /// error is known.
     #[must_use]
     pub fn probes(&self) -> &[Option<ProbeReference>] {
         &self.probes
     }
 
-    /// Sentences about what limits the reference.
+    /// Returns sentences about limitations of the reference.
     #[must_use]
     pub fn limits(&self) -> Vec<String> {
         let mut limits: Vec<String> =
@@ -262,17 +264,18 @@ impl Reference {
         limits
     }
 
-    /// The reference of the first probe, by which settings are compared.
+    /// Returns the reference of the first probe, by which settings are compared.
     #[must_use]
     pub fn first(&self) -> Option<ProbeReference> {
         self.probes.first().copied().flatten()
     }
 }
 
-/// Unknowns beyond which a solution is certified on request only: that takes much longer than the solve, or its reference.
+/// Largest number of unknowns of solutions that are certified automatically; beyond, certification takes much longer
+/// than the solve or its reference.
 pub(crate) const MOST_CERTIFIED: usize = 100_000;
 
-/// `true` for an equilibrium whose exact tangent is known not to be positive definite.
+/// Returns `true` for an equilibrium whose exact tangent is known not to be positive definite.
 fn is_unstable(simulation: &Simulation) -> bool {
     if *simulation.status() != Status::Converged || simulation.is_linear() {
         return false;
@@ -284,18 +287,18 @@ fn is_unstable(simulation: &Simulation) -> bool {
     certificate.and_then(|c| c.stable) == Some(false)
 }
 
-/// A reference with an error, m, that is a small part of its displacement.
+/// Returns the reference of a probe; `None` if its error, m, is too large a fraction of its displacement.
 fn probe(displacement: Vector2<f64>, error: f64, source: ReferenceSource) -> Option<ProbeReference> {
     let own_error_percent = 100.0 * error / displacement.norm();
     (own_error_percent <= LARGEST_OWN_ERROR).then_some(ProbeReference { displacement, own_error_percent, source })
 }
 
-/// The equations of a scene.
+/// Returns the equations of a scene.
 pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
     Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
 }
 
-/// A method run to its end, given all the iterations it needs.
+/// Runs a method to its end with a sufficient number of iterations.
 fn run_to_end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Simulation, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
@@ -308,7 +311,7 @@ fn run_to_end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result
     Ok(simulation)
 }
 
-/// Displacements of the probes where a method ends, given all the iterations it needs.
+/// Returns the final displacements of the probes by a method, with a sufficient number of iterations.
 pub(super) fn end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Vec<Vector2<f64>>, StudyError> {
     Ok(probe_displacements(&run_to_end(scene, method, system)?))
 }
@@ -318,7 +321,7 @@ fn probe_displacements(simulation: &Simulation) -> Vec<Vector2<f64>> {
     simulation.problem().probes().iter().map(|p| p.mean(displacement)).collect()
 }
 
-/// Displacement of the first probe, m.
+/// Returns the displacement of the first probe, m.
 pub(super) fn first_probe(simulation: &Simulation) -> Result<Vector2<f64>, StudyError> {
     let probe = simulation.problem().probes().first().ok_or(StudyError::NoProbe)?;
     Ok(probe.mean(simulation.displacement()))

@@ -1,4 +1,4 @@
-//! The trade in words: a table and a summary.
+//! Report of the speed–accuracy study: table and summary.
 
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 
 impl Study {
-    /// The study as CSV; times in microseconds.
+    /// Formats the study as CSV, with times in microseconds.
     #[must_use]
     pub fn table(&self) -> String {
         let mut text = String::from(
@@ -42,7 +42,7 @@ impl Study {
         text
     }
 
-    /// The study for people: the reference solution, the Pareto front, and what an error costs.
+    /// Formats a summary for display: reference solution, Pareto front, and cost of given errors.
     #[must_use]
     pub fn summary(&self) -> String {
         let mut text = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);

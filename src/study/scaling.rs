@@ -1,4 +1,4 @@
-//! How the time of an iteration and the memory it takes grow with the number of unknowns.
+//! Study of the computing time and memory of an iteration as functions of the number of unknowns.
 
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -8,69 +8,69 @@ use super::{Extent, Observer, Progress, StudyError};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::Simulation;
 
-/// A mesh of the study.
+/// Measurement on one mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalingPoint {
     /// Element.
     pub element: ElementKind,
     /// Cells along and across.
     pub cells: [u32; 2],
-    /// Free unknowns.
+    /// Number of free unknowns.
     pub dofs: usize,
-    /// Time of an iteration of `newton`, ms: the median of some.
+    /// Time of an iteration of `newton`, ms, median.
     pub milliseconds: f64,
-    /// Most memory that meshing, setting up and iterating took, MiB; `None` where it is not measured, or
-    /// too little to be seen.
+    /// Peak memory of meshing, setup and iteration, MiB; `None` if not measured, or too small to be measured.
     pub peak_mib: Option<f64>,
 }
 
-/// Measures the memory of the process.
+/// Meter of the memory of the process.
 pub trait MemoryMeter {
     /// Starts a measurement.
     fn begin(&self);
 
-    /// Returns the most memory that the process has held since [`Self::begin`], over what it held before all measurements, MiB; `None`
-    /// where the system does not tell.
+    /// Returns the peak memory of the process since [`Self::begin`], minus that before all measurements, MiB; `None` if
+    /// the system does not report it.
     fn peak_mib(&self) -> Option<f64>;
 }
 
-/// A power law fitted to the larger half of an element's meshes.
+/// Power law fitted to the larger half of an element's meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponents {
     /// Element.
     pub element: ElementKind,
-    /// p of time ∝ unknownsᵖ.
+    /// Exponent p of time ∝ unknownsᵖ.
     pub time: f64,
-    /// p of memory ∝ unknownsᵖ, where memory is known.
+    /// Exponent p of memory ∝ unknownsᵖ, if memory was measured.
     pub memory: Option<f64>,
 }
 
-/// The whole study.
+/// Scaling study of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scaling {
-    /// The scene's name.
+    /// Name of the scene.
     pub scene: String,
-    /// By element, coarse to fine.
+    /// Measurements, by element from coarse to fine.
     pub points: Vec<ScalingPoint>,
-    /// Whether it was called off before everything was measured.
+    /// `true` if the study was cancelled before everything was measured.
     pub is_partial: bool,
 }
 
-/// Unknowns of the meshes, about.
+/// Approximate numbers of unknowns of the meshes.
 const UNKNOWNS: [f64; 11] = [1e2, 2e2, 5e2, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5];
-/// How many of them are quick.
+/// Number of meshes of a quick study.
 const QUICK: usize = 5;
-/// Time that is given to the iterations of a mesh …
+/// Time spent on the iterations of a mesh.
 const ENOUGH: Duration = Duration::from_millis(500);
-/// … of which there are no more than these …
+/// Largest number of timed iterations per mesh.
 const MOST: usize = 101;
-/// … and no fewer than these.
+/// Smallest number of timed iterations per mesh.
 const FEWEST: usize = 3;
-/// Less memory than this cannot be told from what the process has anyway, MiB.
+/// Smallest measurable memory increase, MiB.
 const RESOLVED: f64 = 1.0;
 
 impl Scaling {
-    /// Measures a scene with a beam at rest, alone on the machine; memory where there is a meter. Called off, it keeps what it has.
+    /// Measures a static scene with a beam, without other work on the machine; memory only if a meter is given. If
+    /// cancelled, returns the measurements so far.
     ///
     /// # Errors
     /// [`StudyError`].
@@ -88,7 +88,7 @@ impl Scaling {
         let all: f64 = unknowns.iter().sum::<f64>() * ElementKind::all().count() as f64;
         let mut study = Self { scene: scene.name.clone(), points: Vec::new(), is_partial: false };
         let mut done = 0.0;
-        // Small meshes first, of all elements: what the allocator keeps of one is no more than the next takes anyway.
+        // Small meshes of all elements first: memory kept by the allocator is then no more than the next mesh needs.
         for (&unknowns, element) in unknowns.iter().flat_map(|n| ElementKind::all().map(move |e| (n, e))) {
             let cells = cells(element, beam.length / beam.height, unknowns);
             let now = super::trade::mesh_words(element, Some(cells));
@@ -107,7 +107,7 @@ impl Scaling {
         self.points.iter().filter(|p| p.element == element).collect()
     }
 
-    /// The exponents of every element that has enough meshes.
+    /// Returns the exponents of every element with enough meshes.
     #[must_use]
     pub fn exponents(&self) -> Vec<Exponents> {
         let fit = |element| {
@@ -121,7 +121,7 @@ impl Scaling {
         ElementKind::all().filter_map(fit).collect()
     }
 
-    /// The study as CSV.
+    /// Formats the study as CSV.
     #[must_use]
     pub fn table(&self) -> String {
         let mut text = String::from("element,cells_along,cells_across,dofs,iteration_ms,peak_mib\n");
@@ -133,7 +133,7 @@ impl Scaling {
         text
     }
 
-    /// The study for people.
+    /// Formats a summary for display.
     #[must_use]
     pub fn summary(&self) -> String {
         let mut text = format!("{}: an iteration of `newton`, by unknowns\n\n", self.scene);
@@ -158,11 +158,11 @@ impl Scaling {
     }
 }
 
-/// Cells of a beam this slender that have about so many unknowns.
+/// Returns the cells of a beam with this length over height for about `unknowns` unknowns.
 fn cells(element: ElementKind, slenderness: f64, unknowns: f64) -> [u32; 2] {
     let pieces = element.entry().sides[0].len() as f64 - 1.0;
     let across = (0.5 * unknowns / slenderness).sqrt();
-    // Of nodes, one more than pieces across: a thin beam has more than its share.
+    // There is one more node than pieces across, which matters for thin beams.
     let across = ((across - 0.5) / pieces).round().max(1.0);
     let along = (0.5 * unknowns / (across * pieces + 1.0) / pieces).round().max(1.0);
     [along as u32, across as u32]
@@ -177,7 +177,7 @@ fn measure(
     let setting = super::Setting { element, cells: Some(cells), method: MethodKind::Newton, iterations: 1 };
     memory.iter().for_each(|meter| meter.begin());
     let mut simulation = Simulation::new(&setting.apply(scene))?;
-    // The first warms up.
+    // The first iteration warms up.
     simulation.step();
     let runs = Runs { count: FEWEST..=MOST, enough: ENOUGH };
     let time = median_time(runs, &mut simulation, Simulation::reset, |simulation| {
@@ -188,7 +188,7 @@ fn measure(
     Ok(ScalingPoint { element, cells, dofs: simulation.system().dofs(), milliseconds, peak_mib })
 }
 
-/// The slope of the line nearest to some points; `None` of fewer than two.
+/// Returns the slope of the regression line through some points; `None` for fewer than two different abscissas.
 fn slope(points: Vec<(f64, f64)>) -> Option<f64> {
     let n = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));

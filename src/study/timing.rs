@@ -1,4 +1,4 @@
-//! What iterations from rest cost: medians over repetitions, warmed up, stages apart.
+//! Timing of iterations from rest: medians over repetitions after warm-up, by stage.
 
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
@@ -6,16 +6,16 @@ use std::time::{Duration, Instant};
 use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
 
-/// Repetitions that only warm up caches, branch predictors and clocks.
+/// Repetitions that warm up caches, branch predictors and clocks.
 const WARM_UP: usize = 2;
-/// Repetitions measured …
+/// Number of measured repetitions.
 const REPETITIONS: usize = 9;
-/// … but no more than this where they take long: long times vary less.
+/// Number of measured repetitions if they take long, because long times vary less.
 const FEWEST: usize = 3;
-/// What is long.
+/// Time after which repetitions count as long.
 const LONG: Duration = Duration::from_millis(400);
 
-/// The time from rest to the end of each of the first `iterations`, fewer where the solve ends before.
+/// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before.
 #[must_use]
 pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timings> {
     let mut runs: Vec<Vec<Timings>> = Vec::new();
@@ -53,23 +53,23 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
         .collect()
 }
 
-/// About how long [`times_from_rest`] takes, where a run takes so long.
+/// Returns the approximate time that [`times_from_rest`] takes if a single run takes `run`.
 #[must_use]
 pub fn expected_time(run: Duration) -> Duration {
     let [all, fewest] = [REPETITIONS, FEWEST].map(|repetitions| run * (WARM_UP + repetitions) as u32);
     all.min(fewest.max(LONG))
 }
 
-/// How often a run is timed.
+/// Number of timed runs.
 #[derive(Clone, Debug)]
 pub(super) struct Runs {
-    /// Not more often than this, and not less often.
+    /// Smallest and largest number of runs.
     pub count: RangeInclusive<usize>,
-    /// Nor once the runs have taken so long together: long times vary less.
+    /// Total time after which no further run is started, because long times vary less.
     pub enough: Duration,
 }
 
-/// The median time that a run takes, without what prepares it.
+/// Returns the median time of `run`, without `prepare`.
 pub(super) fn median_time<T>(
     runs: Runs,
     subject: &mut T,

@@ -1,7 +1,7 @@
-//! The trade: error against time, for every element, mesh, method and number of iterations, on this machine.
+//! Speed–accuracy study: error against time for every element, mesh, method and number of iterations, on this machine.
 //!
-//! A solve answers a load from rest, the hardest it can be asked; what is found once for a mesh (sparsity, ordering, the
-//! factor of the stiffness at rest that `auto` keeps) is there.
+//! A solve starts from rest, which is the hardest case; data computed once per mesh (sparsity, ordering, the factor of
+//! the stiffness at rest that `auto` keeps) already exist.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
 use crate::words::count;
 
-/// What is varied.
+/// Parameters varied in the study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
     /// Element.
@@ -31,19 +31,19 @@ pub struct Setting {
     pub cells: Option<[u32; 2]>,
     /// Method.
     pub method: MethodKind,
-    /// Iterations a solve.
+    /// Number of iterations of a solve.
     pub iterations: u32,
 }
 
 impl Setting {
-    /// The scene's own, with so many iterations.
+    /// Returns the scene's own setting with `iterations` iterations.
     #[must_use]
     pub fn of(scene: &Scene, iterations: u32) -> Self {
         let cells = scene.beam.as_ref().map(|b| b.cells);
         Self { element: scene.element(), cells, method: scene.solver.method, iterations }
     }
 
-    /// The scene on this mesh, with this method, solved to its end.
+    /// Returns the scene with this mesh and method, solved to its end.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
@@ -72,48 +72,49 @@ pub(super) fn cells_words(cells: Option<[u32; 2]>) -> String {
     cells.map_or_else(|| "as meshed".to_owned(), |[along, across]| format!("{along}×{across}"))
 }
 
-/// An error and where it comes from, percent of the true displacement. The parts are lengths of displacements: their sum
-/// bounds the whole.
+/// Error of a result and its parts, percent of the reference's displacement. The parts are lengths of displacements:
+/// their sum is an upper bound of the total.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorSplit {
     /// Distance from the reference solution.
     pub total: f64,
-    /// Error of the mesh (locking): distance of its own exact equilibrium from the reference.
+    /// Error of the mesh (locking): distance of the exact equilibrium on this mesh from the reference.
     pub discretization: f64,
-    /// Of stopping early: from where the method ends on this mesh.
+    /// Error of stopping early: distance from the method's final result on this mesh.
     pub iteration: f64,
-    /// Of the theory: linear theory's end from the exact equilibrium on this mesh.
+    /// Error of the theory: distance of linear theory's final result from the exact equilibrium on this mesh.
     pub model: f64,
 }
 
 impl ErrorSplit {
-    /// The sum of the parts, which the distance from the reference cannot exceed. Settings are compared by it: an iteration
-    /// stopped early that happens to make up for a coarse mesh is luck, not accuracy.
+    /// Returns the sum of the parts, an upper bound of the distance from the reference. Settings are compared by it: an
+    /// early stop that happens to compensate the error of a coarse mesh is luck, not accuracy.
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.discretization + self.iteration + self.model
     }
 }
 
-/// A setting with its price and its error.
+/// Measured time and error of a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    /// What was measured.
+    /// Setting.
     pub setting: Setting,
-    /// Free unknowns.
+    /// Number of free unknowns.
     pub dofs: usize,
-    /// Whether the method had ended by itself by then.
+    /// `true` if the method had converged.
     pub converged: bool,
-    /// Time of a solve: median over repetitions, stage by stage.
+    /// Computing time of a solve, by stage: median over repetitions.
     pub time: Timings,
-    /// Its error.
+    /// Error.
     pub error: ErrorSplit,
-    /// Whether no other measurement is both faster and, by [`ErrorSplit::bound`], closer.
+    /// `true` if no other measurement is both faster and, by [`ErrorSplit::bound`], more accurate.
     pub pareto: bool,
 }
 
 impl Measurement {
-    /// The scene as it was measured: on the setting's mesh, with its method, stopped after as many iterations.
+    /// Returns the scene as measured: on the setting's mesh, with its method, stopped after the same number of
+    /// iterations.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = self.setting.apply(scene);
@@ -121,44 +122,44 @@ impl Measurement {
         scene
     }
 
-    /// `true` if a scene is as [`Self::apply`] makes it.
+    /// Returns `true` if a scene is the result of [`Self::apply`].
     #[must_use]
     pub fn is_applied_to(&self, scene: &Scene) -> bool {
         Setting::of(scene, self.setting.iterations) == self.setting && scene.solver.accept_after == self.accept_after()
     }
 
-    /// Iterations after which its result was taken; 0 where the method had ended by itself.
+    /// Returns the number of iterations after which the result was taken; 0 if the method had converged.
     fn accept_after(&self) -> u32 {
         if self.converged { 0 } else { self.setting.iterations }
     }
 
-    /// Time of a solve, ms.
+    /// Returns the computing time of a solve, ms.
     #[must_use]
     pub fn milliseconds(&self) -> f64 {
         self.time.total().as_secs_f64() * 1e3
     }
 }
 
-/// A whole study.
+/// Speed–accuracy study of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// The scene's name.
+    /// Name of the scene.
     pub scene: String,
-    /// The solution that errors are measured against …
+    /// Reference solution.
     pub reference: Reference,
-    /// … at the first probe.
+    /// Reference of the first probe, at which errors are measured.
     pub against: ProbeReference,
-    /// The error that `auto` was asked for, percent.
+    /// Error requested from `auto`, percent.
     pub asked_percent: f64,
-    /// By element, mesh, method, iterations.
+    /// Measurements, sorted by element, mesh, method, iterations.
     pub measurements: Vec<Measurement>,
 }
 
-/// The most iterations that are looked at, for methods that do not end before.
+/// Largest number of iterations for methods that have not converged before.
 const MOST_ITERATIONS: u32 = 20;
-/// The part of a study's time that goes by before anything is timed.
+/// Fraction of a study's time spent before timing starts.
 const ENDS_SHARE: f64 = 0.1;
-/// The numbers of iterations that are kept.
+/// Numbers of iterations that are recorded.
 const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, MOST_ITERATIONS];
 
 impl Study {
@@ -170,7 +171,7 @@ impl Study {
         Self::observed(scene, extent, &mut |progress, _| observe(progress))
     }
 
-    /// [`Self::new`] whose observer also receives the study as far as it is, each time a mesh is done.
+    /// Measures as [`Self::new`]; the observer also receives the partial study each time a mesh is done.
     ///
     /// # Errors
     /// [`StudyError`].
@@ -181,14 +182,14 @@ impl Study {
     ) -> Result<Self, StudyError> {
         let meshes = meshes(scene, extent);
         let mut study = Self::begin(scene, &mut |progress| observe(progress, None))?;
-        // What is not timed first, on all cores: the timed part is then alone on the machine.
+        // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
         let ends = |mesh: &MeshChoice, _: &CalledOff| MeshEnds::find(scene, mesh);
         let ends = all_done(parallel::map(&meshes, ends, |done| {
             let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
             observe(Progress { fraction, now: "the ends of the methods" }, None)
         }))?;
         let all: f64 = ends.iter().map(MeshEnds::expected_time).sum();
-        // The likely answers first: those of the element that converges fastest.
+        // Start with the element that converges fastest, which is likely to give the best results.
         let mut order: Vec<_> = meshes.iter().zip(&ends).collect();
         order.sort_by_key(|(mesh, _)| mesh.element != finest_element(scene));
         let mut done = 0.0;
@@ -208,10 +209,10 @@ impl Study {
         Ok(study)
     }
 
-    /// [`Self::new`] that ends with what has been measured when it is cancelled; the flag is `true` then.
+    /// Measures as [`Self::new`], but if cancelled returns the measurements so far; the flag is `true` then.
     ///
     /// # Errors
-    /// [`StudyError`]; [`StudyError::Cancelled`] where nothing has been measured.
+    /// [`StudyError`]; [`StudyError::Cancelled`] if nothing has been measured.
     pub fn until_cancelled(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<(Self, bool), StudyError> {
         let mut partial = None;
         let whole = Self::observed(scene, extent, &mut |progress, so_far| {
@@ -224,7 +225,7 @@ impl Study {
         }
     }
 
-    /// A study with its reference solution and nothing measured yet.
+    /// Returns a study with its reference solution and no measurements.
     pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
         let begin = &mut |progress: Progress<'_>| observe(Progress { fraction: 0.0, ..progress });
         let reference = Reference::find(scene, None, Effort::Bounded, begin)?;
@@ -238,8 +239,8 @@ impl Study {
         })
     }
 
-    /// Adds every method on a mesh, and marks the Pareto front. `say` receives the fraction that is done and the setting being
-    /// measured; its error ends the measurement, which then leaves the study unchanged.
+    /// Measures every method on a mesh, and marks the Pareto front. `say` receives the completed fraction and the
+    /// current setting; its error ends the measurement, which then leaves the study unchanged.
     pub(super) fn measure(
         &mut self,
         scene: &Scene,
@@ -256,7 +257,7 @@ impl Study {
         for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
             say(number as f64 / METHODS.len() as f64, &format!("{words}, {}", method.id()))?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
-            // `auto` has no number of iterations to choose: it ends by itself.
+            // `auto` decides itself how many iterations it needs.
             let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };
             let times = times_from_rest(&mut simulation, most);
             simulation.reset();
@@ -267,7 +268,7 @@ impl Study {
                     continue;
                 }
                 let tip = first_probe(&simulation)?;
-                // Where a corotated method ends it is at the exact equilibrium; where not, there is no end.
+                // Converged corotated methods end at the exact equilibrium.
                 let own_end = *if simulation.is_linear() { linear } else { exact };
                 measurements.push(Measurement {
                     setting: Setting { element, cells, method, iterations },
@@ -296,7 +297,7 @@ impl Study {
         }
     }
 
-    /// The measurements no other beats, cheapest first.
+    /// Returns the Pareto-optimal measurements, cheapest first.
     #[must_use]
     pub fn front(&self) -> Vec<&Measurement> {
         let mut front: Vec<&Measurement> = self.measurements.iter().filter(|m| m.pareto).collect();
@@ -304,25 +305,26 @@ impl Study {
         front
     }
 
-    /// Bound of the error of a measurement, percent of the displacement: its own parts, and the error of the reference.
+    /// Returns the bound of the error of a measurement, percent of the displacement: its parts, and the error of the
+    /// reference.
     #[must_use]
     pub fn error_bound(&self, measurement: &Measurement) -> f64 {
         measurement.error.bound() + self.against.own_error_percent
     }
 
-    /// The cheapest measurement whose error is at most so many percent.
+    /// Returns the cheapest measurement whose error is at most `percent`.
     #[must_use]
     pub fn cheapest_within(&self, percent: f64) -> Option<&Measurement> {
         self.front().into_iter().find(|m| self.error_bound(m) <= percent)
     }
 }
 
-/// A mesh to measure on.
+/// Mesh of a study.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MeshChoice {
     pub element: ElementKind,
     pub cells: Option<[u32; 2]>,
-    /// About how long it takes, over others.
+    /// Approximate cost relative to other meshes.
     pub weight: f64,
 }
 
@@ -332,15 +334,15 @@ impl MeshChoice {
     }
 }
 
-/// A mesh with where methods end on it: displacements of the first probe, m.
+/// Mesh with the final results of methods on it: displacements of the first probe, m.
 #[derive(Clone, Debug)]
 pub(super) struct MeshEnds {
     system: Arc<System>,
-    /// Its exact equilibrium …
+    /// Displacement in the exact equilibrium.
     exact: Vector2<f64>,
-    /// … and that of linear theory.
+    /// Displacement by linear theory.
     linear: Vector2<f64>,
-    /// The time it took to find them.
+    /// Time needed to compute them.
     time: Duration,
 }
 
@@ -356,18 +358,19 @@ impl MeshEnds {
         Ok(Self { system, exact, linear, time: start.elapsed() })
     }
 
-    /// About how long its measurement takes, s.
+    /// Returns the approximate time of its measurement, s.
     fn expected_time(&self) -> f64 {
         METHODS.len() as f64 * expected_time(self.time).as_secs_f64()
     }
 }
 
-/// An element that bends needs few rows: these are measured beside cells about as high as long …
+/// Largest number of rows of cells in meshes that are measured in addition to those with square cells; elements without
+/// locking need few rows.
 const MOST_FEW: u32 = 2;
-/// … where their cells are no more than so many times as high as long.
+/// Largest ratio of height to length of such cells.
 const HIGHEST_CELL: f64 = 4.0;
 
-/// The meshes of a scene, coarse to fine for each element.
+/// Returns the meshes of a scene, from coarse to fine for each element.
 pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
     let mut meshes = Vec::new();
     for element in scene.elements() {
@@ -375,7 +378,8 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
             meshes.push(MeshChoice { element, cells: None, weight: 1.0 });
             continue;
         };
-        // About as many nodes along for every element; cells as high as long where the beam allows.
+        // The number of nodes along the beam is about the same for every element; cells are as high as long if
+        // possible.
         let pieces = element.entry().sides[0].len() as u32 - 1;
         let nodes_along: &[u32] = &[5, 10, 20, 40, 80, 160];
         let nodes_along = if extent == Extent::Quick { &nodes_along[..4] } else { nodes_along };
@@ -387,7 +391,7 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
             let few = |across: u32| across <= MOST_FEW && squares / f64::from(across) <= HIGHEST_CELL;
             for across in (1..=as_high).filter(|&across| across == as_high || few(across)) {
                 let nodes = f64::from(along) * f64::from(across) * pieces * pieces;
-                // The setting up of a mesh takes some time too.
+                // The weight includes the setup of the mesh.
                 meshes.push(MeshChoice { element, cells: Some([along, across]), weight: 30.0 + nodes });
             }
         }

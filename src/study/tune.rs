@@ -1,15 +1,15 @@
-//! The cheapest setting that is good enough and fast enough: element, mesh and method chosen for a demand.
+//! Tuning: choice of the cheapest element, mesh and method for a required accuracy and time.
 
 use super::progress::{Extent, Observer, Progress, StudyError, check};
 use super::trade::{Measurement, MeshChoice, MeshEnds, Study, meshes};
 use crate::scene::Scene;
 
-/// What is asked of a solve. What is left out is not asked.
+/// Requirements for a solve; `None` for no requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
-    /// Error, percent of the true displacement.
+    /// Largest error, percent of the exact displacement.
     pub max_error_percent: Option<f64>,
-    /// Time, ms.
+    /// Largest computing time, ms.
     pub max_time_ms: Option<f64>,
 }
 
@@ -31,21 +31,21 @@ impl std::fmt::Display for Demand {
 }
 
 impl Study {
-    /// `true` if a measurement meets a demand; its error and that of the reference count together.
+    /// Returns `true` if a measurement meets a demand; the reference's own error is added to that of the measurement.
     #[must_use]
     pub fn meets(&self, measurement: &Measurement, demand: Demand) -> bool {
         let error = self.error_bound(measurement);
         demand.max_error_percent.is_none_or(|most| error <= most) && demand.time_is_met(measurement)
     }
 
-    /// `false` if the reference's own error is larger than what a demand asks for: of no setting is it known then whether it
-    /// meets the demand.
+    /// Returns `false` if the reference's own error is at least the demanded one, so that it cannot be decided which
+    /// settings meet the demand.
     #[must_use]
     pub fn can_judge(&self, demand: Demand) -> bool {
         demand.max_error_percent.is_none_or(|most| self.against.own_error_percent < most)
     }
 
-    /// The measurements that meet a demand, cheapest first.
+    /// Returns the measurements that meet a demand, cheapest first.
     #[must_use]
     pub fn meeting(&self, demand: Demand) -> Vec<&Measurement> {
         let mut meeting: Vec<&Measurement> = self.measurements.iter().filter(|m| self.meets(m, demand)).collect();
@@ -54,39 +54,39 @@ impl Study {
     }
 }
 
-/// What was chosen for a demand, and why.
+/// Setting chosen for a demand, with the measurements behind the choice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tuning {
-    /// The setting, with what it was measured to cost and to be wrong by: the fastest that meets the demand; the closest
-    /// where only a time is asked, or within the time where the error cannot be had.
+    /// Chosen setting with its measured time and error: the fastest that meets the demand; the most accurate if only a
+    /// time is demanded, or within the time if the error cannot be met.
     pub chosen: Measurement,
-    /// What was asked.
+    /// Demand.
     pub demand: Demand,
     /// `true` if the demand is met.
     pub met: bool,
     /// `true` if the search was cancelled before all meshes were measured.
     pub is_partial: bool,
-    /// Settings measured that end by themselves, and how many of them meet the demand.
+    /// Number of measured settings that converge.
     pub measured: usize,
-    /// See [`Self::measured`].
+    /// Number of these settings that meet the demand.
     pub meeting: usize,
-    /// Everything that was measured.
+    /// All measurements.
     pub study: Study,
 }
 
-/// Meshes this many times the size of one that meets the demand cannot be cheaper.
+/// Size of a mesh, relative to one that meets the demand, beyond which it cannot be cheaper.
 const TOO_FINE: f64 = 3.0;
-/// Nor can finer meshes where the fastest setting of this one takes so many times the time that is asked.
+/// Time of a mesh's fastest setting, relative to the demanded time, beyond which finer meshes are not tried.
 const TOO_SLOW: f64 = 2.0;
 
 impl Tuning {
-    /// Measures a scene on finer and finer meshes until its demand is met, and chooses among the settings that end by
-    /// themselves: a result that merely ran out of iterations is not called converged.
+    /// Measures a scene on finer and finer meshes until its demand is met, and chooses among the settings that
+    /// converge: results at the iteration limit are not considered.
     ///
-    /// A search that is cancelled ends with what has been measured.
+    /// A cancelled search returns a choice from the measurements so far.
     ///
     /// # Errors
-    /// [`StudyError`]; [`StudyError::NotKnown`] where the reference is no better than what is asked.
+    /// [`StudyError`]; [`StudyError::NotKnown`] if the reference is not more accurate than demanded.
     pub fn of(scene: &Scene, demand: Demand, observe: Observer<'_>) -> Result<Self, StudyError> {
         let mut meshes = meshes(scene, Extent::Full);
         meshes.sort_by(|a, b| a.weight.total_cmp(&b.weight));

@@ -1,9 +1,10 @@
-//! rapier2d's soft bodies on the same mesh under the same load, as a game would use them: steps of 1/60 s, damped until
-//! they rest.
+//! Comparison with rapier2d's soft bodies on the same mesh under the same load, as in a game: steps of 1/60 s, damped
+//! until they are at rest.
 //!
-//! Its corotational cells have our energy on three-node triangles (its plane strain made plane stress where the scene
-//! says so), so its equilibrium is that of `t3`, in f32. A static answer has to swing in: the mass that the scene leaves
-//! open and the damping are looked for, and its fastest combination counts.
+//! Its corotational cells have our energy on three-node triangles (its plane strain is converted to plane stress if the
+//! scene requires it), so its equilibrium is that of `t3`, in f32. The static solution is the end of a damped
+//! oscillation: the mass, which the scene does not determine, and the damping are varied, and the fastest combination
+//! counts.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -23,25 +24,25 @@ use warpbeam::{ElementKind, MethodKind, Scene, SceneError, Simulation, Simulatio
 
 mod rapier;
 
-/// How long rapier2d's soft bodies take for a scene's equilibrium, beside our own method: a table (rivals.csv) and a
-/// summary. Takes minutes.
+/// Measure the time rapier2d's soft bodies need for a scene's equilibrium, compared with our own method: a table
+/// (rivals.csv) and a summary. Takes minutes.
 #[derive(Debug, Parser)]
 #[command(name = "rivals")]
 struct Args {
-    /// A built-in scene or a scene file.
+    /// Built-in scene or scene file.
     scene: PathBuf,
     /// Change a value of the scene.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     assignments: Vec<String>,
-    /// The folder to write to; made if it is not there.
+    /// Folder to write to; created if necessary.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Without the finer meshes.
+    /// Omit the finer meshes.
     #[arg(long)]
     quick: bool,
 }
 
-/// Why nothing was measured.
+/// Reason why nothing was measured.
 #[derive(Debug, thiserror::Error)]
 enum Error {
     #[error(transparent)]
@@ -81,57 +82,57 @@ fn run(args: Args) -> Result<String, Error> {
     Ok(summary(&rivals))
 }
 
-/// A moment of a run.
+/// Point in time of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Moment {
-    /// Steps so far.
+    /// Number of steps so far.
     steps: u32,
-    /// Their time.
+    /// Computing time so far.
     time: Duration,
 }
 
-/// One of its solvers on one mesh.
+/// Result of one of rapier2d's solvers on one mesh.
 #[derive(Clone, Debug, PartialEq)]
 struct Rival {
-    /// The fastest way found.
+    /// Fastest combination of parameters.
     swing: Swing,
-    /// Cells along and across; `None` for the mesh of a file.
+    /// Cells along and across; `None` for a mesh file.
     cells: Option<[u32; 2]>,
-    /// Free unknowns.
+    /// Number of free unknowns.
     dofs: usize,
-    /// Median time of a step.
+    /// Median computing time of a step.
     step: Duration,
-    /// When it comes to stay within 1 % of where this mesh rests.
+    /// Start of the time in which it stays within 1 % of the equilibrium on this mesh.
     own: Option<Moment>,
-    /// When it comes to stay within 1 % of the truth.
+    /// Start of the time in which it stays within 1 % of the reference.
     truth: Option<Moment>,
-    /// Distance from the truth at the end, percent.
+    /// Distance from the reference at the end, percent.
     error_percent: f64,
-    /// Of the mesh itself: its exact equilibrium from the truth, percent.
+    /// Error of the mesh: distance of its exact equilibrium from the reference, percent.
     mesh_error_percent: f64,
-    /// What `newton` takes for that equilibrium, from rest, on the same mesh.
+    /// Computing time of `newton` for this equilibrium, from rest, on the same mesh.
     ours: Duration,
 }
 
-/// A displacement counts as reached if its distance from the target is no more than this fraction of the target.
+/// Largest distance from the target, as a fraction of the target, that counts as reached.
 const WITHIN: f64 = 0.01;
-/// What is tried for its fastest answer: paces …
+/// Values of [`Swing::pace`] that are tried.
 const PACES: [f64; 6] = [0.01, 0.02, 0.05, 0.005, 0.1, 0.0025];
-/// … dampings …
+/// Values of [`Swing::damping`] that are tried.
 const DAMPINGS: [f64; 2] = [0.5, 1.0];
-/// … and for `fem` the iterations: its default, and what its manual says that stiff bodies need.
+/// Iteration numbers of `fem` that are tried: the default, and the manual's value for stiff bodies.
 const CG_ITERATIONS: [usize; 2] = [20, 500];
-/// Time after which a combination is given up.
+/// Computing time after which a combination is given up.
 const MOST_TIME: Duration = Duration::from_secs(15);
-/// Steps after which it is.
+/// Number of steps after which a combination is given up.
 const MOST_STEPS: u32 = 6000;
-/// It rests where it has stayed within [`WITHIN`] for so many steps.
+/// Number of steps within [`WITHIN`] after which it counts as being at rest.
 const RESTS: u32 = 200;
 
-/// Cells along the beam.
+/// Numbers of cells along the beam.
 const MESHES: [u32; 4] = [20, 40, 80, 160];
 
-/// The scene on three-node meshes, coarse to fine; on its own where that is from a file.
+/// Returns the scene on three-node meshes, coarse to fine; for a mesh file, on this mesh only.
 fn meshes(scene: &Scene, quick: bool) -> Vec<Scene> {
     let mut scene = scene.clone();
     scene.set_element(ElementKind::T3);
@@ -160,7 +161,7 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
         for solver in RapierSolver::ALL {
             let mut best: Option<Rival> = None;
             for swing in swings(solver) {
-                // What takes longer than the best so far is not the best.
+                // A combination slower than the best one is not needed.
                 let limit = best.as_ref().and_then(|b| b.own).map_or(MOST_TIME, |own| own.time);
                 let body = Rapier::new(&problem, own, swing).ok_or(Error::NotItsScene)?;
                 let run = swing_in(body, [own, truth], limit);
@@ -190,7 +191,7 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
     Ok(rivals)
 }
 
-/// Every way to try.
+/// Returns all combinations of parameters.
 fn swings(solver: RapierSolver) -> Vec<Swing> {
     let iterations = if solver == RapierSolver::Fem { &CG_ITERATIONS[..] } else { &CG_ITERATIONS[..1] };
     let mut swings = Vec::new();
@@ -202,7 +203,7 @@ fn swings(solver: RapierSolver) -> Vec<Swing> {
     swings
 }
 
-/// What a run came to.
+/// Result of a run.
 struct Run {
     step: Duration,
     own: Option<Moment>,
@@ -210,7 +211,7 @@ struct Run {
     end: Vector2<f64>,
 }
 
-/// When something came near for good.
+/// Detector of a lasting arrival at a target.
 #[derive(Default)]
 struct Arrival {
     since: Option<Moment>,
@@ -225,13 +226,14 @@ impl Arrival {
         }
     }
 
-    /// When, if it has been there long enough.
+    /// Returns the time of arrival, if the target was kept long enough.
     fn rests(&self, steps: u32) -> Option<Moment> {
         self.since.filter(|since| steps - since.steps >= RESTS)
     }
 }
 
-/// Steps until it rests at `own` and, if the mesh allows, at the truth, or until it has taken `limit`.
+/// Steps until the body is at rest at `own` and, if the mesh is accurate enough, at the reference, or until `limit` is
+/// exceeded.
 fn swing_in(mut body: Rapier<'_>, [own, truth]: [Vector2<f64>; 2], limit: Duration) -> Run {
     let (mut to_own, mut to_truth) = (Arrival::default(), Arrival::default());
     let reachable = (own - truth).norm() <= WITHIN * truth.norm();
@@ -265,7 +267,7 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// The table as CSV.
+/// Formats the table as CSV.
 fn table(rivals: &[Rival]) -> String {
     let mut text = String::from(
         "solver,cells_along,cells_across,dofs,step_ms,steps_to_own,ms_to_own,steps_to_truth,ms_to_truth,error_percent,mesh_error_percent,newton_ms,pace,damping,cg_iterations\n",
@@ -294,7 +296,7 @@ fn table(rivals: &[Rival]) -> String {
     text
 }
 
-/// The table for people.
+/// Formats the table for display.
 fn summary(rivals: &[Rival]) -> String {
     let mut text = String::from(
         "rapier2d on the same three-node meshes (f32, steps of 1/60 s, the fastest of several masses and dampings), ms:\n\

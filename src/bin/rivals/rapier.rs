@@ -1,4 +1,4 @@
-//! A body of ours in rapier2d's world: an independent implementation of the same energy.
+//! Body in rapier2d's world: an independent implementation of the same energy.
 #![allow(dead_code, reason = "program, bench and tests each use their part")]
 
 use nalgebra::Vector2;
@@ -9,23 +9,23 @@ use rapier2d::prelude::{
 use warpbeam::ElementKind;
 use warpbeam::assembly::Problem;
 
-/// A step, s.
+/// Time step, s.
 const STEP: f32 = 1.0 / 60.0;
 
-/// Its solvers of soft bodies.
+/// rapier2d's solvers of soft bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RapierSolver {
-    /// Implicit Euler, one linear solve a substep.
+    /// Implicit Euler, one linear solve per substep.
     Fem,
-    /// Constraints, swept a few times a substep.
+    /// Constraints, a few iterations per substep.
     Constraints,
 }
 
 impl RapierSolver {
-    /// Both.
+    /// Both solvers.
     pub const ALL: [Self; 2] = [Self::Fem, Self::Constraints];
 
-    /// Its name.
+    /// Returns the name.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -35,20 +35,20 @@ impl RapierSolver {
     }
 }
 
-/// How a body swings to rest: what the statics of a scene leave open.
+/// Parameters of the damped oscillation to rest, which the static scene does not determine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swing {
-    /// The solver.
+    /// Solver.
     pub solver: RapierSolver,
-    /// Turn of the first mode a step, rad: it decides the mass.
+    /// Phase angle of the first mode per step, rad; determines the mass.
     pub pace: f64,
-    /// Damping over the critical one.
+    /// Damping relative to critical damping.
     pub damping: f64,
-    /// Most conjugate gradient iterations a substep, of `fem`.
+    /// Largest number of conjugate gradient iterations per substep of `fem`.
     pub cg_iterations: usize,
 }
 
-/// The world with one body in it.
+/// World with one body.
 pub struct Rapier<'a> {
     problem: &'a Problem,
     world: PhysicsWorld,
@@ -56,9 +56,9 @@ pub struct Rapier<'a> {
 }
 
 impl<'a> Rapier<'a> {
-    /// The body at rest under its load, whose first probe moves by `end`, m, in the end. `None` where a node is fixed in
-    /// one direction only, where a moment turns with its edge, and for elements of more than three nodes: it has none
-    /// of these.
+    /// Creates the body at rest under its load; its first probe finally moves by `end`, m. `None` if a node is fixed in
+    /// one direction only, a moment rotates with its edge, or elements have more than three nodes, which rapier2d does
+    /// not support.
     #[must_use]
     pub fn new(problem: &'a Problem, end: Vector2<f64>, swing: Swing) -> Option<Self> {
         let (mesh, pattern) = (problem.system().mesh(), problem.system().pattern());
@@ -71,7 +71,7 @@ impl<'a> Rapier<'a> {
             return None;
         }
         let vector = |v: &Vector2<f64>| Vector::new(v.x as f32, v.y as f32);
-        // A mass on the spring that the load sees, a quarter of a beam's.
+        // A mass on a spring with the stiffness seen by the load, a quarter of a beam's mass.
         let load: Vector2<f64> = dead_force.iter().sum();
         let frequency = swing.pace / f64::from(STEP);
         let mass = 4.0 * load.norm() / end.norm() / frequency.powi(2);
@@ -85,7 +85,7 @@ impl<'a> Rapier<'a> {
             t.iter().for_each(|&n| masses[n as usize] += area / 3.0);
             cells.push([t[0], t[1], t[2]]);
         }
-        // It knows plane strain only: the moduli whose plane strain has our Lamé constants.
+        // It supports plane strain only: use the moduli whose plane strain has our Lamé constants.
         let poisson = lame.lambda / (2.0 * (lame.lambda + lame.mu));
         let young = 2.0 * lame.mu * (1.0 + poisson) * problem.material().thickness;
         let body = SoftBodyBuilder::new(mesh.nodes().iter().map(vector).collect())
@@ -117,12 +117,12 @@ impl<'a> Rapier<'a> {
         Some(Self { problem, world, handle })
     }
 
-    /// One step of 1/60 s.
+    /// Computes one step of 1/60 s.
     pub fn step(&mut self) {
         self.world.step();
     }
 
-    /// Displacement of the first probe, m.
+    /// Returns the displacement of the first probe, m.
     #[must_use]
     pub fn displacement(&self) -> Vector2<f64> {
         let Some(body) = self.world.soft_bodies.get(self.handle) else { return Vector2::zeros() };

@@ -1,4 +1,4 @@
-//! Linear theory, and how wrong it is: the next terms of the displacement's expansion in the load.
+//! Linear theory and its error, estimated by the next terms of the displacement's expansion in the load.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -11,32 +11,33 @@ use crate::solver::Factor;
 use crate::state::{State, largest};
 use crate::timings::timed;
 
-/// Size of the displacement gradient at which the parts of g are measured: smaller loses digits to rounding, larger lets
-/// higher parts in.
+/// Size of the displacement gradient at which the terms of g are computed: smaller values lose digits to rounding,
+/// larger ones include higher terms.
 const PROBING: f64 = 1e-4;
-/// How many times the load linear theory is checked for stability, so that a load that grows a little again and again is seldom checked.
+/// Multiple of the load at which linear theory is checked for stability, so that a slowly growing load needs few
+/// checks.
 const CHECK_AHEAD: f64 = 2.0;
-/// Two linear solutions have the same shape if they differ by no more than this fraction, up to a factor.
+/// Two linear solutions have the same shape if they differ by at most this fraction, up to a factor.
 const SAME_SHAPE: f64 = 0.1;
 
-/// Koiter's asymptotic expansion from rest: with g(u, λ) = λ f_ext(u) − f_int(u) and u(λ) = λ u₁ + λ² u₂ + λ³ u₃ + …,
-/// K u₁ = f_ext(0) is the linear solution, K u₂ the quadratic part of g along λ u₁, and K u₃ the cubic part along
-/// λ u₁ + λ² u₂.
+/// Koiter's asymptotic expansion from rest: with g(u, λ) = λ f_ext(u) − f_int(u) and u(λ) = λ u₁ + λ² u₂ + λ³ u₃ + …, K
+/// u₁ = f_ext(0) is the linear solution, K u₂ the quadratic part of g along λ u₁, and K u₃ the cubic part along λ u₁ +
+/// λ² u₂.
 ///
-/// The residual force at u₁ itself would say less: on a slender beam its cubic part is large, and cancels against u₂'s
-/// own.
+/// The residual force at u₁ would be a poor estimate: on a slender beam its cubic part is large, and cancels against
+/// that of u₂.
 #[derive(Debug, Default)]
 pub(super) struct Expansion {
-    /// The factor of K.
+    /// Factor of K.
     factor: Option<Factor>,
-    /// The terms u₁, u₂, u₃.
+    /// Terms u₁, u₂, u₃.
     terms: [Vec<Vector2<f64>>; 3],
-    /// A linear solution up to which the body has been found stable.
+    /// A linear solution up to which the body was found stable.
     checked: Option<Vec<Vector2<f64>>>,
     scratch: Option<Scratch>,
 }
 
-/// What is measured on the way, made once.
+/// Work vectors, allocated once.
 #[derive(Debug)]
 struct Scratch {
     rest: State,
@@ -54,17 +55,17 @@ impl Scratch {
 }
 
 impl Expansion {
-    /// The memory without what was found of another stiffness.
+    /// Returns the workspace without results for another stiffness.
     pub(super) fn without_factor(self) -> Self {
         Self { scratch: self.scratch, ..Self::default() }
     }
 
-    /// The linear solution u₁ of the last [`Self::solve`], m.
+    /// Returns the linear solution u₁ of the last [`Self::solve`], m.
     pub(super) fn linear(&self) -> &[Vector2<f64>] {
         &self.terms[0]
     }
 
-    /// Solves for all terms; returns the size of u₂ and u₃ over u₁, the error of u₁.
+    /// Solves for all terms; returns the size of u₂ and u₃ relative to u₁, which is the error of u₁.
     pub(super) fn solve(&mut self, it: &mut Iteration<'_>, report: &mut AutoReport) -> Result<f64, IterationError> {
         let problem = it.problem;
         let system = problem.system();
@@ -98,8 +99,8 @@ impl Expansion {
         });
         let scale = PROBING / gradient.max(f64::MIN_POSITIVE);
         second.fill(Vector2::zeros());
-        // Of g(±λ) half the sum is the even part, which begins with λ²; half the difference the odd one. Along λ u₁ the
-        // linear part of g cancels, along λ u₁ + λ² u₂ the quadratic one too.
+        // Half the sum of g(±λ) is its even part, which begins with λ²; half the difference is its odd part. Along λ u₁
+        // the linear part of g cancels, along λ u₁ + λ² u₂ the quadratic one too.
         for power in [2, 3] {
             timed(&mut it.timings.assemble, || {
                 sum.fill(Vector2::zeros());
@@ -119,7 +120,7 @@ impl Expansion {
         Ok(relative_size(problem, second, first) + relative_size(problem, third, first))
     }
 
-    /// Whether the body is stable under its linear solution; checked once for a shape of it.
+    /// Returns `true` if the body is stable under its linear solution; checked once per shape of the solution.
     pub(super) fn is_stable(&mut self, it: &mut Iteration<'_>, report: &mut AutoReport) -> bool {
         let Self { terms: [first, ..], checked, scratch, .. } = self;
         let covered = checked.as_ref().and_then(|checked| same_shape(first, checked, SAME_SHAPE));
@@ -147,7 +148,7 @@ impl Expansion {
     }
 }
 
-/// The displacement that a factor gives a nodal force; it stays in the workspace too.
+/// Computes the displacement for a nodal force with a factor; the free components also remain in the workspace.
 pub(super) fn solve_nodal(
     it: &mut Iteration<'_>,
     factor: &mut Factor,
@@ -164,9 +165,9 @@ pub(super) fn solve_nodal(
     if free.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(IterationError::NotFinite) }
 }
 
-/// The size of `part` over that of `whole`: of the field, or of what the first probe sees of it if that is more.
+/// Returns the size of `part` relative to `whole`: the larger of that of the nodal field and that at the first probe.
 pub(super) fn relative_size(problem: &Problem, part: &[Vector2<f64>], whole: &[Vector2<f64>]) -> f64 {
-    /// A probe whose displacement is smaller than this fraction of the body's does not measure it.
+    /// Displacement of a probe relative to the body's below which the probe is ignored.
     const AT_REST: f64 = 1e-9;
     let scale = largest(whole);
     if scale == 0.0 {
@@ -177,7 +178,8 @@ pub(super) fn relative_size(problem: &Problem, part: &[Vector2<f64>], whole: &[V
     seen.max(largest(part) / scale)
 }
 
-/// Whether two nodal fields are the same up to a factor, which is returned: within `tolerance` of the first.
+/// Returns the factor between two nodal fields if they are equal up to a factor, within `tolerance` relative to the
+/// first.
 fn same_shape(field: &[Vector2<f64>], other: &[Vector2<f64>], tolerance: f64) -> Option<f64> {
     let along: f64 = field.iter().zip(other).map(|(u, c)| u.dot(c)).sum();
     let of: f64 = other.iter().map(|c| c.norm_squared()).sum();

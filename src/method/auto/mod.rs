@@ -1,13 +1,13 @@
-//! As much as the asked accuracy needs, and no more.
+//! Method `auto`: as much computation as the requested accuracy needs.
 //!
-//! - **No solve** where nothing has changed since the last result.
-//! - **Linear theory** while its error, estimated by the next terms of the displacement's expansion in the load, is small
-//!   ([`Expansion`]).
-//! - **The old factor** while it serves: steps u ← u + M⁻¹ (f_ext − f_int) with the last exact tangent M = A + G,
-//!   factorized anew only where they shrink too slowly (modified Newton).
-//! - **Load stepping** ([`Newton`]) where these steps lead nowhere, or to an unstable state.
+//! - **No solve** if nothing has changed since the last result.
+//! - **Linear theory** while its error, estimated by the next terms of the displacement's expansion in the load, is
+//!   small ([`Expansion`]).
+//! - **The old factor** while it converges fast: steps u ← u + M⁻¹ (f_ext − f_int) with the last exact tangent M = A +
+//!   G, which is factorized again only if the steps shrink too slowly (modified Newton).
+//! - **Load stepping** ([`Newton`]) if these steps diverge, or lead to an unstable state.
 //!
-//! It ends where the estimated error is within the goal, not at a residual.
+//! The method stops when the estimated error is within the requested one, not at a given residual.
 
 use nalgebra::Vector2;
 
@@ -36,54 +36,55 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     start: || Box::<Auto>::default(),
 };
 
-/// The fraction of the asked error that the estimates may use up: the rest is for what estimates leave out.
+/// Fraction of the requested error that the estimates may reach; the rest is a margin for what they omit.
 const USABLE: f64 = 0.5;
-/// A largest rotation, rad, beyond which linear theory need not be asked: a cantilever's is off by 10 % by then.
+/// Largest rotation, rad, beyond which linear theory is not tried: a cantilever's error is then 10 %.
 const LARGEST_LINEAR_ROTATION: f64 = 0.25;
-/// A factor that shrinks steps by less than this is given up: a fresh one wins a few digits for the price of a few such.
+/// Largest ratio of successive steps with an old factor; beyond it a new factor gains a few digits at the cost of a few
+/// steps.
 const SERVES: f64 = 0.3;
-/// Relative residual of a state whose tangent can be trusted. The tangent of the linear solution is not: a tension that
-/// is not there stiffens it, so that its steps are short though the solution is far away.
+/// Relative residual below which the tangent of a state is reused. The tangent of the linear solution is not: its
+/// spurious tension stiffens it, so that its steps are short although the solution is far away.
 const TRUSTED: f64 = 0.01;
-/// A step longer than this fraction of the displacement is not left to an old factor.
+/// Largest step with an old factor, as a fraction of the displacement.
 const LONG: f64 = 0.2;
-/// A factor is used again only if its own step was no longer than this fraction of the displacement: the state it was
-/// made at is near the solution then.
+/// Largest first step of a factor that is reused, as a fraction of the displacement: its state is then near the
+/// solution.
 const NEAR: f64 = 0.05;
-/// Steps after which load stepping takes over: in the basin of a solution three or four do.
+/// Number of steps after which load stepping takes over; near a solution three or four steps suffice.
 const MAX_STEPS: u32 = 15;
 
-/// A factorized tangent and what its steps have shown of it.
+/// Factorized tangent and its observed convergence.
 #[derive(Debug)]
 struct OldTangent {
     factor: Factor,
     definite: bool,
-    /// Whether it is the tangent of a state near enough to equilibrium.
+    /// `true` if it is the tangent of a state close to equilibrium.
     trusted: bool,
-    /// Whether the next step may use it again.
+    /// `true` if the next step may use it again.
     serves: bool,
 }
 
-/// The state of the decisions.
+/// State of the method `auto`.
 #[derive(Debug, Default)]
 pub struct Auto {
     expansion: Expansion,
     tangent: Option<OldTangent>,
-    /// Largest rotation of the state in which linear theory last refused.
+    /// Largest rotation of the state for which linear theory was last rejected, rad.
     refused: Option<f64>,
-    /// The last result: under the same forces nothing has changed.
+    /// Last result: with equal forces nothing has changed.
     accepted: Option<Accepted>,
-    /// Whether the present state is linear theory's.
+    /// `true` if the current state is that of linear theory.
     linear: bool,
     steps: u32,
     lengths: StepLengths,
     newton: Option<Newton>,
     report: AutoReport,
-    /// The last step, over nodes.
+    /// Last step, as a nodal vector.
     step: Vec<Vector2<f64>>,
 }
 
-/// What a result was accepted on.
+/// Data with which a result was accepted.
 #[derive(Debug)]
 struct Accepted {
     residual_force: Vec<Vector2<f64>>,
@@ -92,11 +93,11 @@ struct Accepted {
 }
 
 impl Auto {
-    /// Tries linear theory. Where the state is at rest, or linear theory's, its solution is also the first of Newton's
-    /// steps, and taken; returns whether a step was made.
+    /// Tries linear theory. If the state is at rest or that of linear theory, the solution is also the first Newton
+    /// step and is taken in any case; returns `true` if a step was made.
     fn try_linear(&mut self, it: &mut Iteration<'_>) -> Result<bool, IterationError> {
         if it.problem.hand().is_some() || it.problem.supports().move_the_body() {
-            // The expansion knows dead loads and moments only.
+            // The expansion supports dead loads and moments only.
             self.linear = false;
             return Ok(false);
         }
@@ -114,7 +115,7 @@ impl Auto {
             self.refused = None;
         } else {
             self.report.estimated_error = f64::INFINITY;
-            // At rest nothing is known of how far the load turns the body: there it is always tried.
+            // At rest the rotation under the load is unknown, so linear theory is always tried there.
             self.refused = (turned > 0.0).then_some(turned);
         }
         if self.linear || from_rest {
@@ -127,7 +128,7 @@ impl Auto {
         Ok(false)
     }
 
-    /// One corotated step, with the old factor if that serves.
+    /// Performs one corotated step, with the old factor if it may be reused.
     fn step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         self.step.resize(it.state.displacement.len(), Vector2::zeros());
         let is_put = it.supports_are_at(1.0, Kinematics::Corotated);
@@ -157,7 +158,7 @@ impl Auto {
         Ok(())
     }
 
-    /// The step M⁻¹ (f_ext − f_int), into `step` and the workspace.
+    /// Computes the step M⁻¹ (f_ext − f_int) into `step` and the workspace.
     fn solve_for_step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         let Some(tangent) = &mut self.tangent else { return Ok(()) };
         self.report.solves += 1;
@@ -167,7 +168,7 @@ impl Auto {
         solved
     }
 
-    /// Takes the step in the workspace, which has this size relative to the displacement.
+    /// Applies the step in the workspace, whose size relative to the displacement is `step`.
     fn advance(&mut self, it: &mut Iteration<'_>, step: f64, fresh: bool) {
         it.advance(1.0);
         self.lengths.stepped(it.step_length());
@@ -175,16 +176,17 @@ impl Auto {
             let near = tangent.definite && tangent.trusted && (!fresh || step <= NEAR);
             tangent.serves = near && self.lengths.ratio().is_none_or(|r| r <= SERVES);
         }
-        // What is left is no more than the step just made, where steps at least halve; else their geometric series.
+        // The remaining error is at most the last step if steps at least halve; else it is the sum of their geometric
+        // series.
         self.report.estimated_error = match self.lengths.ratio() {
             Some(ratio) if ratio >= 1.0 => f64::INFINITY,
             Some(ratio) => step * (ratio / (1.0 - ratio)).max(1.0),
-            // One step says nothing of what it leaves: an old factor may be far too stiff for the way left.
+            // A single step gives no estimate: an old factor may be far too stiff for the remaining displacement.
             None => f64::INFINITY,
         };
     }
 
-    /// Load stepping from rest.
+    /// Starts load stepping from rest.
     fn hand_over(&mut self, state: &mut State) -> Verdict {
         state.reset();
         self.newton = Some(Newton::default());
@@ -194,7 +196,7 @@ impl Auto {
     }
 
     fn accept(&mut self, it: &Iteration<'_>) -> Verdict {
-        // Room that is there is used again.
+        // Reuse the allocated vector.
         let mut residual_force = self.accepted.take().map_or_else(Vec::new, |accepted| accepted.residual_force);
         residual_force.clone_from(&it.forces.residual);
         self.accepted = Some(Accepted {
@@ -206,7 +208,7 @@ impl Auto {
     }
 }
 
-/// The largest angle of some rotations, rad.
+/// Returns the largest angle of the rotations, rad.
 fn largest_rotation(r: &[Rotation]) -> f64 {
     r.iter().map(|r| r.angle().abs()).fold(0.0, f64::max)
 }

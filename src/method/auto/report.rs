@@ -1,41 +1,41 @@
-//! What `auto` reports of its decisions.
+//! Report of the decisions of `auto`.
 
-/// What `auto` did for the present result.
+/// Decisions of `auto` for the current result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct AutoReport {
-    /// What it came down to.
+    /// Kind of solution.
     pub decision: Decision,
-    /// Back substitutions.
+    /// Number of back substitutions.
     pub solves: u32,
-    /// Matrices factorized.
+    /// Number of factorized matrices.
     pub factorizations: u32,
-    /// Estimated error of the method (the mesh has its own) relative to the displacement; after load stepping, the
+    /// Estimated error of the method (without that of the mesh) relative to the displacement; after load stepping, the
     /// relative residual. Infinite before the end.
     pub estimated_error: f64,
 }
 
-/// What a result came down to.
+/// Kind of solution that `auto` chose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Decision {
-    /// Not there yet.
+    /// Not finished.
     #[default]
     Undecided,
-    /// No solve: nothing has changed.
+    /// No solve, because nothing has changed.
     Unchanged,
     /// Linear theory.
     Linear,
     /// Corotated steps, all with an old factor.
     OldFactor,
-    /// Corotated steps, factorized anew.
+    /// Corotated steps with a new factor.
     NewFactor,
     /// Load stepping.
     LoadSteps,
 }
 
 impl Decision {
-    /// The word in JSON.
+    /// Returns the identifier in JSON.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {

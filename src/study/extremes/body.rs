@@ -1,24 +1,24 @@
-//! What the atlas bends: beams, of rectangular or distorted cells, and the bodies of mesh files.
+//! Bodies of the stability atlas: beams with rectangular or distorted cells, and bodies from mesh files.
 
 use nalgebra::Vector2;
 
 use crate::mesh::Mesh;
 use crate::scene::{Scene, Source, open};
 
-/// What is bent.
+/// Body of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// A cantilever.
+    /// Cantilever.
     Beam,
-    /// That of the built-in scene of this name.
+    /// Built-in scene with a mesh file, by its name.
     File(&'static str),
 }
 
-/// The built-in scenes on mesh files.
+/// Built-in scenes with mesh files.
 pub const FILES: [&str; 3] = ["bracket", "clip", "cook"];
 
 impl Body {
-    /// The word in tables.
+    /// Returns the identifier in tables.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -28,13 +28,13 @@ impl Body {
     }
 }
 
-/// The built-in scene of this name.
+/// Returns the built-in scene with this name.
 pub(super) fn scene(id: &str) -> Option<Scene> {
     open(&Source { name: id.into(), assignments: Vec::new() }).ok()
 }
 
-/// The mesh of a scene's beam with its columns moved along it by this part of a cell, every other node the other way:
-/// rectangles become trapezoids that point up and down in turn. No cell is turned inside out below one half. `None` where
+/// Returns the mesh of a scene's beam with nodes moved along the beam by this fraction of a cell, with alternating
+/// sign: rectangles become trapezoids that point up and down in turn. Below one half no cell is inverted. `None` if
 /// nothing is moved.
 pub(super) fn distorted(scene: &Scene, distortion: f64) -> Option<Mesh> {
     let beam = scene.beam.as_ref().filter(|_| distortion > 0.0)?;
@@ -51,7 +51,7 @@ pub(super) fn distorted(scene: &Scene, distortion: f64) -> Option<Mesh> {
     for element in mesh.elements() {
         let corners: Vec<_> = element.iter().take(entry.cell.corners.len()).map(|&n| place(mesh.node(n))).collect();
         for (&node, &at) in element.iter().zip(entry.nodes) {
-            // Nodes between corners stay half way: sides stay straight.
+            // Nodes between corners stay half way, so that sides stay straight.
             let weights = (entry.cell.corner_weights)(at);
             nodes[node as usize] = corners.iter().zip(weights).map(|(x, weight)| x * weight).sum();
         }

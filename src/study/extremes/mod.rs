@@ -1,6 +1,6 @@
-//! The stability atlas: every method at the extremes of load, stiffness, Poisson ratio, slenderness and element shape, on
-//! mesh files, and from states no solver should be started in. Each case is classified; nothing in it is ever non-finite
-//! or a panic.
+//! Stability atlas: every method at extremes of load, stiffness, Poisson ratio, slenderness and element shape, on mesh
+//! files, and from extreme initial states. Each case is classified; no case may panic or give values that are not
+//! finite.
 
 mod body;
 pub mod motion;
@@ -19,26 +19,26 @@ use crate::scene::{Axis, ElementKind, Material, MethodKind, Plane, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::words::number;
 
-/// The state a solve starts from; what supports fix stays at rest.
+/// Initial state of a solve; fixed nodes stay at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Start {
-    /// As meshed.
+    /// Rest mesh.
     Rest,
-    /// Every node on the axis: all triangles without area.
+    /// Every node on the axis: all elements without area.
     Flat,
-    /// Turned over about the axis: all triangles inverted.
+    /// Mirrored at the axis: all elements inverted.
     Mirrored,
-    /// Every node somewhere within a height of its place.
+    /// Every node at a random place within one height of its rest position.
     Random,
-    /// Turned by 179° about the clamp.
+    /// Rotated by 179° about the clamp.
     Turned,
 }
 
 impl Start {
-    /// All of them.
+    /// All initial states.
     pub const ALL: [Self; 5] = [Self::Rest, Self::Flat, Self::Mirrored, Self::Random, Self::Turned];
 
-    /// The word in tables.
+    /// Returns the identifier in tables.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -50,14 +50,14 @@ impl Start {
         }
     }
 
-    /// Where a node at rest at `x` starts, for a beam of this height.
+    /// Returns the initial position of a node with rest position `x`, for a beam of this height.
     fn place(self, node: usize, x: Vector2<f64>, height: f64) -> Vector2<f64> {
         match self {
             Self::Rest => x,
             Self::Flat => Vector2::new(x.x, 0.0),
             Self::Mirrored => Vector2::new(x.x, -x.y),
             Self::Random => {
-                // Low-discrepancy: the same numbers on every machine.
+                // Low-discrepancy sequence: the same numbers on every machine.
                 let offset = |k: f64| (k * (node as f64 + 1.0)).fract() - 0.5;
                 x + Vector2::new(offset(0.754_877_666), offset(0.569_840_291)) * (2.0 * height)
             }
@@ -66,18 +66,18 @@ impl Start {
     }
 }
 
-/// One case of the atlas: a cantilever of height 1 m in plane strain, or a built-in scene on a mesh file.
+/// Case of the atlas: a cantilever of height 1 m in plane strain, or a built-in scene with a mesh file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
-    /// What is bent.
+    /// Body.
     pub body: Body,
     /// Element.
     pub element: ElementKind,
     /// Method.
     pub method: MethodKind,
-    /// Where it starts.
+    /// Initial state.
     pub start: Start,
-    /// Load α = P L²/EI, at the tip, across; of a mesh file that of its scene, times α.
+    /// Transverse tip load α = P L²/EI; for a mesh file, the factor of the scene's loads.
     pub alpha: f64,
     /// Young's modulus, Pa.
     pub young: f64,
@@ -85,42 +85,42 @@ pub struct Case {
     pub poisson: f64,
     /// Length over height.
     pub slenderness: f64,
-    /// Length over height of a cell, as far as the beam allows.
+    /// Requested length over height of a cell.
     pub aspect: f64,
-    /// How far nodes are moved along the beam, every other one the other way, over the length of a cell.
+    /// Displacement of nodes along the beam, with alternating sign, as a fraction of the cell length.
     pub distortion: f64,
-    /// Whether the tip is moved across instead of loaded: as far as linear beam theory takes it under the load, α/3 of
-    /// the length, and no farther than [`FARTHEST_TIP`] of it.
+    /// `true` if the tip is moved transversely instead of loaded: by the deflection of linear beam theory under the
+    /// load, α/3 of the length, but at most [`FARTHEST_TIP`] of it.
     pub moved: bool,
 }
 
-/// How far a tip is moved at most, over the length.
+/// Largest prescribed tip displacement, relative to the length.
 pub const FARTHEST_TIP: f64 = 0.8;
 
-/// How a case ended.
+/// Outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Outcome {
-    /// Converged to an equilibrium whose exact tangent is positive definite, no element inverted.
+    /// Converged to an equilibrium with positive definite exact tangent and no inverted element.
     Certified,
-    /// Converged; linear theory has no certificate, and other equilibria may be unstable.
+    /// Converged without certificate: linear theory, or an equilibrium that may be unstable.
     Converged,
-    /// Converged, with elements turned inside out.
+    /// Converged, with inverted elements.
     Inverted,
-    /// Iterating without getting nearer.
+    /// The iteration makes no progress.
     Stalled,
     /// Stopped before the end.
     NotConverged,
 }
 
 impl Outcome {
-    /// How many there are.
+    /// Number of outcomes.
     pub const COUNT: usize = 5;
 
-    /// All of them, best first.
+    /// All outcomes, best first.
     pub const ALL: [Self; Self::COUNT] =
         [Self::Certified, Self::Converged, Self::Inverted, Self::Stalled, Self::NotConverged];
 
-    /// The word in tables.
+    /// Returns the identifier in tables.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -133,28 +133,28 @@ impl Outcome {
     }
 }
 
-/// A case with its outcome.
+/// Case with its outcome.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// What was solved.
+    /// Case.
     pub case: Case,
-    /// How it ended.
+    /// Outcome.
     pub outcome: Outcome,
-    /// Solves taken.
+    /// Number of solves.
     pub iterations: u32,
     /// Relative residual at the end.
     pub residual: f64,
-    /// The bound of rounding in it, where it has converged to working precision only; see [`Simulation::residual_floor`].
+    /// Bound of the residual's rounding error, if the solve has ended at it; see [`Simulation::residual_floor`].
     pub residual_floor: Option<f64>,
-    /// The tip's displacement over the length, or the first probe's over the size: of the last finite state.
+    /// Displacement of the tip over the length, or of the first probe over the size, in the last finite state.
     pub tip: Vector2<f64>,
 }
 
-/// Iterations a case may take.
+/// Iteration limit of a case.
 const MAX_ITERATIONS: u32 = 300;
 
-/// All cases, a few hundred or many thousand: a grid of loads and shapes from rest, every start, distorted cells, and the
-/// scenes on mesh files.
+/// Returns all cases, a few hundred or many thousand: a grid of loads and shapes from rest, all initial states,
+/// distorted cells, and scenes with mesh files.
 #[must_use]
 pub fn cases(extent: Extent) -> Vec<Case> {
     let full = extent == Extent::Full;
@@ -209,7 +209,7 @@ pub fn cases(extent: Extent) -> Vec<Case> {
 }
 
 impl Case {
-    /// The same element and method on a mesh file; `None` where the file has no such elements.
+    /// Returns the case with the same element and method on a mesh file; `None` if the file has no such elements.
     fn on_file(self, id: &'static str, alpha: f64) -> Option<Self> {
         let scene = body::scene(id)?;
         let Material { young, poisson, .. } = scene.material;
@@ -217,12 +217,12 @@ impl Case {
         scene.elements().any(|e| e == self.element).then_some(case)
     }
 
-    /// Whether it is a beam of rectangular cells that starts at rest.
+    /// Returns `true` for a beam with rectangular cells that starts at rest.
     fn is_plain(&self) -> bool {
         (self.body, self.start) == (Body::Beam, Start::Rest) && self.distortion == 0.0
     }
 
-    /// The scene of the case.
+    /// Returns the scene of the case.
     #[must_use]
     pub fn scene(&self) -> Scene {
         if let Body::File(id) = self.body
@@ -235,7 +235,7 @@ impl Case {
             scene.solver.accept_after = 0;
             return scene;
         }
-        /// Cells along are as many as the aspect asks for, up to these.
+        /// Upper limit of the number of cells along the beam.
         const MOST_CELLS: f64 = 200.0;
         let height = 1.0;
         let across = 2;
@@ -261,10 +261,10 @@ impl Case {
         scene
     }
 
-    /// Solves the case and classifies how it ends.
+    /// Solves the case and classifies its outcome.
     ///
     /// # Errors
-    /// What is wrong with its scene, which is a mistake in the atlas.
+    /// [`SimulationError`] if the scene is invalid, which would be a mistake in the atlas.
     pub fn solve(self) -> Result<Entry, SimulationError> {
         let scene = self.scene();
         let mut simulation = match distorted(&scene, self.distortion) {
@@ -274,7 +274,7 @@ impl Case {
         if self.start != Start::Rest {
             let nodes = simulation.system().mesh().nodes().iter().enumerate();
             let u = nodes.map(|(n, x)| self.start.place(n, *x, 1.0) - x).collect::<Vec<_>>();
-            // One vector a node, all finite.
+            // Cannot fail: one vector per node, all finite.
             let _ = simulation.start_from(&u);
         }
         simulation.solve();
@@ -303,7 +303,7 @@ impl Case {
     }
 }
 
-/// The atlas as CSV.
+/// Formats the atlas as CSV.
 #[must_use]
 pub fn table(entries: &[Entry]) -> String {
     let mut text = String::from(
@@ -336,7 +336,7 @@ pub fn table(entries: &[Entry]) -> String {
     text
 }
 
-/// How many cases of each element and method ended how.
+/// Counts the outcomes of each element and method.
 #[must_use]
 pub fn counts(entries: &[Entry]) -> BTreeMap<(&'static str, &'static str), [usize; Outcome::COUNT]> {
     let mut counts = BTreeMap::new();
@@ -355,10 +355,10 @@ pub(crate) fn alphas(entries: &[Entry]) -> Vec<f64> {
     alphas
 }
 
-/// Whether a case is of a kind.
+/// Predicate that selects cases.
 type Kind = fn(&Case) -> bool;
 
-/// Percent of the cases of a kind under a load that end well, as the method counts it; `None` where there are none.
+/// Returns the percentage of successful cases of a kind under a load; `None` if there are no such cases.
 fn percent_well(
     entries: &[Entry],
     (element, method): (ElementKind, MethodKind),
@@ -374,7 +374,7 @@ fn percent_well(
     (all > 0).then(|| 100.0 * here.filter(well).count() as f64 / all as f64)
 }
 
-/// The counts for people, and where each method stops working.
+/// Formats the counts for display, and where each method stops converging.
 #[must_use]
 pub fn summary(entries: &[Entry]) -> String {
     let mut text = format!("{} cases, beams in plane strain\n\nelement method ", entries.len());

@@ -1,4 +1,4 @@
-//! The stability atlas in time: every integrator at the extremes of stiffness, time step and weight.
+//! Stability atlas of motions: every integrator at extremes of stiffness, time step and weight.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,47 +9,47 @@ use crate::scene::{ElementKind, IntegratorKind, Material, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::words::number;
 
-/// One case: a beam of 1 m × 0.1 m, clamped at one end, is let go from horizontal and falls under its weight.
+/// Case: a beam of 1 m × 0.1 m, clamped at one end, is released from horizontal and falls under its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionCase {
     /// Element.
     pub element: ElementKind,
     /// Integrator.
     pub integrator: IntegratorKind,
-    /// Solves a step, or a stage of one; 0: as many as the tolerance takes.
+    /// Solves per step, or per stage of one; 0 iterates to the tolerance.
     pub iterations: u32,
     /// Young's modulus, Pa.
     pub young: f64,
     /// Time step, s.
     pub time_step: f64,
-    /// Acceleration of its weight, m/s².
+    /// Gravitational acceleration, m/s².
     pub gravity: f64,
 }
 
-/// How a motion ended.
+/// Outcome of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MotionOutcome {
-    /// It took all its steps, and no energy came from nowhere.
+    /// All steps were computed without spurious energy.
     Finished,
-    /// The same, with elements turned inside out at the end.
+    /// All steps were computed without spurious energy, with inverted elements at the end.
     Inverted,
-    /// It took all its steps, and the integrator added more than a hundredth of the largest kinetic energy.
+    /// All steps were computed, but the integrator added more than a hundredth of the largest kinetic energy.
     GainedEnergy,
-    /// A number was not finite, or the body was gone.
+    /// A value was not finite, or the body moved away too far.
     Exploded,
-    /// A step failed, however short.
+    /// A step failed even at the smallest length.
     Stopped,
 }
 
 impl MotionOutcome {
-    /// How many there are.
+    /// Number of outcomes.
     pub const COUNT: usize = 5;
 
-    /// All of them, best first.
+    /// All outcomes, best first.
     pub const ALL: [Self; Self::COUNT] =
         [Self::Finished, Self::Inverted, Self::GainedEnergy, Self::Exploded, Self::Stopped];
 
-    /// The word in tables.
+    /// Returns the identifier in tables.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -62,31 +62,31 @@ impl MotionOutcome {
     }
 }
 
-/// A case with its outcome.
+/// Case with its outcome.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionEntry {
-    /// What was run.
+    /// Case.
     pub case: MotionCase,
-    /// How it ended.
+    /// Outcome.
     pub outcome: MotionOutcome,
-    /// Time steps taken.
+    /// Number of time steps.
     pub steps: u64,
-    /// Solves taken.
+    /// Number of solves.
     pub solves: u64,
-    /// Times that a step failed and was halved.
+    /// Number of failed steps that were halved.
     pub halvings: u64,
-    /// Energy that the integrator has added, over the largest kinetic energy.
+    /// Energy added by the integrator, relative to the largest kinetic energy.
     pub drift: f64,
-    /// The tip's displacement at the end, m: of the last finite state.
+    /// Displacement of the tip at the end, m, in the last finite state.
     pub tip: [f64; 2],
 }
 
-/// Time steps of a case.
+/// Time steps per case.
 const STEPS: u32 = 100;
-/// Energy added, over the largest kinetic energy, that is called gained.
+/// Largest energy added, relative to the largest kinetic energy, that does not count as gained.
 const GAINED: f64 = 0.01;
 
-/// Integrators with numbers of solves that make a difference.
+/// Iterates over integrators and the numbers of solves that make a difference for them.
 pub(crate) fn variants() -> impl Iterator<Item = (IntegratorKind, u32)> {
     INTEGRATORS.iter().flat_map(|i| {
         let solves: &[u32] = if i.is_explicit() || i.always_iterates { &[0] } else { &[1, 0] };
@@ -94,7 +94,7 @@ pub(crate) fn variants() -> impl Iterator<Item = (IntegratorKind, u32)> {
     })
 }
 
-/// An integrator in words, with how often it solves where that makes a difference.
+/// Describes an integrator, with its number of solves if that makes a difference.
 pub(crate) fn variant_words(integrator: IntegratorKind, iterations: u32) -> String {
     let entry = integrator.entry();
     match iterations {
@@ -105,7 +105,7 @@ pub(crate) fn variant_words(integrator: IntegratorKind, iterations: u32) -> Stri
     }
 }
 
-/// All cases.
+/// Returns all cases.
 #[must_use]
 pub fn cases(extent: Extent) -> Vec<MotionCase> {
     let full = extent == Extent::Full;
@@ -129,10 +129,10 @@ pub fn cases(extent: Extent) -> Vec<MotionCase> {
 }
 
 impl MotionCase {
-    /// The scene of the case.
+    /// Returns the scene of the case.
     #[must_use]
     pub fn scene(&self) -> Scene {
-        // As many nodes along for every element.
+        // The number of nodes along the beam is the same for every element.
         let pieces = self.element.entry().sides[0].len() as u32 - 1;
         let mut scene = Scene::beam(1.0, 0.1)
             .with_cells(20 / pieces, 1)
@@ -147,10 +147,10 @@ impl MotionCase {
         scene
     }
 
-    /// Runs the case and classifies how it ends.
+    /// Runs the case and classifies its outcome.
     ///
     /// # Errors
-    /// What is wrong with its scene, which is a mistake in the atlas.
+    /// [`SimulationError`] if the scene is invalid, which would be a mistake in the atlas.
     pub fn run(self) -> Result<MotionEntry, SimulationError> {
         let mut simulation = Simulation::new(&self.scene())?;
         simulation.solve();
@@ -169,7 +169,7 @@ impl MotionCase {
     }
 }
 
-/// The atlas in time as CSV.
+/// Formats the atlas of motions as CSV.
 #[must_use]
 pub fn table(entries: &[MotionEntry]) -> String {
     let mut text = String::from(
@@ -198,7 +198,7 @@ pub fn table(entries: &[MotionEntry]) -> String {
     text
 }
 
-/// How many cases of each element and integrator, with its solves a step, ended how.
+/// Counts the outcomes of each element, integrator and number of solves per step.
 #[must_use]
 pub fn counts(entries: &[MotionEntry]) -> BTreeMap<(&'static str, &'static str, u32), [usize; MotionOutcome::COUNT]> {
     let mut counts = BTreeMap::new();
@@ -210,7 +210,7 @@ pub fn counts(entries: &[MotionEntry]) -> BTreeMap<(&'static str, &'static str, 
     counts
 }
 
-/// The counts for people.
+/// Formats the counts for display.
 #[must_use]
 pub fn summary(entries: &[MotionEntry]) -> String {
     let mut text = format!(

@@ -1,5 +1,5 @@
-//! The trade in time: error of the first probe's path against the time of computing it, for every integrator, time step,
-//! number of solves, method, element and mesh, on this machine.
+//! Speed–accuracy study of motions: error of the first probe's path against computing time, for every integrator, time
+//! step, number of solves, method, element and mesh, on this machine.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -27,10 +27,10 @@ mod plan;
 mod reference;
 mod report;
 
-/// Milliseconds that a simulated second may take where it is to be seen as it happens.
+/// Largest computing time per simulated second, ms, for which a motion runs in real time.
 pub const REAL_TIME: f64 = 1e3;
 
-/// What is varied.
+/// Parameters varied in the study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MotionSetting {
@@ -40,16 +40,16 @@ pub struct MotionSetting {
     pub cells: Option<[u32; 2]>,
     /// Integrator.
     pub integrator: IntegratorKind,
-    /// Theory and matrix. Of an explicit integrator, which has no matrix, only the theory.
+    /// Method: theory and matrix. For an explicit integrator, which has no matrix, only the theory.
     pub method: MethodKind,
     /// Time step, s.
     pub time_step: f64,
-    /// Solves a step, or a stage of one; 0: as many as the solver's tolerance takes.
+    /// Solves per step, or per stage of one; 0 iterates to the solver's tolerance.
     pub iterations: u32,
 }
 
 impl MotionSetting {
-    /// The setting of a scene.
+    /// Returns the setting of a scene.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let dynamics = &scene.dynamics;
@@ -63,7 +63,7 @@ impl MotionSetting {
         }
     }
 
-    /// The scene with this setting.
+    /// Returns the scene with this setting.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let Self { element, cells, method, iterations, .. } = *self;
@@ -74,7 +74,7 @@ impl MotionSetting {
         scene
     }
 
-    /// How often a step, or a stage of one, is solved, in words.
+    /// Describes the number of solves per step, or per stage of one.
     fn solves_words(&self) -> String {
         let entry = self.integrator.entry();
         match self.iterations {
@@ -99,7 +99,7 @@ impl std::fmt::Display for MotionSetting {
     }
 }
 
-/// A time step in words: `1/60 s` where that is what it is.
+/// Describes a time step: `1/60 s` if it is that fraction.
 fn step_words(step: f64) -> String {
     let rate = 1.0 / step;
     if rate >= 1.5 && (rate - rate.round()).abs() < 1e-6 * rate {
@@ -109,45 +109,45 @@ fn step_words(step: f64) -> String {
     }
 }
 
-/// How far the first probe's path is from the reference's, and where that comes from: largest distances at common times,
-/// percent of how far the reference's path leads. The whole is no larger than the sum of the parts.
+/// Error of the first probe's path and its parts: largest distances at common times, percent of the size of the
+/// reference's path. The total is at most the sum of the parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PathError {
-    /// From the reference.
+    /// Distance from the reference.
     pub total: f64,
-    /// The same, the root of the mean square over time.
+    /// Root of the mean square over time of the distance from the reference.
     pub rms: f64,
-    /// Of the mesh: its own motion, with the reference's steps, from the reference.
+    /// Error of the mesh: distance of the motion on this mesh, computed with the reference's steps, from the reference.
     pub discretization: f64,
-    /// Of time steps, solves and lumped masses: from the mesh's own motion under the same theory.
+    /// Error of time steps, solves and lumped masses: distance from the motion on this mesh by the same theory.
     pub integration: f64,
-    /// Of the theory: linear theory's own motion on the mesh from the corotated one.
+    /// Error of the theory: distance between the motions by linear and corotated theory on this mesh.
     pub model: f64,
 }
 
 impl PathError {
-    /// The sum of the parts. Settings are compared by it: a long step that happens to make up for a coarse mesh is luck,
-    /// not accuracy.
+    /// Returns the sum of the parts. Settings are compared by it: a long step that happens to compensate the error of a
+    /// coarse mesh is luck, not accuracy.
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.discretization + self.integration + self.model
     }
 }
 
-/// How a motion came to its end.
+/// End of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// At the end of the time that is studied.
+    /// At the end of the studied time.
     Finished,
-    /// It could not go on.
+    /// Stopped early.
     Stopped,
-    /// It would have taken too many steps: only its beginning was run, for its time.
+    /// Too many steps: only the beginning was computed, to measure its time.
     CutShort,
 }
 
 impl Ending {
-    /// The word in tables.
+    /// Returns the identifier in tables.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -158,19 +158,19 @@ impl Ending {
     }
 }
 
-/// What an integrator does to the energy of a motion.
+/// Effect of an integrator on the energy of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergyBehaviour {
-    /// Neither: no more than a ten-thousandth of the largest kinetic energy.
+    /// Changes the energy by less than a ten-thousandth of the largest kinetic energy.
     Kept,
-    /// Takes.
+    /// Removes energy.
     Lost,
-    /// Adds.
+    /// Adds energy.
     Gained,
 }
 
 impl EnergyBehaviour {
-    /// Of a drift, percent of the largest kinetic energy.
+    /// Classifies a drift, percent of the largest kinetic energy.
     #[must_use]
     pub fn of(drift_percent: f64) -> Self {
         const KEPT: f64 = 0.01;
@@ -181,7 +181,7 @@ impl EnergyBehaviour {
         }
     }
 
-    /// The word in tables.
+    /// Returns the identifier in tables.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -192,70 +192,71 @@ impl EnergyBehaviour {
     }
 }
 
-/// A setting with its price, its error and what it does to energy.
+/// Measured time, error and energy drift of a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MotionMeasurement {
-    /// What was measured.
+    /// Setting.
     pub setting: MotionSetting,
-    /// Free unknowns.
+    /// Number of free unknowns.
     pub dofs: usize,
-    /// How it ended.
+    /// End of the motion.
     pub ending: Ending,
-    /// Time of computing a simulated second, ms, without the energy ledger: median over repetitions.
+    /// Computing time per simulated second, ms, without the energy ledger: median over repetitions.
     pub milliseconds: f64,
-    /// Its error; `None` of a motion that did not finish.
+    /// Error; `None` for a motion that did not finish.
     pub error: Option<PathError>,
-    /// Energy that the integrator has added by the end, percent of the largest kinetic energy.
+    /// Energy added by the integrator, percent of the largest kinetic energy.
     pub drift_percent: f64,
-    /// Steps and solves.
+    /// Numbers of steps and solves.
     pub counts: Counts,
-    /// Whether no other measurement is both faster and closer; errors below the reference's own are alike.
+    /// `true` if no other measurement is both faster and more accurate; errors below the reference's own error count as
+    /// equal.
     pub pareto: bool,
 }
 
 impl MotionMeasurement {
-    /// What the integrator does to energy.
+    /// Returns the effect of the integrator on the energy.
     #[must_use]
     pub fn energy(&self) -> EnergyBehaviour {
         EnergyBehaviour::of(self.drift_percent)
     }
 }
 
-/// A whole study of a motion.
+/// Speed–accuracy study of a motion.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MotionStudy {
-    /// The scene's name.
+    /// Name of the scene.
     pub scene: String,
-    /// Time that is simulated, s.
+    /// Simulated time, s.
     pub duration: f64,
-    /// Time that the scene has, s.
+    /// Duration of the scene, s.
     pub scene_duration: f64,
-    /// The mesh nearest to the scene's own, by which integrators are compared.
+    /// Cells of the mesh nearest to the scene's own, on which integrators are compared.
     pub own_mesh: Option<[u32; 2]>,
-    /// What errors are measured against.
+    /// Reference solution.
     pub reference: MotionReference,
-    /// By element, mesh, integrator, step, method, solves.
+    /// Measurements, sorted by element, mesh, integrator, step, method, solves.
     pub measurements: Vec<MotionMeasurement>,
-    /// Whether it was called off before everything was measured.
+    /// `true` if the study was cancelled before everything was measured.
     pub is_partial: bool,
 }
 
-/// Runs of a setting that are timed, at most.
+/// Largest number of timed runs per setting.
 const RUNS: usize = 5;
-/// Steps after which the time of a motion that is cut short is known.
+/// Number of steps after which the time of a shortened motion is known.
 const ENOUGH_STEPS: u32 = 500;
 
-/// About the parts of a study's time that go by before its meshes are measured: for the reference solution …
+/// Approximate fraction of a study's time spent on the reference solution.
 const REFERENCE_SHARE: f64 = 0.1;
-/// … and for every mesh's own motion.
+/// Approximate fraction of a study's time spent on the reference motion of every mesh.
 const OWN_SHARE: f64 = 0.1;
-/// About the part of a mesh's time that goes by before its settings are timed.
+/// Approximate fraction of a mesh's time spent before its settings are timed.
 const FIRST_RUNS_SHARE: f64 = 0.35;
 
 impl MotionStudy {
-    /// Measures a scene in motion.
+    /// Measures a dynamic scene.
     ///
     /// # Errors
     /// [`StudyError`].
@@ -289,7 +290,7 @@ impl MotionStudy {
             let measured = study
                 .measure(studied, mesh, meshed, &mut |part, now| observe(Progress { fraction: fraction(part), now }));
             match measured {
-                // What has been measured is worth keeping.
+                // Keep the measurements made so far.
                 Err(StudyError::Cancelled) if !study.measurements.is_empty() => {
                     study.is_partial = true;
                     break;
@@ -302,7 +303,7 @@ impl MotionStudy {
         Ok(study)
     }
 
-    /// Adds every setting of a mesh. `say` is told which part of it is done and what is measured, and calls it off.
+    /// Measures every setting on a mesh. `say` receives the completed fraction and the current setting, and can cancel.
     fn measure(
         &mut self,
         studied: Studied<'_>,
@@ -310,7 +311,7 @@ impl MotionStudy {
         meshed: &Meshed,
         say: &mut dyn FnMut(f64, &str) -> ControlFlow<()>,
     ) -> Result<(), StudyError> {
-        // What is not timed first, on all cores: the timed part is then alone on the machine.
+        // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
         let first = |job: &Job, called_off: &CalledOff| {
             let (setting, steps) = job.setting(mesh, meshed.critical, studied.samples);
             FirstRun::new(studied, meshed, setting, steps, called_off)
@@ -362,19 +363,19 @@ impl MotionStudy {
         }
     }
 
-    /// An error as far as the reference can tell, percent.
+    /// Returns an error limited from below by the reference's own error, percent.
     #[must_use]
     pub fn resolved(&self, percent: f64) -> f64 {
         percent.max(self.reference.error_percent)
     }
 
-    /// `true` if the error of a measurement is sure to be at most so many percent; the reference's own error is added to it.
+    /// Returns `true` if the error of a measurement plus the reference's own error is at most `percent`.
     #[must_use]
     pub fn is_within(&self, measurement: &MotionMeasurement, percent: f64) -> bool {
         measurement.error.is_some_and(|e| e.bound() + self.reference.error_percent <= percent)
     }
 
-    /// The measurements no other beats, fastest first.
+    /// Returns the Pareto-optimal measurements, fastest first.
     #[must_use]
     pub fn front(&self) -> Vec<&MotionMeasurement> {
         let mut front: Vec<_> = self.measurements.iter().filter(|m| m.pareto).collect();
@@ -382,7 +383,7 @@ impl MotionStudy {
         front
     }
 
-    /// The fastest measurement whose error is at most so many percent; the reference's own error is added to it.
+    /// Returns the fastest measurement whose error plus the reference's own error is at most `percent`.
     #[must_use]
     pub fn fastest_within(&self, percent: f64) -> Option<&MotionMeasurement> {
         self.fastest_of(percent, |_| true)
@@ -394,7 +395,7 @@ impl MotionStudy {
     }
 }
 
-/// A scene and how it is studied.
+/// Scene with the sampling times and extent of the study.
 #[derive(Clone, Copy)]
 struct Studied<'a> {
     scene: &'a Scene,
@@ -402,14 +403,14 @@ struct Studied<'a> {
     plan: &'a Plan,
 }
 
-/// A mesh with what is found once for it.
+/// Mesh with data computed once for it.
 struct Meshed {
     system: Arc<System>,
-    /// The first probe's path on this mesh with the reference's steps …
+    /// Path of the first probe on this mesh with the reference's steps.
     exact: Vec<Vector2<f64>>,
-    /// … and under linear theory.
+    /// The same path by linear theory.
     linear: Vec<Vector2<f64>>,
-    /// The explicit integrator's critical step, s.
+    /// Critical step of the explicit integrator, s.
     critical: Option<f64>,
 }
 
@@ -428,19 +429,18 @@ impl Meshed {
     }
 }
 
-/// The first run of a setting, for the books and the path; its time is nobody's. What is kept of it is little beside the
-/// simulation.
+/// Untimed first run of a setting: records path, energy and counts. It needs much less memory than the simulation.
 struct FirstRun {
     setting: MotionSetting,
-    /// Steps between samples.
+    /// Number of steps between samples.
     steps_of_sample: u32,
-    /// All its steps.
+    /// Total number of steps.
     steps: u32,
     ending: Ending,
-    /// Of the first probe at the samples; empty where it is cut short.
+    /// Displacement of the first probe at the samples, m; empty if the run was shortened.
     path: Vec<Vector2<f64>>,
     counts: Counts,
-    /// Energy that the integrator has added, over the largest kinetic energy.
+    /// Energy added by the integrator, relative to the largest kinetic energy.
     drift: f64,
 }
 
@@ -471,11 +471,11 @@ impl FirstRun {
         Ok(Self { setting, steps_of_sample, steps, ending, path, counts, drift })
     }
 
-    /// Time of computing a simulated second, ms, timed by runs like this.
+    /// Returns the computing time per simulated second, ms, measured by repeating the run.
     fn milliseconds(&self, studied: Studied<'_>, mesh: &Meshed) -> Result<f64, StudyError> {
         let mut simulation = Simulation::with_system(&self.setting.apply(studied.scene), mesh.system.clone())?;
         simulation.keep_ledger(false);
-        // It warms up caches and clocks, and makes what is made once for a simulation.
+        // Warms up caches and clocks, and initialises everything that is computed once per simulation.
         run(&mut simulation, self.steps.min(self.steps_of_sample));
         let mut simulated = 0.0;
         let runs = Runs { count: 1..=RUNS, enough: studied.plan.timing };
@@ -483,13 +483,13 @@ impl FirstRun {
             run(simulation, self.steps);
             simulated = simulation.state().time();
         });
-        // A motion that stops at once is as slow as the step it could not take.
+        // A motion that stops in its first step counts as long as that step.
         let seconds = if simulated > 0.0 { simulated } else { self.setting.time_step };
         Ok(time.as_secs_f64().max(Duration::from_nanos(1).as_secs_f64()) * 1e3 / seconds)
     }
 }
 
-/// Takes so many steps, or as many as there are.
+/// Computes up to `steps` steps, until the motion stops.
 fn run(simulation: &mut Simulation, steps: u32) {
     for _ in 0..steps {
         if matches!(simulation.step(), Status::Stopped(_)) {
@@ -498,7 +498,7 @@ fn run(simulation: &mut Simulation, steps: u32) {
     }
 }
 
-/// Displacements of the first probe at the samples, m, from the start of a motion, as far as it goes.
+/// Returns the displacements of the first probe at the samples, m, from the start of a motion until it stops.
 fn path(
     simulation: &mut Simulation,
     samples: Samples,

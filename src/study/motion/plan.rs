@@ -1,4 +1,4 @@
-//! What is looked at: meshes, integrators, time steps, methods and numbers of solves, and the times of comparison.
+//! Plan of a study of motions: meshes, integrators, time steps, methods and numbers of solves, and sampling times.
 
 use std::time::Duration;
 
@@ -8,23 +8,23 @@ use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::progress::Extent;
 
-/// How much is looked at.
+/// Size of a study.
 pub(super) struct Plan {
-    /// The longest time that is simulated, s, and in time steps of the scene.
+    /// Longest simulated time, in s and in time steps of the scene.
     longest: (f64, f64),
-    /// The longest time step over the scene's.
+    /// Longest time step relative to the scene's.
     coarsest: f64,
-    /// Steps in the longest one.
+    /// Numbers of steps in the longest step.
     steps: &'static [u32],
-    /// Solves a step.
+    /// Numbers of solves per step; 0 iterates to the tolerance.
     solves: &'static [u32],
-    /// Nodes along the beam over those of the scene's mesh.
+    /// Numbers of nodes along the beam relative to the scene's mesh.
     meshes: &'static [f64],
-    /// The same of the reference.
+    /// Number of nodes along the beam of the reference's mesh, relative to the scene's.
     pub reference_mesh: f64,
-    /// More steps than these are not run to their end.
+    /// Largest number of steps of a run; longer ones are shortened.
     pub most_steps: u32,
-    /// Time that is given to timing a setting.
+    /// Time spent on timing a setting.
     pub timing: Duration,
 }
 
@@ -50,17 +50,17 @@ const FULL: Plan = Plan {
     timing: Duration::from_millis(200),
 };
 
-/// Steps of the reference in the shortest of the others.
+/// Number of reference steps in the shortest step of the settings.
 const REFERENCE_STEPS: u32 = 4;
-/// The explicit integrator's step over its critical one.
+/// Step of the explicit integrator relative to its critical step.
 const BELOW_CRITICAL: f64 = 0.9;
-/// A scene shorter than so many of its steps is studied with shorter ones.
+/// Smallest number of steps in a scene; a shorter scene is studied with shorter steps.
 const FEWEST_STEPS: f64 = 8.0;
-/// The finest mesh of the settings has no more nodes along and across than this.
+/// Largest number of nodes, along times across, of a mesh with `factor` 1.
 const MOST_NODES: f64 = 1000.0;
 
 impl Plan {
-    /// Steps of the reference between samples.
+    /// Returns the number of reference steps between samples.
     pub fn reference_steps(&self) -> u32 {
         self.steps.iter().copied().max().unwrap_or(1) * REFERENCE_STEPS
     }
@@ -75,12 +75,12 @@ impl Extent {
     }
 }
 
-/// Times at which paths are compared: multiples of the longest time step.
+/// Sampling times of paths: multiples of the longest time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Samples {
-    /// Time between two, s.
+    /// Time between two samples, s.
     pub interval: f64,
-    /// How many, without the start.
+    /// Number of samples, without the start.
     pub count: u32,
 }
 
@@ -98,37 +98,38 @@ impl Samples {
     }
 }
 
-/// Cells of a mesh whose nodes along and across are `factor` times the scene's; `None` where the mesh is a file's.
+/// Returns the cells of a mesh whose numbers of nodes along and across are `factor` times the scene's; `None` for a
+/// mesh file.
 pub(super) fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
     let beam = scene.beam.as_ref()?;
     let pieces = |element: ElementKind| element.entry().sides[0].len() as f64 - 1.0;
     let own = beam.cells.map(|n| f64::from(n) * pieces(beam.element));
-    // A scene of a very fine mesh is studied on coarser ones.
+    // A scene with a very fine mesh is studied on coarser ones.
     let factor = factor * (MOST_NODES / (own[0] * own[1])).sqrt().min(1.0);
     Some(own.map(|n| (n * factor / pieces(element)).round().max(1.0) as u32))
 }
 
-/// A mesh and what is measured on it.
+/// Mesh and the settings measured on it.
 pub(super) struct MeshPlan {
     pub element: ElementKind,
     pub cells: Option<[u32; 2]>,
     pub jobs: Vec<Job>,
 }
 
-/// What is measured on a mesh.
+/// Setting measured on a mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Job {
     integrator: &'static IntegratorEntry,
-    /// Steps between samples; `None`: what stability asks for.
+    /// Number of steps between samples; `None` for as many as stability requires.
     steps: Option<u32>,
     method: MethodKind,
     iterations: u32,
-    /// About how long it takes, over others.
+    /// Approximate cost relative to other settings.
     pub weight: f64,
 }
 
 impl Job {
-    /// As a setting of a mesh whose critical step is known, and its steps between samples.
+    /// Returns the setting on a mesh with a known critical step, and its number of steps between samples.
     pub fn setting(self, mesh: &MeshPlan, critical: Option<f64>, samples: Samples) -> (MotionSetting, u32) {
         let Self { integrator, method, iterations, .. } = self;
         let MeshPlan { element, cells, .. } = *mesh;
@@ -143,7 +144,7 @@ impl Job {
 }
 
 impl MeshPlan {
-    /// Every mesh of a scene, coarse to fine for each element.
+    /// Returns every mesh of a scene, from coarse to fine for each element.
     pub fn all(scene: &Scene, extent: Extent) -> Vec<Self> {
         let mut all = Vec::new();
         for element in scene.elements() {
@@ -154,13 +155,13 @@ impl MeshPlan {
         all
     }
 
-    /// About how long its jobs take, over those of others.
+    /// Returns the approximate cost of all its settings relative to other meshes.
     pub fn weight(&self) -> f64 {
         self.jobs.iter().map(|job| job.weight).sum()
     }
 }
 
-/// Everything that is measured on a mesh.
+/// Returns all settings measured on a mesh.
 fn jobs(cells: Option<[u32; 2]>, extent: Extent) -> Vec<Job> {
     let plan = extent.plan();
     let nodes = cells.map_or(1.0, |[along, across]| f64::from(along * across));
@@ -180,22 +181,22 @@ fn jobs(cells: Option<[u32; 2]>, extent: Extent) -> Vec<Job> {
     jobs
 }
 
-/// The methods that make a difference.
+/// Returns the methods that give different results.
 fn methods(integrator: &IntegratorEntry, extent: Extent) -> Vec<MethodKind> {
     let all = METHODS.iter().map(|m| m.kind);
     if integrator.is_explicit() {
-        // Without a matrix there are two theories.
+        // Without a matrix, methods differ only in the theory.
         return vec![MethodKind::Linear, MethodKind::Newton];
     }
     all.filter(|&m| extent == Extent::Full || m != MethodKind::Warped).collect()
 }
 
-/// The numbers of solves that make a difference.
+/// Returns the numbers of solves that give different results.
 fn solves(integrator: &IntegratorEntry, method: MethodKind, plan: &Plan) -> &'static [u32] {
     if integrator.is_explicit() || integrator.always_iterates {
         &[0]
     } else if method == MethodKind::Linear {
-        // One solve is exact.
+        // A single solve is exact.
         &[1]
     } else {
         plan.solves

@@ -1,4 +1,4 @@
-//! The path that others are measured against: energy–momentum with short steps on a fine mesh.
+//! Reference path of a motion: energy–momentum method with short steps on a fine mesh.
 
 use std::sync::Arc;
 
@@ -16,24 +16,24 @@ use crate::study::progress::{Extent, Observer, Progress, StudyError, all_done};
 use crate::study::reference::system_of;
 use crate::study::trade::mesh_words;
 
-/// The path of the first probe as the finest motion has it.
+/// Reference path of the first probe.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MotionReference {
-    /// Time between two places of [`Self::path`], s.
+    /// Time between two points of [`Self::path`], s.
     pub interval: f64,
     /// Displacement from rest, m, at 1, 2, … intervals after the start.
     pub path: Vec<Vector2<f64>>,
-    /// How far the path leads from where it starts, m; errors are over this.
+    /// Largest distance of the path from its start, m; errors are relative to it.
     pub size: f64,
-    /// Its own error, percent of its size: a third, as its second order has it, of what the path changes by with steps
-    /// of twice the length, and of what it changes by on half as many cells, added.
+    /// Own error, percent of the size: a third, according to second-order convergence, of the change of the path with
+    /// steps of twice the length, plus a third of its change with half as many cells in each direction.
     pub error_percent: f64,
-    /// Its time step, s.
+    /// Time step, s.
     pub time_step: f64,
-    /// Its element.
+    /// Element.
     pub element: ElementKind,
-    /// The cells of its mesh; `None` for the refined mesh of a file.
+    /// Cells of the mesh; `None` for the refined mesh of a file.
     pub cells: Option<[u32; 2]>,
 }
 
@@ -53,11 +53,11 @@ impl std::fmt::Display for MotionReference {
     }
 }
 
-/// Elements of a mesh from a file beyond which motions on the refined mesh take too long.
+/// Number of elements of a mesh file above which motions on the refined mesh take too long.
 const MOST_ELEMENTS: usize = 4000;
 
 impl MotionReference {
-    /// Finds it, for a study of this extent.
+    /// Computes the reference for a study of this extent.
     ///
     /// # Errors
     /// [`StudyError`].
@@ -76,7 +76,7 @@ impl MotionReference {
         }
         let steps = plan.reference_steps();
         let [coarse, fine] = meshes(scene, plan)?;
-        // On a coarser mesh, with longer steps, and the best.
+        // Paths on a coarser mesh, with longer steps, and the best one.
         let paths = [(&coarse, steps / 2), (&fine, steps / 2), (&fine, steps)];
         let follow = |&(mesh, steps): &(&Reference, u32), called_off: &CalledOff| {
             fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, called_off)
@@ -104,8 +104,8 @@ impl MotionReference {
         Ok(reference)
     }
 
-    /// Between two paths with a place for each of the reference's: the largest distance, and the root of the mean of its
-    /// square, percent of the size.
+    /// Returns the largest and the root mean square distance between two paths sampled like the reference, percent of
+    /// the size.
     #[must_use]
     pub fn distance(&self, a: &[Vector2<f64>], b: &[Vector2<f64>]) -> [f64; 2] {
         let distances = a.iter().zip(b).map(|(a, b)| (a - b).norm());
@@ -116,7 +116,7 @@ impl MotionReference {
     }
 }
 
-/// The first probe's path under the energy–momentum method, with so many steps between samples.
+/// Computes the path of the first probe by the energy–momentum method, with `steps` steps between samples.
 pub(super) fn fine_path(
     scene: &Scene,
     method: MethodKind,
@@ -139,14 +139,14 @@ pub(super) fn fine_path(
     }
 }
 
-/// A mesh for the reference.
+/// Mesh of the reference.
 struct Reference {
     scene: Scene,
     system: Arc<System>,
     cells: Option<[u32; 2]>,
 }
 
-/// One with half as many cells each way, and the fine one.
+/// Returns the mesh with half as many cells in each direction, and the fine mesh.
 fn meshes(scene: &Scene, plan: &Plan) -> Result<[Reference; 2], StudyError> {
     let element = finest_element(scene);
     let with = |factor: f64| {

@@ -1,4 +1,4 @@
-//! The trade in time in words: a table and a summary.
+//! Report of the study of motions: table and summary.
 
 use std::fmt::Write as _;
 
@@ -9,8 +9,8 @@ use crate::study::trade::mesh_words;
 use crate::words::{count, number};
 
 impl MotionStudy {
-    /// The study as CSV. `solves` is a step's or a stage's, 0: as many as the tolerance takes; `resolved` is whether the
-    /// bound is above the reference's own. A motion that did not finish has no error.
+    /// Formats the study as CSV. `solves` is the number per step or stage, 0 to iterate to the tolerance; `resolved` is
+    /// `true` if the bound is above the reference's own error. Motions that did not finish have no error.
     #[must_use]
     pub fn table(&self) -> String {
         let mut text = String::from(
@@ -48,7 +48,7 @@ impl MotionStudy {
         text
     }
 
-    /// The study for people: the truth, the front, what real time buys, and what becomes of the energy.
+    /// Formats a summary for display: reference, Pareto front, results in real time, and energy behaviour.
     #[must_use]
     pub fn summary(&self) -> String {
         let mut text = format!(
@@ -90,7 +90,7 @@ impl MotionStudy {
         text
     }
 
-    /// What an error costs, with every integrator.
+    /// Adds the cost of given errors with every integrator.
     fn costs(&self, text: &mut String) {
         for percent in [10.0, 1.0, 0.1] {
             if percent < self.reference.error_percent {
@@ -121,7 +121,7 @@ impl MotionStudy {
         let _ = writeln!(text, "{words}\n");
     }
 
-    /// What the step does to error and energy, on the scene's mesh.
+    /// Adds the effect of the time step on error and energy, on the scene's mesh.
     fn steps(&self, text: &mut String) {
         let _ = writeln!(
             text,
@@ -149,7 +149,7 @@ impl MotionStudy {
         text.push('\n');
     }
 
-    /// What `auto` saves beside `newton`.
+    /// Adds the savings of `auto` compared with `newton`.
     fn auto(&self, text: &mut String) {
         let pairs = self.measurements.iter().filter(|m| m.setting.method == MethodKind::Auto).filter_map(|auto| {
             let setting = MotionSetting { method: MethodKind::Newton, ..auto.setting };
@@ -177,7 +177,7 @@ impl MotionStudy {
         }
     }
 
-    /// What has no error, and why.
+    /// Adds the settings without an error, and the reason.
     fn unfinished(&self, text: &mut String) {
         for (ending, words) in [
             (Ending::Stopped, "stopped before the end"),
@@ -198,7 +198,7 @@ impl MotionStudy {
         }
     }
 
-    /// An error for people: what is below the reference's own is not known.
+    /// Formats an error; errors below the reference's own are shown as an upper bound.
     fn percent_words(&self, percent: f64) -> String {
         let own = self.reference.error_percent;
         if percent <= own { format!("≤ {own:.4}") } else { format!("{percent:.4}") }
@@ -209,7 +209,7 @@ fn time_words(m: &MotionMeasurement) -> String {
     format!("{:.3} ms a simulated second, {}", m.milliseconds, m.setting)
 }
 
-/// To six digits after the point, for sums of steps.
+/// Rounds to six decimal places, for sums of steps.
 fn round(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
