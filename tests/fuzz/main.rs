@@ -1,5 +1,6 @@
 //! Fuzz targets: the scene parser, the Gmsh reader, and the solver on small scenes. No panic, no hang, nothing that is
-//! not finite, memory bounded. `cargo test` runs a bounded number of random inputs; README says how coverage guides them.
+//! not finite, memory bounded. `cargo test` runs a bounded number of random inputs; CONTRIBUTING.md describes fuzzing
+//! guided by coverage.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::sync::atomic::{AtomicU32, Ordering};
