@@ -105,12 +105,12 @@ struct CameraUniform {
 
 /// Uniform buffer of a camera, and its bind group.
 #[derive(Debug)]
-struct CameraController {
+struct CameraBinding {
     uniform: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
 }
 
-impl CameraController {
+impl CameraBinding {
     fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, map: &wgpu::Buffer) -> Self {
         let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("camera"),
@@ -141,7 +141,7 @@ pub struct BodyRenderer {
     /// Colour map in the buffer `map`.
     uploaded_map: Option<ColorMap>,
     /// Camera uniforms, one per view; created on first use.
-    eyes: Vec<CameraController>,
+    cameras: Vec<CameraBinding>,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
     /// Inputs of the vertices in the vertex buffer.
@@ -223,7 +223,7 @@ impl BodyRenderer {
             layout,
             map,
             uploaded_map: None,
-            eyes: Vec::new(),
+            cameras: Vec::new(),
             vertices: Self::vertex_buffer(gpu, 1024),
             scratch: Vec::new(),
             uploaded: Vec::new(),
@@ -294,12 +294,12 @@ impl BodyRenderer {
         });
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         let mut first = 0;
-        for ((view, uploaded), eye) in views.iter().zip(&self.uploaded).zip(&self.eyes) {
+        for ((view, uploaded), binding) in views.iter().zip(&self.uploaded).zip(&self.cameras) {
             let Viewport { corner: [x, y], size: [width, height] } = view.viewport;
             let [triangles, lines, end] = uploaded.parts;
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, width, height);
-            pass.set_bind_group(0, &eye.bind_group, &[]);
+            pass.set_bind_group(0, &binding.bind_group, &[]);
             for (pipeline, vertices) in
                 [(&self.backgrounds, first..triangles), (&self.triangles, triangles..lines), (&self.lines, lines..end)]
             {
@@ -338,10 +338,10 @@ impl BodyRenderer {
             self.uploaded.push(wanted(view, parts));
             let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side)) as f32);
             let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
-            if self.eyes.len() == i {
-                self.eyes.push(CameraController::new(gpu, &self.layout, &self.map));
+            if self.cameras.len() == i {
+                self.cameras.push(CameraBinding::new(gpu, &self.layout, &self.map));
             }
-            gpu.queue.write_buffer(&self.eyes[i].uniform, 0, bytemuck::bytes_of(&uniform));
+            gpu.queue.write_buffer(&self.cameras[i].uniform, 0, bytemuck::bytes_of(&uniform));
         }
         let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
         if self.vertices.size() < bytes.len() as u64 {

@@ -1,5 +1,6 @@
 //! Fuzz tests of the scene parser, the Gmsh reader, and the solver on small scenes: no panic, no hang, finite results
-//! and bounded memory. `cargo test` runs a bounded number of random inputs; the CONTRIBUTING describes coverage-guided runs.
+//! and bounded memory. `cargo test` runs a bounded number of random inputs; CONTRIBUTING.md describes runs guided by
+//! coverage.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::sync::atomic::{AtomicU32, Ordering};

@@ -252,7 +252,7 @@ fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
         .zip(input.residuals)
         .map(|(i, &r)| pos2(rect.left() + rect.width() * f32::from(i) / last, y(decades(r))))
         .collect();
-    // As one thick line its joints would stick out at sharp corners.
+    // Segments of one thick line would have joints that stick out at sharp corners.
     for pair in points.windows(2) {
         ui.painter().line(pair.to_vec(), Stroke::new(1.5, palette.method(input.scene.solver.method)));
     }
