@@ -1,5 +1,6 @@
 //! Solutions of a scene on finer and finer meshes, up to one whose own error is small.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -89,9 +90,9 @@ pub(super) struct Fine {
     pub unknowns: usize,
 }
 
-/// The element of fine solutions: six-node triangles, which converge fastest, or what the quadrilaterals of a file can be.
+/// The element of fine solutions: the one of the highest degree that the scene's cells can be, which converges fastest.
 pub(super) fn finest_element(scene: &Scene) -> ElementKind {
-    scene.elements().find(|&e| e == ElementKind::T6).unwrap_or_else(|| scene.element())
+    scene.elements().min_by_key(|e| Reverse(e.entry().degree())).unwrap_or_else(|| scene.element())
 }
 
 /// Refinements of the coarsest mesh of a beam, which has as many cells as make the finest about as large as the budget.
@@ -334,7 +335,7 @@ fn unknowns_of(mesh: &Mesh, element: &ElementType) -> usize {
     let corners = element.cell.corners.len();
     // Every side belongs to two elements: as many sides as elements times half their corners.
     let vertices = elements * (corners - 2) / 2;
-    let on_sides = element.sides[0].len() - 2;
+    let on_sides = element.degree() - 1;
     2 * (vertices + on_sides * elements * corners / 2)
 }
 

@@ -181,7 +181,7 @@ impl Scaling {
 
 /// Cells of a beam this slender that have about so many unknowns.
 fn cells(element: ElementKind, slenderness: f64, unknowns: f64) -> [u32; 2] {
-    let pieces = element.entry().sides[0].len() as f64 - 1.0;
+    let pieces = element.entry().degree() as f64;
     let across = (0.5 * unknowns / slenderness).sqrt();
     // Of nodes, one more than pieces across: a thin beam has more than its share.
     let across = ((across - 0.5) / pieces).round().max(1.0);

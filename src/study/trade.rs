@@ -376,7 +376,7 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
             continue;
         };
         // About as many nodes along for every element; cells as high as long where the beam allows.
-        let pieces = element.entry().sides[0].len() as u32 - 1;
+        let pieces = element.entry().degree() as u32;
         let nodes_along: &[u32] = &[5, 10, 20, 40, 80, 160];
         let nodes_along = if extent == Extent::Quick { &nodes_along[..4] } else { nodes_along };
         for &nodes_along in nodes_along {
