@@ -6,7 +6,8 @@ use super::correction::{Accuracy, Weights};
 use super::step::{Booking, Counts, Memory, Solves, StepError, combine, work};
 use crate::assembly::{Hand, Kinematics, Mass, Problem};
 use crate::element::{StrainRate, Tangent};
-use crate::scene::{Damping, MethodKind};
+use crate::method::MotionMethod;
+use crate::scene::Damping;
 use crate::solver::SolverError;
 use crate::state::State;
 use crate::timings::{Timings, timed};
@@ -64,7 +65,7 @@ pub(crate) struct StageSolver<'a> {
     pub problem: &'a mut Problem,
     pub mass: &'a Mass,
     pub damping: Damping,
-    pub method: MethodKind,
+    pub method: MotionMethod,
     pub kinematics: Kinematics,
     pub solves: Solves,
     /// The error asked of a whole motion, as a fraction.
@@ -148,7 +149,7 @@ impl StageSolver<'_> {
             return None;
         }
         let Tangent { warped, geometric, definite } = stage.tangent;
-        let turns = self.kinematics == Kinematics::Corotated && self.method != MethodKind::Warped;
+        let turns = self.kinematics == Kinematics::Corotated && self.method != MotionMethod::Warped;
         Some(Tangent { warped, geometric: if turns { geometric } else { 0.0 }, definite })
     }
 
@@ -299,7 +300,7 @@ impl StageSolver<'_> {
 
     /// Whether `auto` looks for corrections with factors of earlier matrices.
     fn keeps_factors(&self) -> bool {
-        self.method == MethodKind::Auto && self.kinematics == Kinematics::Corotated
+        self.method == MotionMethod::Adaptive && self.kinematics == Kinematics::Corotated
     }
 
     /// u ← u + K⁻¹ r, with a factor of K where a tangent says of which, else with the one there is. K is at hand, or that
@@ -321,7 +322,7 @@ impl StageSolver<'_> {
                 self.assemble(stage, Some(tangent), start, state);
             }
             self.factorize(stage, tangent, start, state)?;
-            if self.method == MethodKind::Auto {
+            if self.method == MotionMethod::Adaptive {
                 let weights = self.weights(stage);
                 self.memory.corrector.keep(weights, self.problem.system(), state);
             }
