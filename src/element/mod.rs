@@ -43,7 +43,7 @@ pub struct ElementType {
     pub about: &'static str,
     /// Reference shape.
     pub cell: &'static Cell,
-    /// Reference coordinates of the nodes: corners first, counter-clockwise.
+    /// Reference coordinates of the nodes in the order of Gmsh and VTK: corners first, counter-clockwise.
     pub nodes: &'static [[f64; 2]],
     /// Nodes along each side, counter-clockwise, ends included.
     pub sides: &'static [&'static [usize]],
@@ -103,6 +103,24 @@ registry! {
     Q4 => q4::Q4,
 }
 
+/// Largest number of nodes along a side of an element.
+pub(crate) const MOST_SIDE_NODES: usize = most_side_nodes(ELEMENTS);
+
+const fn most_side_nodes(elements: &[&ElementType]) -> usize {
+    let (mut most, mut element) = (0, 0);
+    while element < elements.len() {
+        let (sides, mut side) = (elements[element].sides, 0);
+        while side < sides.len() {
+            if sides[side].len() > most {
+                most = sides[side].len();
+            }
+            side += 1;
+        }
+        element += 1;
+    }
+    most
+}
+
 impl ElementKind {
     /// Returns the name in scene files.
     #[must_use]
@@ -125,6 +143,12 @@ impl ElementType {
             jacobian += x * g.transpose();
         }
         jacobian
+    }
+
+    /// Degree of the shape functions along a side.
+    #[must_use]
+    pub fn degree(&self) -> usize {
+        self.sides.first().map_or(1, |side| side.len() - 1)
     }
 
     /// Returns `true` if both have the same reference shape, so that a mesh of one can be converted to the other.
@@ -342,4 +366,18 @@ pub fn warped_strain<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> Matrix2<T> {
 #[inline(always)]
 fn cosine_minus_1<T: Number>(Rotation { c, s }: Rotation<T>) -> T {
     (-s * s / (T::one() + c)).select(c.simd_gt(T::zero()), c - T::one())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ELEMENTS, ElementKind, ElementType, MOST_SIDE_NODES, most_side_nodes};
+
+    #[test]
+    fn segments_have_room_for_the_longest_side_of_the_registry() {
+        let longest = ELEMENTS.iter().flat_map(|e| e.sides).map(|side| side.len()).max();
+        assert_eq!(longest, Some(MOST_SIDE_NODES));
+        let t3 = ElementKind::T3.entry();
+        let cubic = ElementType { sides: &[&[0, 1], &[1, 3, 4, 2], &[2, 0]], ..*t3 };
+        assert_eq!(most_side_nodes(&[&cubic, t3]), 4);
+    }
 }

@@ -11,7 +11,7 @@ impl Mesh {
     /// Returns the number of nodes of [`Self::beam`].
     #[must_use]
     pub fn beam_nodes(beam: &Beam) -> u64 {
-        let pieces = beam.element.entry().sides[0].len() as u64 - 1;
+        let pieces = beam.element.entry().degree() as u64;
         let [columns, rows] = beam.cells.map(|cells| u64::from(cells) * pieces + 1);
         columns.saturating_mul(rows)
     }
@@ -25,7 +25,7 @@ impl Mesh {
     pub fn beam(beam: &Beam) -> Result<Self, MeshError> {
         let entry = beam.element.entry();
         // Every cell is a lattice of nodes with as many pieces per side as an element side.
-        let pieces = entry.sides[0].len() - 1;
+        let pieces = entry.degree();
         let [nx, ny] = beam.cells.map(|n| n as usize);
         let [columns, rows] = [nx, ny].map(|n| n * pieces);
         let node = |[i, j]: [usize; 2]| (i * (rows + 1) + j) as u32;

@@ -140,7 +140,7 @@ impl Mesh {
         let faces: f64 = headers.elements.iter().map(|(_, count)| *count as f64).sum();
         let nodes = headers.nodes as f64;
         let [(n, m), (new_n, new_m)] = [own, element.entry()].map(|entry| {
-            let between = entry.sides[0].len() - 2;
+            let between = entry.degree() - 1;
             let inside = entry.nodes.len() - entry.cell.corners.len() - entry.sides.len() * between;
             (between as f64, inside as f64)
         });
@@ -421,7 +421,8 @@ impl File {
 struct Builder<'a> {
     tags: &'a HashMap<u64, Vector2<f64>>,
     numbers: HashMap<u64, u32>,
-    between: HashMap<[u32; 2], u32>,
+    /// By the ends of their side, and its part between them and the end of the larger number.
+    between: HashMap<([u32; 2], i64), u32>,
     nodes: Vec<Vector2<f64>>,
 }
 
@@ -440,21 +441,54 @@ impl Builder<'_> {
     /// Returns the node at `at` in an element of the file that has none there, adding it if necessary. The error is the
     /// tag of a missing corner node.
     fn between(&mut self, element: &ElementType, tags: &[u64], at: [f64; 2]) -> Result<u32, u64> {
+        /// Parts of a side in which distances along it are told apart.
+        const PARTS: f64 = 1024.0;
         let weights = (element.cell.corner_weights)(at);
         let mut ends = Vec::new();
         let mut place = Vector2::zeros();
         for (&tag, &weight) in tags.iter().zip(&weights).filter(|(_, weight)| weight.abs() > 1e-9) {
             let number = self.number(tag).ok_or(tag)?;
             place += self.nodes[number as usize] * weight;
-            ends.push(number);
+            ends.push((number, weight));
         }
         let mut add = || {
             self.nodes.push(place);
             (self.nodes.len() - 1) as u32
         };
         Ok(match ends[..] {
-            [a, b] => *self.between.entry(side_key([a, b])).or_insert_with(add),
+            [(a, of_a), (b, of_b)] => {
+                let weight = if a < b { of_a } else { of_b };
+                let parts = (weight * PARTS).round() as i64;
+                *self.between.entry((side_key([a, b]), parts)).or_insert_with(add)
+            }
             _ => add(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+    use super::*;
+
+    #[test]
+    fn lines_along_the_sides_of_every_element_are_read() {
+        for side in ELEMENTS.iter().flat_map(|e| e.sides) {
+            assert!(LINES.iter().any(|line| line.1 == side.len()), "Gmsh's line of {} nodes is missing", side.len());
+        }
+    }
+
+    #[test]
+    fn two_elements_share_every_node_between_the_ends_of_a_side() {
+        let tags = [(7, [0.0, 0.0]), (5, [3.0, 0.0]), (6, [0.0, 3.0])].map(|(tag, at)| (tag, Vector2::from(at))).into();
+        let (numbers, between) = (HashMap::new(), HashMap::new());
+        let mut builder = Builder { tags: &tags, numbers, between, nodes: Vec::new() };
+        let t3 = ElementKind::T3.entry();
+        let mut number = |tags: &[u64], along: f64| builder.between(t3, tags, [along / 3.0, 0.0]).unwrap();
+        let [first, second] = [1.0, 2.0].map(|along| number(&[7, 5, 6], along));
+        assert_ne!(first, second);
+        assert_eq!([2.0, 1.0].map(|along| number(&[5, 7, 6], along)), [first, second]);
+        assert_eq!(builder.nodes[second as usize], Vector2::new(2.0, 0.0));
     }
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use crate::element::ElementType;
+use crate::element::{ElementType, MOST_SIDE_NODES};
 use crate::model::ElementKind;
 
 mod beam;
@@ -72,9 +72,6 @@ pub enum MeshError {
         nodes: Vec<u32>,
     },
 }
-
-/// Largest number of nodes on an element side.
-const MOST_SIDE_NODES: usize = 3;
 
 /// Side of an element, by node numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -202,7 +199,7 @@ impl Mesh {
             // The comparison is `false` for NaN.
             let unfolded = |at: [f64; 2]| entry.jacobian(&rest, at).determinant() > 0.0;
             // The Jacobian of an element with straight sides is smallest at a corner.
-            let corners = if entry.sides[0].len() == 2 { entry.nodes } else { &[] };
+            let corners = if entry.degree() == 1 { entry.nodes } else { &[] };
             let mut points = entry.points.iter().chain(entry.mass_points).map(|p| p.at).chain(corners.iter().copied());
             if !points.all(unfolded) {
                 return Err(MeshError::Folded { element });

@@ -157,7 +157,7 @@ impl<'a> Patches<'a> {
         let shapes: Vec<Vec<f64>> = entry.points.iter().map(|p| (entry.shape)(p.at)).collect();
         let place = |own: &[u32], shape: &[f64]| own.iter().zip(shape).map(|(&n, w)| mesh.node(n) * *w).sum();
         let points = mesh.elements().flat_map(|own| shapes.iter().map(move |shape| place(own, shape))).collect();
-        Self { mesh, around, starts, outer, points, degree: entry.sides.first().map_or(1, |side| side.len() - 1) }
+        Self { mesh, around, starts, outer, points, degree: entry.degree() }
     }
 
     fn around(&self, node: u32) -> &[u32] {

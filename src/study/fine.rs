@@ -1,5 +1,6 @@
 //! Reference solutions of a scene on refined meshes, up to one with a small error.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -89,10 +90,9 @@ pub(super) struct Fine {
     pub unknowns: usize,
 }
 
-/// Returns the element of reference solutions: six-node triangles, which converge fastest, or the file's
-/// quadrilaterals.
+/// The element of fine solutions: the one of the highest degree that the scene's cells can be, which converges fastest.
 pub(super) fn finest_element(scene: &Scene) -> ElementKind {
-    scene.elements().find(|&e| e == ElementKind::T6).unwrap_or_else(|| scene.element())
+    scene.elements().min_by_key(|e| Reverse(e.entry().degree())).unwrap_or_else(|| scene.element())
 }
 
 /// Number of refinements of a beam's coarsest mesh, whose number of cells is chosen so that the finest mesh is about as
@@ -338,7 +338,7 @@ fn unknowns_of(mesh: &Mesh, element: &ElementType) -> usize {
     let corners = element.cell.corners.len();
     // Every side belongs to two elements, so there are as many sides as elements times half their corners.
     let vertices = elements * (corners - 2) / 2;
-    let on_sides = element.sides[0].len() - 2;
+    let on_sides = element.degree() - 1;
     2 * (vertices + on_sides * elements * corners / 2)
 }
 

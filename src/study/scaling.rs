@@ -160,7 +160,7 @@ impl Scaling {
 
 /// Returns the cells of a beam with this length over height for about `unknowns` unknowns.
 fn cells(element: ElementKind, slenderness: f64, unknowns: f64) -> [u32; 2] {
-    let pieces = element.entry().sides[0].len() as f64 - 1.0;
+    let pieces = element.entry().degree() as f64;
     let across = (0.5 * unknowns / slenderness).sqrt();
     // There is one more node than pieces across, which matters for thin beams.
     let across = ((across - 0.5) / pieces).round().max(1.0);

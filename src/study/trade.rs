@@ -380,7 +380,7 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
         };
         // The number of nodes along the beam is about the same for every element; cells are as high as long if
         // possible.
-        let pieces = element.entry().sides[0].len() as u32 - 1;
+        let pieces = element.entry().degree() as u32;
         let nodes_along: &[u32] = &[5, 10, 20, 40, 80, 160];
         let nodes_along = if extent == Extent::Quick { &nodes_along[..4] } else { nodes_along };
         for &nodes_along in nodes_along {

@@ -133,7 +133,7 @@ impl MotionCase {
     #[must_use]
     pub fn scene(&self) -> Scene {
         // The number of nodes along the beam is the same for every element.
-        let pieces = self.element.entry().sides[0].len() as u32 - 1;
+        let pieces = self.element.entry().degree() as u32;
         let mut scene = Scene::beam(1.0, 0.1)
             .with_cells(20 / pieces, 1)
             .with_element(self.element)
