@@ -9,7 +9,7 @@ use super::CliError;
 use super::solved::Solved;
 use crate::export::csv_field;
 use crate::method::{Certificate, floor_words, rho_words};
-use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
+use crate::scene::{Analysis, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
 use crate::study::{LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_words};
 use crate::words::{count, engineering, engineering_pair, prefix};
@@ -220,7 +220,7 @@ fn joules(energy: f64) -> String {
 fn solver_words(scene: &Scene) -> String {
     match scene.analysis {
         Analysis::Static => format!("method {}", scene.solver.method.id()),
-        Analysis::Dynamic if scene.solver.method == MethodKind::Linear => {
+        Analysis::Dynamic if scene.solver.method.moves_linearly() => {
             format!("integrator {}, linear theory", scene.dynamics.integrator.id())
         }
         Analysis::Dynamic => format!("integrator {}", scene.dynamics.integrator.id()),

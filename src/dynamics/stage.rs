@@ -6,7 +6,8 @@ use super::correction::{Accuracy, Weights};
 use super::step::{Booking, Counts, Memory, Solves, StepError, combine, work};
 use crate::assembly::{Hand, Kinematics, Mass, Problem};
 use crate::element::{StrainRate, Tangent};
-use crate::scene::{Damping, MethodKind};
+use crate::method::MotionMethod;
+use crate::scene::Damping;
 use crate::solver::SolverError;
 use crate::state::State;
 use crate::timings::{Timings, timed};
@@ -67,7 +68,7 @@ pub(crate) struct StageSolver<'a> {
     pub problem: &'a mut Problem,
     pub mass: &'a Mass,
     pub damping: Damping,
-    pub method: MethodKind,
+    pub method: MotionMethod,
     pub kinematics: Kinematics,
     pub solves: Solves,
     /// Error requested for the whole motion, as a fraction.
@@ -151,7 +152,7 @@ impl StageSolver<'_> {
             return None;
         }
         let Tangent { warped, geometric, definite } = stage.tangent;
-        let turns = self.kinematics == Kinematics::Corotated && self.method != MethodKind::Warped;
+        let turns = self.kinematics == Kinematics::Corotated && self.method != MotionMethod::Warped;
         Some(Tangent { warped, geometric: if turns { geometric } else { 0.0 }, definite })
     }
 
@@ -302,7 +303,7 @@ impl StageSolver<'_> {
 
     /// Returns `true` if corrections are computed with factors of earlier matrices (`auto`).
     fn keeps_factors(&self) -> bool {
-        self.method == MethodKind::Auto && self.kinematics == Kinematics::Corotated
+        self.method == MotionMethod::Adaptive && self.kinematics == Kinematics::Corotated
     }
 
     /// Performs u ← u + K⁻¹ r, with a factor of K if `tangent` is given, else with the existing factor. The matrix K is
@@ -324,7 +325,7 @@ impl StageSolver<'_> {
                 self.assemble(stage, Some(tangent), start, state);
             }
             self.factorize(stage, tangent, start, state)?;
-            if self.method == MethodKind::Auto {
+            if self.method == MotionMethod::Adaptive {
                 let weights = self.weights(stage);
                 self.memory.corrector.keep(weights, self.problem.system(), state);
             }

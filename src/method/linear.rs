@@ -2,7 +2,7 @@
 //! grow far too long.
 
 use super::status::StallDetector;
-use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
+use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
@@ -12,6 +12,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     id: "linear",
     about: "Linear FEM: one solve, right only while rotations stay small; beams swell beyond.",
     start: || Box::<Linear>::default(),
+    motion: Some(MotionMethod::Linear),
 };
 
 /// The warped iteration with identity rotations: the first solve gives the result, further ones refine it.

@@ -7,7 +7,7 @@
 
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
-use crate::scene::MethodKind;
+use crate::scene::{Analysis, Invalid, MethodKind};
 use crate::state::State;
 
 mod auto;
@@ -36,6 +36,42 @@ pub struct MethodEntry {
     pub about: &'static str,
     /// Constructor.
     pub start: fn() -> Box<dyn Method>,
+    /// How time steps are solved; `None` for a method that does not serve motions.
+    pub motion: Option<MotionMethod>,
+}
+
+/// How the stages of time steps are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionMethod {
+    /// Linear theory.
+    Linear,
+    /// Corotated, with the article's matrix A.
+    Warped,
+    /// Corotated, with the exact tangent A + G.
+    Exact,
+    /// Linear theory or earlier factors while they serve, else the exact tangent.
+    Adaptive,
+}
+
+impl MethodEntry {
+    /// Returns how the method solves time steps.
+    ///
+    /// # Errors
+    /// [`Invalid`], naming the methods that serve motions, if this one does not.
+    pub fn in_motion(&self) -> Result<MotionMethod, Invalid> {
+        self.motion.ok_or_else(|| {
+            let known: Vec<&str> = METHODS.iter().filter(|m| m.motion.is_some()).map(|m| m.id).collect();
+            let known = known.join(", ");
+            let message = format!("expected one of {known} beside analysis = \"dynamic\", got \"{}\"", self.id);
+            Invalid::new("solver.method", message)
+        })
+    }
+
+    /// `true` if the method can find what a scene with this analysis asks for.
+    #[must_use]
+    pub fn serves(&self, analysis: Analysis) -> bool {
+        analysis == Analysis::Static || self.motion.is_some()
+    }
 }
 
 macro_rules! registry {
@@ -67,6 +103,11 @@ impl MethodKind {
     #[must_use]
     pub fn id(self) -> &'static str {
         self.entry().id
+    }
+
+    /// `true` if the method moves a body by linear theory alone.
+    pub(crate) fn moves_linearly(self) -> bool {
+        self.entry().motion == Some(MotionMethod::Linear)
     }
 }
 
@@ -153,5 +194,24 @@ pub trait Method: std::fmt::Debug + Send + Sync {
     /// Handles a failed iteration; the state is the one before it. Returns how to continue.
     fn recover(&mut self, _: &mut Iteration<'_>, error: IterationError) -> Verdict {
         Verdict::Stop(Reason::Iteration(error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_method_that_does_not_serve_motions_is_refused_by_a_message_with_those_that_do() {
+        for entry in METHODS.iter().filter(|entry| entry.motion.is_some()) {
+            assert_eq!(entry.in_motion().ok(), entry.motion);
+            assert!(entry.serves(Analysis::Dynamic));
+        }
+        let other = MethodEntry { id: "other", motion: None, ..MethodKind::Newton.entry() };
+        let refused = other.in_motion().unwrap_err();
+        assert_eq!(refused.key, "solver.method");
+        let known = "expected one of linear, warped, newton, auto beside analysis = \"dynamic\", got \"other\"";
+        assert_eq!(refused.message, known);
+        assert!(other.serves(Analysis::Static) && !other.serves(Analysis::Dynamic));
     }
 }

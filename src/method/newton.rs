@@ -10,7 +10,7 @@
 
 use super::iteration::ROUNDING;
 use super::status::{LONGEST_STEP, farthest};
-use super::{Iteration, IterationError, Method, MethodEntry, Reason, Restart, Verdict};
+use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
@@ -21,6 +21,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     id: "newton",
     about: "Newton with the exact tangent A + G: an exact, stable equilibrium in a few solves, also under large loads.",
     start: || Box::<Newton>::default(),
+    motion: Some(MotionMethod::Exact),
 };
 
 /// Full steps per load step before the residual must be close to zero. Usually 5 to 9 are needed.

@@ -6,7 +6,7 @@
 //! Large rotations of supports are applied in parts, one iteration each, and the load with them.
 
 use super::status::StallDetector;
-use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
+use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
@@ -16,6 +16,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     id: "warped",
     about: "Warped stiffness: the article's iteration, every element seen turned back. Large rotations, but it diverges under large loads.",
     start: || Box::<Warped>::default(),
+    motion: Some(MotionMethod::Warped),
 };
 
 /// Method `warped`, the article's iteration.

@@ -153,7 +153,7 @@ enum Process {
 }
 
 impl Process {
-    fn new(body: &mut Body) -> Result<Self, SolverError> {
+    fn new(body: &mut Body) -> Result<Self, SimulationError> {
         Ok(match body.scene.analysis {
             Analysis::Static => Self::Search(Box::new(Search::new(body)?)),
             Analysis::Dynamic => Self::Motion(Box::new(Motion::new(body)?)),
@@ -297,6 +297,9 @@ impl Simulation {
     /// # Errors
     /// Same errors as [`Self::new`]; the simulation is then unchanged.
     pub fn change_scene(&mut self, scene: &Scene) -> Result<(), SimulationError> {
+        if scene.analysis == Analysis::Dynamic {
+            scene.solver.method.entry().in_motion()?;
+        }
         let Self { body, process, .. } = self;
         let change = body.problem.update(scene)?;
         if change == Change::Mesh {
@@ -698,7 +701,7 @@ impl Simulation {
     pub fn is_linear(&self) -> bool {
         match &self.process {
             Process::Search(search) => search.kinematics() == Kinematics::Linear,
-            Process::Motion(motion) => motion.is_linear(&self.body.scene),
+            Process::Motion(motion) => motion.is_linear(),
         }
     }
 

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector2;
 
-use super::{Body, Status};
+use super::{Body, SimulationError, Status};
 use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
 use crate::dynamics::{
     Booking, Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionDecision, MotionReport,
     Solves, StageSolver, Step, StepError, StopReason, critical_step,
 };
+use crate::method::MotionMethod;
 use crate::scene::{DynamicsSettings, Load, MethodKind, Scene, Start};
-use crate::solver::SolverError;
 use crate::state::{State, largest};
 use crate::timings::Timings;
 
@@ -36,6 +36,7 @@ pub struct Motion {
     start: State,
     middle: State,
     counts: Counts,
+    method: MotionMethod,
     linear: LinearTheory,
     report: MotionReport,
     ledger: Ledger,
@@ -99,14 +100,16 @@ impl Moment {
 
 impl Motion {
     /// Returns a motion that starts from the current state and velocity.
-    pub(super) fn new(body: &mut Body) -> Result<Self, SolverError> {
+    pub(super) fn new(body: &mut Body) -> Result<Self, SimulationError> {
         let Body { scene, problem, state } = body;
+        let method = scene.solver.method.entry().in_motion()?;
         let mass = Mass::new(problem.system(), scene.material.area_density());
         let mut motion = Self {
             memory: Memory::new(problem.system())?,
             start: state.clone(),
             middle: state.clone(),
             counts: Counts::default(),
+            method,
             linear: LinearTheory::default(),
             report: MotionReport::default(),
             ledger: Ledger::default(),
@@ -126,7 +129,7 @@ impl Motion {
     /// Starts a motion from the current state and velocity.
     pub(super) fn begin(&mut self, body: &mut Body) {
         self.linear.forget();
-        body.problem.system().follow(&mut body.state, self.kinematics(&body.scene));
+        body.problem.system().follow(&mut body.state, self.kinematics());
         self.begin_steps(body);
         let Body { scene, problem, state } = body;
         self.counts = Counts::default();
@@ -143,7 +146,7 @@ impl Motion {
         self.linear.set_in_use(*is_linear);
         // Recomputed edge angles would differ by rounding errors.
         if *method != body.scene.solver.method {
-            body.problem.system().follow(&mut body.state, self.kinematics(&body.scene));
+            body.problem.system().follow(&mut body.state, self.kinematics());
         }
         self.begin_steps(body);
         (self.ledger, self.counts, self.report) = (*ledger, *counts, *report);
@@ -164,8 +167,9 @@ impl Motion {
     }
 
     /// Continues after an edit; `before` is the previous scene. Displacement and velocity are kept.
-    pub(super) fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SolverError> {
+    pub(super) fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SimulationError> {
         let Body { scene, problem, state } = body;
+        self.method = scene.solver.method.entry().in_motion()?;
         let mass_changes = scene.material.area_density() != before.material.area_density();
         if change == Change::Unknowns {
             self.memory = Memory::new(problem.system())?;
@@ -183,7 +187,7 @@ impl Motion {
             return Ok(());
         }
         problem.system().pattern().stop_fixed(&mut state.velocity);
-        problem.system().follow(state, self.kinematics(scene));
+        problem.system().follow(state, self.kinematics());
         problem.set_time(state.time);
         state.knows_net_force = false;
         self.stopped = None;
@@ -277,7 +281,7 @@ impl Motion {
     /// Performs a step of length h; `auto` uses linear theory if it is accurate enough.
     fn take_step(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
         let asked = asked_error(&body.scene);
-        let decides = decides(&body.scene);
+        let decides = self.decides(&body.scene);
         if decides && body.problem.hand().is_none() && self.linear.is_worth_a_try(&body.state, asked) {
             let was_in_use = self.linear.is_in_use();
             if !was_in_use {
@@ -304,7 +308,7 @@ impl Motion {
                 self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
             }
         }
-        self.try_step(body, self.kinematics(&body.scene), h)
+        self.try_step(body, self.kinematics(), h)
     }
 
     /// Recomputes the start of a step with another strain measure.
@@ -327,7 +331,7 @@ impl Motion {
                 problem,
                 mass: &self.mass,
                 damping: settings.damping,
-                method: scene.solver.method,
+                method: self.method,
                 kinematics,
                 solves,
                 max_error: asked_error(scene),
@@ -352,9 +356,14 @@ impl Motion {
         }
     }
 
-    fn kinematics(&self, scene: &Scene) -> Kinematics {
-        let linear = scene.solver.method == MethodKind::Linear || self.linear.is_in_use();
+    fn kinematics(&self) -> Kinematics {
+        let linear = self.method == MotionMethod::Linear || self.linear.is_in_use();
         if linear { Kinematics::Linear } else { Kinematics::Corotated }
+    }
+
+    /// Returns `true` if the method decides how steps are solved.
+    fn decides(&self, scene: &Scene) -> bool {
+        self.method == MotionMethod::Adaptive && !entry(scene).is_explicit()
     }
 
     /// Interrupts a motion that has not ended.
@@ -365,8 +374,8 @@ impl Motion {
     }
 
     /// Returns `true` if strains are those of linear theory.
-    pub(super) fn is_linear(&self, scene: &Scene) -> bool {
-        self.kinematics(scene) == Kinematics::Linear
+    pub(super) fn is_linear(&self) -> bool {
+        self.kinematics() == Kinematics::Linear
     }
 
     pub(super) fn status(&self, scene: &Scene, state: &State) -> Status {
@@ -439,7 +448,7 @@ impl Motion {
     #[must_use]
     pub fn auto_report(&self, scene: &Scene) -> Option<MotionReport> {
         let Counts { solves, factorizations, .. } = self.counts;
-        decides(scene).then_some(MotionReport { solves, factorizations, ..self.report })
+        self.decides(scene).then_some(MotionReport { solves, factorizations, ..self.report })
     }
 
     /// Returns the longest stable step about rest, s; `None` for integrators without such a limit.
@@ -462,11 +471,6 @@ fn next_step(settings: &DynamicsSettings, time: f64) -> (f64, f64) {
 
 fn entry(scene: &Scene) -> &'static IntegratorEntry {
     scene.dynamics.integrator.entry()
-}
-
-/// Returns `true` if `auto` decides how steps are solved.
-fn decides(scene: &Scene) -> bool {
-    scene.solver.method == MethodKind::Auto && !entry(scene).is_explicit()
 }
 
 /// Returns the error requested for a motion, as a fraction.

@@ -48,6 +48,7 @@ const SENTENCES: &[&str] = &[
     "u_y of %{probe}",
     // Invalid input.
     "expected a whole number, got %{got}",
+    "expected one of %{known} beside analysis = \"dynamic\", got %{got}",
     "expected one of %{known}, got %{got}",
     "expected %{what}, got nothing",
     "expected cells at most %{n} times as long as high or as high as long, got %{got}",

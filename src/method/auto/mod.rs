@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 use self::expansion::{Expansion, relative_size, solve_nodal};
 use super::newton::Newton;
 use super::status::{LONGEST_STEP, StepLengths, farthest};
-use super::{Iteration, IterationError, Method, MethodEntry, Restart, Verdict};
+use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::rotation::Rotation;
@@ -34,6 +34,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     about: "As little of the others as the asked accuracy needs: no solve where nothing changed, linear theory while it \
             serves, the old factor while it serves, load steps where nothing else does.",
     start: || Box::<Auto>::default(),
+    motion: Some(MotionMethod::Adaptive),
 };
 
 /// Fraction of the requested error that the estimates may reach; the rest is a margin for what they omit.

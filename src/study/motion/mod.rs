@@ -91,7 +91,7 @@ impl std::fmt::Display for MotionSetting {
         let mesh = mesh_words(self.element, self.cells);
         let (step, solves) = (step_words(self.time_step), self.solves_words());
         let theory = match self.method {
-            MethodKind::Linear => "linear theory",
+            method if method.moves_linearly() => "linear theory",
             _ if self.integrator.entry().is_explicit() => "corotated",
             method => method.id(),
         };
@@ -352,7 +352,7 @@ impl MotionStudy {
 
     fn error(&self, run: &FirstRun, mesh: &Meshed) -> PathError {
         let (reference, path) = (&self.reference, &run.path);
-        let own = if run.setting.method == MethodKind::Linear { &mesh.linear } else { &mesh.exact };
+        let own = if run.setting.method.moves_linearly() { &mesh.linear } else { &mesh.exact };
         let [total, rms] = reference.distance(path, &reference.path);
         PathError {
             total,

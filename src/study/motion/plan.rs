@@ -102,7 +102,7 @@ impl Samples {
 /// mesh file.
 pub(super) fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
     let beam = scene.beam.as_ref()?;
-    let pieces = |element: ElementKind| element.entry().sides[0].len() as f64 - 1.0;
+    let pieces = |element: ElementKind| element.entry().degree() as f64;
     let own = beam.cells.map(|n| f64::from(n) * pieces(beam.element));
     // A scene with a very fine mesh is studied on coarser ones.
     let factor = factor * (MOST_NODES / (own[0] * own[1])).sqrt().min(1.0);
@@ -183,7 +183,7 @@ fn jobs(cells: Option<[u32; 2]>, extent: Extent) -> Vec<Job> {
 
 /// Returns the methods that give different results.
 fn methods(integrator: &IntegratorEntry, extent: Extent) -> Vec<MethodKind> {
-    let all = METHODS.iter().map(|m| m.kind);
+    let all = METHODS.iter().filter(|m| m.motion.is_some()).map(|m| m.kind);
     if integrator.is_explicit() {
         // Without a matrix, methods differ only in the theory.
         return vec![MethodKind::Linear, MethodKind::Newton];
@@ -195,7 +195,7 @@ fn methods(integrator: &IntegratorEntry, extent: Extent) -> Vec<MethodKind> {
 fn solves(integrator: &IntegratorEntry, method: MethodKind, plan: &Plan) -> &'static [u32] {
     if integrator.is_explicit() || integrator.always_iterates {
         &[0]
-    } else if method == MethodKind::Linear {
+    } else if method.moves_linearly() {
         // A single solve is exact.
         &[1]
     } else {
