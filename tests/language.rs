@@ -242,6 +242,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 const NOT_SHOWN: &[&str] = &[
     "# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}",
     "English",
+    "lazy value",
     "Noto Sans SC",
     "probe values",
     "load curve",
