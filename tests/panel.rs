@@ -390,7 +390,7 @@ fn remedies_are_one_click_away() {
     let error = solve_json(&["article"])["probes"][0]["error_percent"].as_f64().unwrap();
     let shown = format!("ERROR {} mesh", percent(error));
     assert!(harness.query_by_label(&shown).is_some(), "{shown}: {:?}", texts(&harness));
-    let words = format!("{} off: three-node triangles lock in bending.", percent(error));
+    let words = format!("{} error: three-node triangles lock in bending.", percent(error));
     assert!(harness.query_by_label(&words).is_some(), "{words}");
     harness.get_by_label("Try t6 with newton").click();
     harness.run();

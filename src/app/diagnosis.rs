@@ -11,7 +11,7 @@ use crate::words::{self, engineering, number, two_digits};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy that the integrator has added, or with a minus lost, over the energy that was put in: by the \
-                                    start, loads and hands";
+                                    initial state, loads and grabs";
 
 /// Main source of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -249,7 +249,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     };
     if !simulation.status().is_success() {
         let words = rho(input).filter(|&rho| rho > 1.0).map_or_else(
-            || fill!("The %{method} iteration does not get there.", method = tr(scene.solver.method.id())),
+            || fill!("The %{method} iteration does not converge.", method = tr(scene.solver.method.id())),
             |rho| fill!("Cannot converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
         );
         return (scene.solver.method != MethodKind::Newton).then(|| with_newton(words));
@@ -257,13 +257,13 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     let off = errors.own.filter(|&error| error > LARGE)?;
     let off = percent(off);
     if errors.source == Some(ErrorSource::Theory) {
-        return Some(with_newton(fill!("%{error} off: linear theory does not turn with the body.", error = off)));
+        return Some(with_newton(fill!("%{error} error: linear theory does not rotate with the body.", error = off)));
     }
     if scene.element() == ElementKind::T3 {
         let better = [ElementKind::T6, ElementKind::Q4].into_iter().find(|e| scene.elements().any(|own| own == *e))?;
         let mut scene = Box::new(scene.clone());
         scene.set_element(better);
-        let words = fill!("%{error} off: three-node triangles lock in bending.", error = off);
+        let words = fill!("%{error} error: three-node triangles lock in bending.", error = off);
         // A body that bends more rotates more, and the warped iteration may then diverge.
         let offer = if scene.solver.method == MethodKind::Warped {
             scene.solver.method = MethodKind::Newton;
@@ -277,7 +277,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     let beam = scene.beam.as_mut()?;
     beam.cells = beam.cells.map(|n| n.saturating_mul(2));
     let fits = f64::from(beam.cells[0]) * f64::from(beam.cells[1]) <= limits::TOTAL_CELLS.max;
-    let words = fill!("%{error} off: the mesh is coarse.", error = off);
+    let words = fill!("%{error} error: the mesh is coarse.", error = off);
     fits.then_some(Remedy { words, offer: tr("Halve its cells").to_owned(), edits: "Cells along", scene })
 }
 

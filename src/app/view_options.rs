@@ -28,7 +28,7 @@ pub(crate) struct ModeEntry {
 
 /// All modes, in the order of the toolbar.
 pub(crate) const MODES: &[ModeEntry] = &[
-    ModeEntry { mode: Mode::Explore, name: "Explore", about: "The body, its load, and how far from the truth it is" },
+    ModeEntry { mode: Mode::Explore, name: "Explore", about: "The body, its load, and the error of the solution" },
     ModeEntry {
         mode: Mode::Learn,
         name: "Learn",
@@ -37,7 +37,7 @@ pub(crate) const MODES: &[ModeEntry] = &[
     ModeEntry {
         mode: Mode::Compare,
         name: "Compare",
-        about: "Methods, integrators, elements and meshes beside each other under one load (K)",
+        about: "Methods, integrators, elements and meshes side by side under one load (K)",
     },
     ModeEntry {
         mode: Mode::Budget,
@@ -81,7 +81,7 @@ impl CurvePlot {
 
     pub(crate) fn words(self) -> (&'static str, &'static str) {
         match self {
-            Self::Reaction => ("Reaction", "The reaction of the support over its way"),
+            Self::Reaction => ("Reaction", "The reaction of the support over its displacement"),
             Self::Path => ("Path", "The path of the point where errors are measured: u_y against u_x, in one scale"),
             Self::X => ("u_x", "u_x against load, where errors are measured"),
             Self::Y => ("u_y", "u_y against load, where errors are measured"),

@@ -13,7 +13,7 @@ use crate::scene::IntegratorKind;
 pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::ImplicitEuler,
     id: "implicit-euler",
-    about: "Implicit Euler, the article's and the games' way: never unstable, one solve a step, but motion dies away.",
+    about: "Implicit Euler, as in the article and in many games: always stable, one solve a step, but it damps the motion.",
     order: 1,
     stages: 1,
     always_iterates: false,

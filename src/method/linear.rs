@@ -10,7 +10,7 @@ use crate::scene::MethodKind;
 pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Linear,
     id: "linear",
-    about: "Linear FEM: one solve, right only while rotations stay small; beams swell beyond.",
+    about: "Linear FEM: one solve, accurate only for small rotations; under larger ones the area of the body grows.",
     start: || Box::<Linear>::default(),
     motion: Some(MotionMethod::Linear),
 };

@@ -31,6 +31,6 @@ fn scene() -> Scene {
     scene.dynamics.duration = 5.0;
     scene.dynamics.damping.mass = 0.2;
     scene.dynamics.damping.stiffness = 0.01;
-    scene.about = "A soft block on a plate wobbles under its own weight: take hold of it and pull.".to_owned();
+    scene.about = "A soft block on a plate wobbles under its own weight: grab it and pull.".to_owned();
     scene
 }

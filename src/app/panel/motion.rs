@@ -44,8 +44,8 @@ const TIME: [NumberRow; 4] = [
     },
     NumberRow {
         field: NumberField {
-            label: "Air a",
-            tooltip: "Damping by mass, 1/s: slows everything down, as air does. Velocities fall by a factor e in 2/a seconds.",
+            label: "Mass damping α",
+            tooltip: "Mass-proportional (Rayleigh) damping α, 1/s: slows everything down. Velocities fall by a factor e in 2/α seconds.",
             limit: limits::MASS_DAMPING,
             slider: 0.0..=10.0,
             scale: SliderScale::Logarithmic(1e-3),
@@ -56,8 +56,8 @@ const TIME: [NumberRow; 4] = [
     },
     NumberRow {
         field: NumberField {
-            label: "Inner b",
-            tooltip: "Damping by stiffness, s: stops vibrations inside the body, the fast ones first; turning is not damped.",
+            label: "Stiffness damping β",
+            tooltip: "Stiffness-proportional (Rayleigh) damping β, s: damps vibrations, the fast ones first; a rigid rotation is not damped.",
             limit: limits::STIFFNESS_DAMPING,
             slider: 0.0..=1.0,
             scale: SliderScale::Logarithmic(1e-5),
@@ -111,7 +111,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
     }
     show_message(ui, &state.messages, "Integrator");
     ui.horizontal_wrapped(|ui| {
-        ui.label(tr("Beside it"))
+        ui.label(tr("Compare integrators"))
             .on_hover_text(tr("The same motion under other integrators, as outlines and lines in the plots"));
         for entry in INTEGRATORS.iter().filter(|entry| entry.kind != settings.integrator) {
             let is_shown = input.playback.companions().iter().any(|c| c.integrator == entry.kind);

@@ -171,7 +171,7 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
     row("Drift", percent(100.0 * ledger.drift_of_input()), DRIFT_TIP);
     if let Some((_, force)) = input.simulation.hand() {
-        row("Hand", engineering(force.norm(), "N"), "Force of the hand that pulls the body");
+        row("Hand", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }
 }
 

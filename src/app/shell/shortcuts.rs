@@ -55,7 +55,7 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     key(Key::E, "Energy, tip and spectrum of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
     key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
     key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),
-    key(Key::K, "Compare: methods, elements and meshes beside each other, on or off", || {
+    key(Key::K, "Compare: methods, elements and meshes side by side, on or off", || {
         Action::Toggle(Toggle::Mode(Mode::Compare))
     }),
     key(Key::P, "Panel on or off", || Action::Toggle(Toggle::Panel)),

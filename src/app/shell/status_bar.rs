@@ -101,7 +101,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Head
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
-            tip: tr("Time of this solve, since the last change, without what is only looked at").to_owned(),
+            tip: tr("Time of the solve since the last change, without the time for display").to_owned(),
             color: palette.text,
             gauge: Gauge::Blocks(level((1e6 * seconds).max(1.0).log10())),
         },
@@ -114,7 +114,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Head
             word: Cow::default(),
             tip: tr(
                 "The factor by which each iteration of the warped method shrinks its error here; above 1 it grows, and \
-                 the iteration walks away",
+                 the iteration diverges",
             )
             .to_owned(),
             color: match rho {
@@ -262,7 +262,7 @@ fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
         n = input.simulation.iterations()
     );
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
-    response.on_hover_text(fill!("%{residual}; dashed: what is asked for", residual = words));
+    response.on_hover_text(fill!("%{residual}; dashed: the tolerance", residual = words));
 }
 
 /// Returns the text of the current phase of a background solve.

@@ -435,7 +435,7 @@ impl MotionCompare {
         });
         let first = self.panes.first().filter(|_| number > 0).and_then(MotionPane::tip);
         let apart = first.zip(pane.tip()).map(|(first, own)| {
-            fill!("tip %{distance} off", distance = engineering(three_digits((own - first).norm()), "m"))
+            fill!("tip differs by %{distance}", distance = engineering(three_digits((own - first).norm()), "m"))
         });
         joined(cost.into_iter().chain(drift).chain(apart))
     }
