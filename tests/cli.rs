@@ -670,7 +670,7 @@ fn a_scene_is_read_from_standard_input() {
     let mesh = mesh.replace("\"left\"", "\"wall\"").replace("edge = \"right\"", "at = [1.0, 1.0]");
     let solved = run(&["solve", "-"], &mesh);
     assert_eq!(solved.status.code(), Some(0), "{}", stderr(&solved));
-    // An error that is found only with the mesh has a line number, although standard input can be read only once.
+    // An error that only the meshing finds names the line of the scene, also of a scene from standard input.
     let wrong = run(&["solve", "-"], &GOOD.replacen("\"right\"", "\"rihgt\"", 1));
     assert_eq!(wrong.status.code(), Some(2));
     assert!(stderr(&wrong).contains("-:17: load.0.edge: expected one of"), "{}", stderr(&wrong));

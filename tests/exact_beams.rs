@@ -108,6 +108,6 @@ fn scenes_with_a_truth_are_recognised() {
     for id in ["bridge", "shear", "cook", "bracket"] {
         assert_eq!(BeamTruth::of(&scene(id)), None, "{id}");
     }
-    // No exact beam exists for a load elsewhere.
+    // The exact beam has its load at the free end; a load at another place has none.
     assert_eq!(BeamTruth::of(&scene_with("cantilever", &["load.0.edge=top"])), None);
 }

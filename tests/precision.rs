@@ -385,7 +385,8 @@ fn the_bound_of_rounding_holds_out_of_balance() {
     }
 }
 
-/// A solve that ends at the limit of precision reports the bound; one that stops above it does not.
+/// A solve that ends at the limit of precision reports the bound of its rounding error; one that stops above that bound
+/// does not.
 #[test]
 fn working_precision_is_called_what_it_is() {
     for element in ElementKind::all() {

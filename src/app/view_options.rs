@@ -15,7 +15,7 @@ pub(crate) enum Mode {
     Learn,
     /// Two to four settings side by side under one load.
     Compare,
-    /// Error against time, and the settings within given limits.
+    /// Mode with a plot of the error of measured settings against their time, and the settings within limits of both.
     Budget,
 }
 

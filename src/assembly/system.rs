@@ -309,7 +309,7 @@ impl System {
         self.turn_edges(state, kinematics);
     }
 
-    /// Sets edge angles to those of the displacement.
+    /// Sets the angles of the edges, rad, to those of the displaced edges.
     pub(super) fn turn_edges(&self, state: &mut State, kinematics: Kinematics) {
         let State { displacement: u, turns, .. } = state;
         for (edge, turn) in self.edges().iter().zip(turns).filter(|(edge, _)| edge.is_straight()) {

@@ -133,7 +133,7 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &
     written
 }
 
-/// Returns sentences about limitations of a result that do not depend on a reference.
+/// Returns sentences about the limitations of a result that are found without a reference solution.
 fn limits_of(simulation: &Simulation, stress: &StressResult) -> Vec<String> {
     let mut limits: Vec<String> = Vec::new();
     limits.extend(strain_warning(Deformation::of(simulation.problem(), simulation.state()).max_strain));

@@ -53,7 +53,7 @@ pub(super) struct ShotArgs {
     pub language: app::Language,
 }
 
-/// Panes of a comparison: one value of an option.
+/// Panes of a comparison, as the option --compare lists them.
 #[derive(Clone, Debug)]
 pub(super) struct Panes(pub Vec<app::PaneSetting>);
 

@@ -10,7 +10,7 @@ use crate::rotation::{Rotation, polar_or};
 /// Discrete gradient between two deformation gradients F₀ = I + H₀ and F₁ = I + H₁.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteGradient<T: Number = f64> {
-    /// F̄ − R̄, F̄ = (F₀ + F₁)/2.
+    /// Mean strain F̄ − R̄, where F̄ = (F₀ + F₁)/2 and R̄ is the mean rotation.
     strain: Matrix2<T>,
     /// R̄ = (r₀R₀ + r₁R₁)/(r₀ + r₁), r = tr S: not a rotation in general.
     mean_rotation: Matrix2<T>,

@@ -174,7 +174,7 @@ pub trait Method: std::fmt::Debug + Send + Sync {
         None
     }
 
-    /// Returns the decisions that saved work; `None` for methods that make none.
+    /// Returns counts of the solves and factorizations that were skipped; `None` for methods that skip none.
     fn report(&self) -> Option<AutoReport> {
         None
     }

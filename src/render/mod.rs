@@ -131,7 +131,7 @@ impl Gpu {
         Ok(Self { adapter, device, queue })
     }
 
-    /// Returns the largest side of a texture, pixels.
+    /// Returns the largest width or height of a texture that the GPU supports, pixels.
     #[must_use]
     pub fn max_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d

@@ -137,7 +137,7 @@ impl Lab {
         self.desk.viewport.fitted(&self.content(), low, high, view)
     }
 
-    /// Shows or hides the outlines at rest, of the linear solution and of the reference solution.
+    /// Shows or hides three outlines: of the body at rest, of the linear solution and of the reference solution.
     pub fn set_outlines(&mut self, shown: bool) {
         let view = &mut self.desk.view;
         (view.rest_outline, view.ghost, view.exact) = (shown, shown, shown);

@@ -111,7 +111,7 @@ pub struct Lab {
     pub(super) card: usize,
     pub(super) intro: Option<Intro>,
     pub(super) dialog: Option<FileDialog>,
-    /// Question about unsaved edits.
+    /// State of the dialog that asks about unsaved edits.
     pub(super) question: Question,
     /// Edits left by a crashed window, while they are offered.
     pub(super) left: Option<Unsaved>,

@@ -1,4 +1,4 @@
-//! Quality of a result at rest beyond its convergence, computed once per state.
+//! Quality of an equilibrium other than its convergence, computed once per state.
 
 use nalgebra::Vector2;
 

@@ -30,7 +30,8 @@ pub(crate) struct Bodies {
 }
 
 impl Bodies {
-    /// Returns copies to display; `None` for a motion.
+    /// Returns copies of both simulations to display while the solve goes on; `None` for a motion, which has no
+    /// search.
     fn snapshot(&self) -> Option<Self> {
         let linear = self.linear.as_ref().and_then(Simulation::snapshot);
         Some(Self { simulation: self.simulation.snapshot()?, linear })

@@ -37,7 +37,7 @@ pub(crate) struct Overlay<'a> {
     pub ghost: Option<&'a [Vector2<f64>]>,
     /// Outline of the reference solution, m: closed lines.
     pub exact: &'a [Vec<Vector2<f64>>],
-    /// Errors of the body and of the linear solution.
+    /// Errors of the tip displacement, of the solution and of linear theory.
     pub errors: Errors,
     /// Simulated time, s.
     pub time: f64,

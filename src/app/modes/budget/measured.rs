@@ -33,7 +33,7 @@ pub(crate) enum Group {
 }
 
 impl Measured {
-    /// Returns every setting that has an error.
+    /// Returns every setting whose error was measured.
     pub(crate) fn choices(&self) -> Vec<Choice> {
         match self {
             Self::Rest(study) => study.measurements.iter().copied().map(Choice::Rest).collect(),

@@ -1,5 +1,5 @@
 //! Mode Learn: the article on a row of cards. Each card sets up its scene, and the user can change everything at any
-//! time. The user's own desk is put aside, and restored when the mode ends.
+//! time. The user's own scene is put aside, and restored when the mode ends.
 
 use egui::{Context, FontId, Key, Painter, Panel, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use nalgebra::Vector2;
@@ -473,7 +473,7 @@ fn text(ui: &mut Ui, card: &Card) {
         ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
         ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
     });
-    // In a low row, which scrolls, the task comes before the symbols.
+    // In a low window the row of cards scrolls: the task comes first, so that it is seen without scrolling.
     if is_low {
         symbols(ui);
     }
