@@ -539,6 +539,11 @@ fn edits_survive_a_killed_window() {
         let (_place, left) = Recovery::open(&copies).unwrap();
         let mut harness = laid_out();
         harness.state_mut().offer(left.unwrap());
+        // Learn shows a scene of its own, to which the edits do not belong.
+        harness.state_mut().show_card(1);
+        harness.run();
+        assert!(harness.query_by_role_and_label(Role::Button, "Restore").is_none());
+        harness.get_by_role_and_label(Role::Button, "Leave").click();
         harness.run();
         harness.get_by_role_and_label(Role::Button, "Restore").rect().center()
     };

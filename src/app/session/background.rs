@@ -248,7 +248,7 @@ impl Session {
     }
 
     fn take_update(&mut self, update: SolveUpdate) {
-        let is_cancelled = matches!(self.background.work, Work::Cancelled { .. });
+        let is_cancelled = self.background.work.solve().is_some_and(BackgroundSolve::is_discarded);
         match update {
             SolveUpdate::None | SolveUpdate::Phase => {}
             SolveUpdate::Snapshot(_) if is_cancelled => {}
@@ -394,7 +394,7 @@ impl Session {
 
     /// Cancels the background solve, and restores the session before the edit.
     pub(crate) fn cancel(&mut self) {
-        self.stop_solve();
+        self.background.work.solve_mut().into_iter().for_each(BackgroundSolve::discard);
         self.roll_back();
         // An iteration that had not ended before the edit would otherwise continue at once.
         self.running &= self.simulation.is_at_rest();

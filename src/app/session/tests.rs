@@ -100,6 +100,30 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
 }
 
 #[test]
+fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
+    let mut session = session(cantilever(-100.0));
+    session.solve(false);
+    let first = session.scene().clone();
+    session.set_most_unknowns(0);
+    for cells in [[16, 4], [8, 2]] {
+        let cancelled = first.clone().with_cells(cells[0], cells[1]).force("top", [0.0, -50.0]);
+        session.apply(Edit::Scene("Force", Box::new(cancelled.clone()))).unwrap();
+        // The thread reports a snapshot, which nothing has polled when the user cancels.
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        session.cancel();
+        session.apply(with_force(&session, -150.0)).unwrap();
+        while session.is_working() {
+            session.poll();
+            assert!(*session.simulation().scene() != cancelled, "the display shows the cancelled scene");
+        }
+        assert!(session.simulation().status().is_success() && session.simulation().scene() == session.scene());
+        session.apply(Edit::Undo).unwrap();
+        wait(&mut session);
+        assert_eq!(*session.scene(), first);
+    }
+}
+
+#[test]
 fn a_model_that_is_refused_in_the_background_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = session(cantilever(-100.0));

@@ -6,7 +6,7 @@ use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::explore::figure;
 use crate::app::modes::learn;
-use crate::app::session::Edit;
+use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Departure, Desk, Lab, Request};
 use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::arrow::vector;
@@ -20,6 +20,9 @@ impl Lab {
     pub(super) fn follow_session(&mut self) {
         let Desk { session, viewport, view, panel, budget, compare, motions } = &mut self.desk;
         let changed = session.take_changed();
+        if changed == Changed::default() {
+            return;
+        }
         if changed.scene {
             self.intro = None;
             view.drawer = view.drawer.map(|_| Drawer::of(session.simulation().scene()));
@@ -39,6 +42,9 @@ impl Lab {
             viewport.start(mesh);
             view.why = false;
             view.fixed_range = None;
+            if let Some(lesson) = &mut self.lesson {
+                lesson.learn.line = 0;
+            }
         }
     }
 
@@ -64,8 +70,14 @@ impl Lab {
             Action::Save => self.save_here(ctx),
             Action::SaveAs => self.ask_where_to_save(),
             Action::Undo | Action::Redo => {
-                self.desk.panel.messages.clear();
-                self.apply(ctx, if action == Action::Undo { Edit::Undo } else { Edit::Redo });
+                let (is_possible, edit) = match action {
+                    Action::Undo => (self.can_undo(), Edit::Undo),
+                    _ => (self.can_redo(), Edit::Redo),
+                };
+                if is_possible {
+                    self.desk.panel.messages.clear();
+                    self.apply(ctx, edit);
+                }
             }
             Action::Escape if self.desk.view.help => self.desk.view.help = false,
             Action::Cancel => self.cancel(),
@@ -185,7 +197,7 @@ impl Lab {
         let line = self.lesson.as_ref().and_then(|lesson| lesson.learn.next_line(session.simulation(), ended));
         let Some(line) = line.filter(|_| !session.is_in_background()) else {
             session.step();
-            return;
+            return self.follow_session();
         };
         session.pause();
         if ended && line == learn::AT_REST {
@@ -212,6 +224,7 @@ impl Lab {
                 lesson.learn.line = 0;
             }
         }
+        self.follow_session();
     }
 
     /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document.

@@ -16,7 +16,7 @@ use crate::app::view_options::{Drawer, Mode, ViewOptions};
 use crate::app::viewport::view::{CardContent, Content, Viewport};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::{Scene, Source};
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, Status};
 
 /// Request of the lab to the window that shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -178,6 +178,7 @@ impl Lab {
         } else if self.desk.session.advance(now) {
             self.show_last_line();
         }
+        self.follow_session();
         self.iterates()
     }
 
@@ -207,8 +208,10 @@ impl Lab {
 
     /// Iterates until the status is final, or to the end of the motion's duration, and computes all displayed results.
     pub fn solve(&mut self) {
+        let has_search = *self.simulation().status() == Status::Running;
+        self.desk.session.solve(self.desk.view.drawer == Some(Drawer::Curve));
+        self.follow_session();
         let Desk { session, view, compare, .. } = &mut self.desk;
-        session.solve(view.drawer == Some(Drawer::Curve));
         if session.is_motion() {
             return;
         }
@@ -218,7 +221,9 @@ impl Lab {
         if view.mode == Mode::Compare {
             compare.settle(session.scene(), session.simulation().system());
         }
-        self.show_last_line();
+        if has_search {
+            self.show_last_line();
+        }
     }
 
     /// Returns the content of the body's view.

@@ -111,7 +111,8 @@ impl Lab {
 
     /// Offers the edits left by a crashed window, until the user answers.
     pub(crate) fn offer_unsaved(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
-        let Some(left) = &self.left else { return };
+        // The edits are restored to the user's own scene, which Learn puts aside.
+        let Some(left) = self.left.as_ref().filter(|_| self.lesson.is_none()) else { return };
         let words = fill!(
             "Unsaved changes to “%{scene}” were found: warpbeam ended unexpectedly.",
             scene = tr(&left.scene.name)

@@ -133,6 +133,8 @@ pub(crate) struct BackgroundSolve {
     task: Task<Progress, Outcome>,
     scene: Scene,
     is_new: bool,
+    /// `true` once the user has cancelled the solve: its snapshots and its result are not displayed.
+    is_discarded: bool,
     phase: Phase,
 }
 
@@ -145,7 +147,7 @@ impl BackgroundSolve {
         let (scene, is_new) = (request.scene.clone(), matches!(request.model, Model::New));
         let phase = if is_new { Phase::Meshing } else { Phase::Iterating(0) };
         let task = Task::start("solve", move |reporter| run(request, reporter))?;
-        Ok(Self { task, scene, is_new, phase })
+        Ok(Self { task, scene, is_new, is_discarded: false, phase })
     }
 
     /// Returns the scene that is solved.
@@ -160,6 +162,17 @@ impl BackgroundSolve {
 
     pub(crate) fn phase(&self) -> Phase {
         self.phase
+    }
+
+    /// Cancels the solve, whose snapshots and result are not to be displayed.
+    pub(crate) fn discard(&mut self) {
+        self.is_discarded = true;
+        self.cancel();
+    }
+
+    /// Returns `true` if the snapshots and the result are not to be displayed.
+    pub(crate) fn is_discarded(&self) -> bool {
+        self.is_discarded
     }
 
     /// Cancels the solve; it ends with the model that it has.

@@ -376,7 +376,12 @@ impl Pane {
 
     /// Starts a solve in the background.
     fn send(&mut self, scene: Scene, model: PaneModel, start: Start) {
-        let iterations = self.setting.iterations;
+        // A search that continues has made a part of its iterations.
+        let made = match (&model.simulation, &start) {
+            (Some(simulation), Start::Present) if *simulation.scene() == scene => simulation.iterations(),
+            _ => 0,
+        };
+        let iterations = self.setting.iterations.map(|most| most.saturating_sub(made));
         let (model, residuals) = (model.into(), Vec::new());
         let request = SolveRequest { scene, model, start, iterations, residuals, is_displayed: false };
         self.body = match BackgroundSolve::start(request) {
