@@ -412,7 +412,7 @@ fn remedies_are_one_click_away() {
     let mut harness = self::harness("cook");
     wait(&mut harness, "the truth", |lab| !lab.is_searching());
     harness.run();
-    assert!(harness.query_by_label_contains("linear theory does not turn").is_some(), "{:?}", texts(&harness));
+    assert!(harness.query_by_label_contains("linear theory does not rotate").is_some(), "{:?}", texts(&harness));
 }
 
 /// If ρ is above 1 although the result has converged, the window explains why.
