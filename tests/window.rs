@@ -541,10 +541,10 @@ fn edits_survive_a_killed_window() {
         harness.state_mut().offer(left.unwrap());
         // Learn shows a scene of its own, to which the edits do not belong.
         harness.state_mut().show_card(1);
-        harness.run();
+        harness.run_steps(3);
         assert!(harness.query_by_role_and_label(Role::Button, "Restore").is_none());
         harness.get_by_role_and_label(Role::Button, "Leave").click();
-        harness.run();
+        harness.run_steps(3);
         harness.get_by_role_and_label(Role::Button, "Restore").rect().center()
     };
     let next = Window::open(&desktop, &["run", "article"]);
