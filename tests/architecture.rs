@@ -7,8 +7,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+mod common;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+
+use common::rust_files;
 
 /// Layers from the lowest to the highest, with their files and folders in `src`. The longest matching entry counts;
 /// `lib` is the crate's root.
@@ -141,24 +145,16 @@ fn starts_with(module: &[String], path: &[&str]) -> bool {
 /// Reads every file of the library.
 fn sources(root: &Path) -> Sources {
     let mut sources = Sources::new();
-    let mut folders = vec![root.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let file = entry.unwrap().path();
-            if file.is_dir() {
-                folders.push(file);
-            } else if file.extension().is_some_and(|extension| extension == "rs") {
-                let relative = file.strip_prefix(root).unwrap().with_extension("");
-                let mut module: Module = relative.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
-                // Programs are separate crates, and tests may import everything.
-                if module[0] == "main" || module[0] == "bin" || module.last().is_some_and(|name| name == "tests") {
-                    continue;
-                }
-                module.pop_if(|last| last == "mod" || last == "lib");
-                let (code, uses) = take_uses(&code(&std::fs::read_to_string(&file).unwrap()));
-                sources.insert(module, Source { file, code, uses });
-            }
+    for file in rust_files(root) {
+        let relative = file.strip_prefix(root).unwrap().with_extension("");
+        let mut module: Module = relative.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
+        // Programs are separate crates, and tests may import everything.
+        if module[0] == "main" || module[0] == "bin" || module.last().is_some_and(|name| name == "tests") {
+            continue;
         }
+        module.pop_if(|last| last == "mod" || last == "lib");
+        let (code, uses) = take_uses(&code(&std::fs::read_to_string(&file).unwrap()));
+        sources.insert(module, Source { file, code, uses });
     }
     sources
 }

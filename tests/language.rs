@@ -231,12 +231,9 @@ fn unescaped(literal: &str) -> String {
     text
 }
 
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let (folders, files): (Vec<PathBuf>, Vec<PathBuf>) = entries.partition(|path| path.is_dir());
-    // Files of unit tests show no text.
-    let files = files.into_iter().filter(|file| !file.ends_with("tests.rs"));
-    files.chain(folders.iter().flat_map(|folder| sources(folder))).collect()
+/// Returns the sources of the window. Files of unit tests show no text.
+fn sources(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    common::rust_files(folder).into_iter().filter(|file| !file.ends_with("tests.rs"))
 }
 
 /// Literals of the window's sources that are not shown in it: copied texts, ids, variables, and messages

@@ -799,21 +799,13 @@ fn decisions_are_shown() {
 /// The window's fonts have every letter of its texts.
 #[test]
 fn no_text_has_letters_that_the_fonts_lack() {
-    fn sources(folder: &std::path::Path, texts: &mut Vec<String>) {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                sources(&path, texts);
-            } else if path.extension().is_some_and(|e| e == "rs") {
-                let text = std::fs::read_to_string(path).unwrap();
-                texts.extend(text.lines().map(|line| line.split("//").next().unwrap_or_default().to_owned()));
-            }
-        }
-    }
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut texts = Vec::new();
     for folder in ["app", "method", "element", "model", "scene", "simulation"] {
-        sources(&root.join("src").join(folder), &mut texts);
+        for file in common::rust_files(&root.join("src").join(folder)) {
+            let text = std::fs::read_to_string(file).unwrap();
+            texts.extend(text.lines().map(|line| line.split("//").next().unwrap_or_default().to_owned()));
+        }
     }
     let about = common::scene_ids().into_iter().map(|id| scene(id).about);
     texts.extend(about);

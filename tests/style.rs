@@ -6,7 +6,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use std::path::{Path, PathBuf};
+mod common;
+
+use common::rust_files;
 
 /// Checked folders, with all folders inside them.
 const FOLDERS: [&str; 4] = ["tests", "benches", "examples", "src"];
@@ -48,7 +50,7 @@ const EXCEPTIONS: [(&str, &str, &str); 0] = [];
 #[test]
 fn comments_are_plain_sentences() {
     let mut found = Vec::new();
-    for file in FOLDERS.iter().flat_map(|folder| files(folder.as_ref())) {
+    for file in FOLDERS.iter().flat_map(|folder| rust_files(folder.as_ref())) {
         let name = file.to_str().unwrap().replace('\\', "/");
         for (line, text) in violations(&std::fs::read_to_string(&file).unwrap()) {
             let excepted = |(file, fragment, _): &(&str, &str, &str)| name == *file && text.contains(fragment);
@@ -84,16 +86,6 @@ fn forbidden_openers_and_words_are_found() {
     }
     assert_eq!(lines("let a = (\"// What\", '\"', \"\\\"// nobody\n// nobody\"); // Somebody"), [2], "strings");
     assert_eq!(lines("let url = \"https://example.org\";\n\n// Whatever comes, as expected.\nf::<'a>();"), [0; 0]);
-}
-
-/// Returns all Rust files of a folder and the folders inside it.
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let (folders, mut files): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| path.is_dir());
-    files.retain(|file| file.extension().is_some_and(|extension| extension == "rs"));
-    files.extend(folders.iter().flat_map(|folder| self::files(folder)));
-    files
 }
 
 /// Returns the comment lines that break a rule, with their line numbers.
