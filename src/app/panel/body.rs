@@ -1,5 +1,6 @@
 //! Panel section of the material and the mesh.
 
+use crate::app::session::has_mesh_of;
 use egui::Ui;
 
 use crate::app::action::MOST_ITERATIONS;
@@ -165,7 +166,7 @@ pub(super) fn mesh_summary(input: &Readout<'_>) -> String {
         .as_ref()
         .map_or_else(|| tr("from a file").to_owned(), |beam| format!("{} × {}", beam.cells[0], beam.cells[1]));
     let made = input.simulation.scene();
-    if (&made.beam, &made.mesh) != (&input.scene.beam, &input.scene.mesh) {
+    if !has_mesh_of(made, input.scene) {
         return cells;
     }
     joined([cells, count(input.simulation.system().dofs() as u64, "unknown")])

@@ -36,17 +36,9 @@ enum Work {
     #[default]
     Idle,
     /// An edit waits for the background thread to start.
-    Waiting {
-        rollback: Box<Rollback>,
-    },
-    Running {
-        solve: BackgroundSolve,
-        rollback: Box<Rollback>,
-    },
-    /// The user has cancelled; the model is returned when the thread has ended.
-    Cancelled {
-        solve: BackgroundSolve,
-    },
+    Waiting { rollback: Box<Rollback> },
+    /// A solve is in progress; without a rollback the user has cancelled it, and the thread has not ended yet.
+    Running { solve: Box<BackgroundSolve>, rollback: Option<Box<Rollback>> },
 }
 
 /// Session before the first edit whose result is incomplete, restored if that edit is cancelled.
@@ -81,36 +73,47 @@ impl Default for Background {
 impl Work {
     fn solve(&self) -> Option<&BackgroundSolve> {
         match self {
-            Self::Running { solve, .. } | Self::Cancelled { solve } => Some(solve),
+            Self::Running { solve, .. } => Some(solve),
             Self::Idle | Self::Waiting { .. } => None,
         }
     }
 
     fn solve_mut(&mut self) -> Option<&mut BackgroundSolve> {
         match self {
-            Self::Running { solve, .. } | Self::Cancelled { solve } => Some(solve),
+            Self::Running { solve, .. } => Some(solve),
             Self::Idle | Self::Waiting { .. } => None,
         }
     }
 
     fn rollback(&mut self) -> Option<&mut Rollback> {
         match self {
-            Self::Running { rollback, .. } | Self::Waiting { rollback } => Some(rollback),
-            Self::Idle | Self::Cancelled { .. } => None,
+            Self::Running { rollback, .. } => rollback.as_deref_mut(),
+            Self::Waiting { rollback } => Some(rollback),
+            Self::Idle => None,
         }
     }
 
-    fn take_rollback(&mut self) -> Option<Box<Rollback>> {
+    /// Takes the solve that has ended; its rollback waits for the next one.
+    fn take_solve(&mut self) -> Option<Box<BackgroundSolve>> {
         match std::mem::take(self) {
             Self::Running { solve, rollback } => {
-                *self = Self::Cancelled { solve };
-                Some(rollback)
+                *self = rollback.map_or(Self::Idle, |rollback| Self::Waiting { rollback });
+                Some(solve)
             }
-            Self::Waiting { rollback } => Some(rollback),
             other => {
                 *self = other;
                 None
             }
+        }
+    }
+
+    fn take_rollback(&mut self) -> Option<Box<Rollback>> {
+        if let Self::Running { rollback, .. } = self {
+            return rollback.take();
+        }
+        match std::mem::take(self) {
+            Self::Waiting { rollback } => Some(rollback),
+            Self::Idle | Self::Running { .. } => None,
         }
     }
 }
@@ -130,7 +133,7 @@ impl Session {
     /// Returns the scene of the background solve, its current phase, and the time since the edit, s.
     pub(crate) fn work(&self) -> Option<(&Scene, Phase, u64)> {
         match &self.background.work {
-            Work::Running { solve, rollback } => {
+            Work::Running { solve, rollback: Some(rollback) } => {
                 Some((solve.scene(), solve.phase(), rollback.since.elapsed().as_secs()))
             }
             _ => None,
@@ -140,7 +143,16 @@ impl Session {
     /// Returns `true` if `scene` is set up in the background: it is large, and has a new mesh or is static. Time steps
     /// of motions are made between frames.
     pub(super) fn is_for_background(&self, scene: &Scene) -> bool {
-        scene.unknowns() > self.background.most_unknowns && self.needs_work(scene)
+        self.is_large(scene) && self.needs_work(scene)
+    }
+
+    /// Returns `true` if the requested scene is set up in the background.
+    fn is_wanted_in_background(&self) -> bool {
+        self.background.is_large && self.needs_work(&self.scene)
+    }
+
+    fn is_large(&self, scene: &Scene) -> bool {
+        scene.unknowns() > self.background.most_unknowns
     }
 
     fn needs_work(&self, scene: &Scene) -> bool {
@@ -150,12 +162,12 @@ impl Session {
 
     /// Returns `true` if the displayed model is solved in the background.
     pub(crate) fn is_in_background(&self) -> bool {
-        self.is_working() || self.background.is_large && self.needs_work(&self.scene)
+        self.is_working() || self.is_wanted_in_background()
     }
 
     /// Notes whether the wanted scene is large.
     pub(super) fn note_size(&mut self) {
-        self.background.is_large = self.scene.unknowns() > self.background.most_unknowns;
+        self.background.is_large = self.is_large(&self.scene);
     }
 
     /// Requests a scene, which the next background solve uses.
@@ -209,10 +221,10 @@ impl Session {
             snapshot: None,
             quality: Quality::default(),
         });
-        self.background.work = match std::mem::take(&mut self.background.work) {
-            Work::Cancelled { solve } | Work::Running { solve, .. } => Work::Running { solve, rollback },
-            Work::Idle | Work::Waiting { .. } => Work::Waiting { rollback },
-        };
+        match &mut self.background.work {
+            Work::Running { rollback: own, .. } => *own = Some(rollback),
+            work => *work = Work::Waiting { rollback },
+        }
     }
 
     /// Cancels the solve; it returns the model that it has.
@@ -250,18 +262,11 @@ impl Session {
     fn take_update(&mut self, update: SolveUpdate) {
         let is_cancelled = self.background.work.solve().is_some_and(BackgroundSolve::is_discarded);
         match update {
-            SolveUpdate::None | SolveUpdate::Phase => {}
-            SolveUpdate::Snapshot(_) if is_cancelled => {}
-            SolveUpdate::Snapshot(snapshot) => self.display(*snapshot),
+            SolveUpdate::None => {}
+            SolveUpdate::Progress(_) if is_cancelled => {}
+            SolveUpdate::Progress(snapshot) => self.display(*snapshot),
             SolveUpdate::Done(outcome) => {
-                let solve = match std::mem::take(&mut self.background.work) {
-                    Work::Running { solve, rollback } => {
-                        self.background.work = Work::Waiting { rollback };
-                        solve
-                    }
-                    Work::Cancelled { solve } => solve,
-                    other => return self.background.work = other,
-                };
+                let Some(solve) = self.background.work.take_solve() else { return };
                 match outcome {
                     Ok(solved) => self.receive(&solve, is_cancelled, *solved),
                     Err(rejected) => self.receive_rejection(&solve, is_cancelled, *rejected),
@@ -340,7 +345,7 @@ impl Session {
 
     /// Starts the next solve, if one is needed.
     fn start_solve(&mut self) {
-        if !(self.background.is_large && self.needs_work(&self.scene)) {
+        if !self.is_wanted_in_background() {
             return;
         }
         let background = &self.background;
@@ -369,7 +374,7 @@ impl Session {
         match BackgroundSolve::start(request) {
             Ok(solve) => {
                 if let Work::Waiting { rollback } = std::mem::take(&mut self.background.work) {
-                    self.background.work = Work::Running { solve, rollback };
+                    self.background.work = Work::Running { solve: Box::new(solve), rollback: Some(rollback) };
                 }
             }
             Err(error) => {
@@ -394,7 +399,7 @@ impl Session {
 
     /// Cancels the background solve, and restores the session before the edit.
     pub(crate) fn cancel(&mut self) {
-        self.background.work.solve_mut().into_iter().for_each(BackgroundSolve::discard);
+        self.background.work.solve_mut().into_iter().for_each(|solve| solve.discard());
         self.roll_back();
         // An iteration that had not ended before the edit would otherwise continue at once.
         self.running &= self.simulation.is_at_rest();

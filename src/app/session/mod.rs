@@ -385,7 +385,7 @@ impl Session {
         self.changed.document = true;
         self.running = true;
         self.playback = Playback::default();
-        self.facts.curve = Facts::default().curve;
+        self.facts.curve.clear();
         self.iterations = 1;
     }
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::app::action::Action;
 use crate::app::language::{fill, tr, translated};
-use crate::app::session::Edit;
 use crate::app::session::document::SaveError;
+use crate::app::session::{Edit, EditError};
 use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question};
 use crate::app::shell::messages::banner;
@@ -14,16 +14,19 @@ use crate::scene::Source;
 impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.
     pub(super) fn open(&mut self, ctx: &egui::Context, source: Source) {
-        if self.apply(ctx, Edit::Open(source)) {
-            self.note_recent();
+        if let Err(error) = self.try_open(source) {
+            self.say(ctx, translated(&error.to_string()));
         }
     }
 
-    /// Adds the scene's file to the recent files.
-    fn note_recent(&mut self) {
+    fn try_open(&mut self, source: Source) -> Result<(), EditError> {
+        let opened = self.desk.session.apply(Edit::Open(source));
+        self.follow_session();
+        opened?;
         if let Some(path) = self.desk.session.document().path() {
             self.settings.add_recent(path);
         }
+        Ok(())
     }
 
     /// Saves the scene to a file, and shows a message.
@@ -72,9 +75,8 @@ impl Lab {
                 None
             }
             Answer::File(path) if dialog.purpose == Purpose::Open => {
-                let opened = self.desk.session.apply(Edit::Open(Source { name: path, assignments: Vec::new() }));
-                self.follow_session();
-                opened.map(|_| self.note_recent()).err().map(|error| error.to_string())
+                let source = Source { name: path, assignments: Vec::new() };
+                self.try_open(source).err().map(|error| error.to_string())
             }
             Answer::File(path) => match self.save(ctx, &path) {
                 Ok(()) => {

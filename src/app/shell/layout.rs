@@ -5,7 +5,7 @@ use egui::{CentralPanel, Color32, Panel, Rect, Ui};
 use crate::app::action::Action;
 use crate::app::diagnosis::{self, Errors};
 use crate::app::language::{self, spaced, tr};
-use crate::app::modes::compare::{Compare, CompareInput};
+use crate::app::modes::compare::{Compare, CompareInput, MotionCompare, PaneInput};
 use crate::app::modes::explore::{load_curve, motion_plot};
 use crate::app::modes::learn::{self, Shown};
 use crate::app::panel::{self, PANEL_WIDTH};
@@ -191,8 +191,8 @@ impl Lab {
     /// Shows the presets over the compared panes, and the load curve under them.
     fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         if self.desk.session.is_motion() {
-            let Desk { session, viewport, view, panel, motions, .. } = &mut self.desk;
-            return motions.bars(ui, &Desk::pane_input(session, view, panel, viewport.eases()));
+            let (motions, input) = self.compared_motions();
+            return motions.bars(ui, &input);
         }
         let (compare, input) = self.compared();
         compare.bars(ui, &input, actions);
@@ -203,8 +203,8 @@ impl Lab {
         let rect = ui.available_rect_before_wrap();
         self.desk.viewport.set_rect(rect);
         let interaction = if self.desk.session.is_motion() {
-            let Desk { session, viewport, view, panel, motions, .. } = &mut self.desk;
-            motions.show(ui, &Desk::pane_input(session, view, panel, viewport.eases()))
+            let (motions, input) = self.compared_motions();
+            motions.show(ui, &input)
         } else {
             // The reference solution does not depend on the iteration of the panel's own setting.
             if !self.desk.compare.is_iterating() && self.desk.session.request_reference() {
@@ -232,6 +232,12 @@ impl Lab {
             chosen: budget.chosen(),
         };
         (compare, input)
+    }
+
+    /// Returns the comparison of motions, and its input.
+    fn compared_motions(&mut self) -> (&mut MotionCompare, PaneInput<'_>) {
+        let Desk { session, viewport, view, panel, motions, .. } = &mut self.desk;
+        (motions, Desk::pane_input(session, view, panel, viewport.eases()))
     }
 
     /// Shows the row of cards under the body.

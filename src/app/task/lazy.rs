@@ -40,6 +40,12 @@ impl<T: Send + 'static> Lazy<T> {
         }
     }
 
+    /// Forgets the value and the previous one.
+    pub(crate) fn clear(&mut self) {
+        self.invalidate();
+        self.previous = None;
+    }
+
     /// Polls the computation, and starts it if the value is unknown. Returns `true` while it is pending.
     pub(crate) fn request(&mut self, scene: &Scene) -> bool {
         if self.value.is_some() {

@@ -117,15 +117,7 @@ pub(crate) struct Rejected {
 type Outcome = Result<Box<Solved>, Box<Rejected>>;
 
 /// Update of a background solve.
-#[derive(Debug)]
-pub(crate) enum SolveUpdate {
-    None,
-    Phase,
-    Snapshot(Box<Snapshot>),
-    Done(Outcome),
-    /// The thread ended without a result.
-    Died,
-}
+pub(crate) type SolveUpdate = Update<Box<Snapshot>, Outcome>;
 
 /// Solve in a background thread. Dropping it cancels it.
 #[derive(Debug)]
@@ -182,26 +174,27 @@ impl BackgroundSolve {
 
     /// Returns the next update without waiting for it.
     pub(crate) fn poll(&mut self) -> SolveUpdate {
-        let update = self.task.poll();
-        self.note(update)
+        self.next(Task::poll)
     }
 
     /// Waits for the next update.
     pub(crate) fn wait(&mut self) -> SolveUpdate {
-        let update = self.task.wait();
-        self.note(update)
+        self.next(Task::wait)
     }
 
-    fn note(&mut self, update: Update<Progress, Outcome>) -> SolveUpdate {
-        match update {
-            Update::None => SolveUpdate::None,
-            Update::Progress(Progress::Phase(phase)) => {
-                self.phase = phase;
-                SolveUpdate::Phase
-            }
-            Update::Progress(Progress::Snapshot(snapshot)) => SolveUpdate::Snapshot(snapshot),
-            Update::Done(outcome) => SolveUpdate::Done(outcome),
-            Update::Died => SolveUpdate::Died,
+    /// Returns the next update, and records the phases that are reported before it.
+    fn next(&mut self, update: fn(&Task<Progress, Outcome>) -> Update<Progress, Outcome>) -> SolveUpdate {
+        loop {
+            return match update(&self.task) {
+                Update::None => Update::None,
+                Update::Progress(Progress::Phase(phase)) => {
+                    self.phase = phase;
+                    continue;
+                }
+                Update::Progress(Progress::Snapshot(snapshot)) => Update::Progress(snapshot),
+                Update::Done(outcome) => Update::Done(outcome),
+                Update::Died => Update::Died,
+            };
         }
     }
 }
@@ -234,32 +227,37 @@ pub(crate) fn solve_linear(scene: &Scene, system: &Arc<System>, known: Option<Si
     Some(linear)
 }
 
-/// Creates the model of a request, before its first iteration.
-fn set_up(scene: &Scene, model: Model, is_displayed: bool) -> Result<(Bodies, Option<DisplayGeometry>), Box<Rejected>> {
-    let rejected = |error| Box::new(Rejected { error, model: None });
-    let made = |simulation| (Bodies { simulation, linear: None }, None);
-    match model {
-        Model::Existing(own) if own.0.simulation.scene() == scene => Ok(*own),
-        Model::Existing(mut own) => match own.0.simulation.change_scene(scene) {
-            Ok(()) => Ok(*own),
-            Err(error) => Err(Box::new(Rejected { error, model: Some(*own) })),
-        },
-        Model::Equations(system) => Simulation::with_system(scene, system).map(made).map_err(rejected),
-        Model::New => {
-            let (bodies, _) = Simulation::new(scene).map(made).map_err(rejected)?;
-            let geometry = is_displayed.then(|| {
-                // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
-                let _ = bodies.simulation.system().recovery();
-                DisplayGeometry::new(bodies.simulation.system().mesh())
-            });
-            Ok((bodies, geometry))
-        }
+impl Model {
+    /// Sets up the model of a scene, before its first iteration.
+    ///
+    /// # Errors
+    /// [`Rejected`].
+    pub(crate) fn set_up(self, scene: &Scene) -> Result<(Bodies, Option<DisplayGeometry>), Box<Rejected>> {
+        let made = match self {
+            Self::Existing(own) if own.0.simulation.scene() == scene => return Ok(*own),
+            Self::Existing(mut own) => {
+                return match own.0.simulation.change_scene(scene) {
+                    Ok(()) => Ok(*own),
+                    Err(error) => Err(Box::new(Rejected { error, model: Some(*own) })),
+                };
+            }
+            Self::Equations(system) => Simulation::with_system(scene, system),
+            Self::New => Simulation::new(scene),
+        };
+        let simulation = made.map_err(|error| Box::new(Rejected { error, model: None }))?;
+        Ok((Bodies { simulation, linear: None }, None))
     }
 }
 
 fn run(request: SolveRequest, reporter: &Reporter<Progress, Outcome>) -> Outcome {
     let SolveRequest { scene, model, start, iterations, mut residuals, is_displayed } = request;
-    let (mut bodies, mut geometry) = set_up(&scene, model, is_displayed)?;
+    let needs_geometry = is_displayed && matches!(model, Model::New);
+    let (mut bodies, mut geometry) = model.set_up(&scene)?;
+    if needs_geometry {
+        // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
+        let _ = bodies.simulation.system().recovery();
+        geometry = Some(DisplayGeometry::new(bodies.simulation.system().mesh()));
+    }
     match start {
         Start::Present => {}
         Start::Rest => bodies.simulation.reset(),

@@ -111,8 +111,32 @@ pub(super) fn body_place(cell: Rect) -> Rect {
     place.round_ui()
 }
 
+/// Change of a pane by its header: the pane's number, and its new setting; `None` closes the pane.
+pub(super) type PaneChange<S> = Option<(usize, Option<S>)>;
+
+/// Shows the headers and bodies of all panes in their cells; returns the change that a header asks for, and the
+/// pointer's interaction with the load of a pane.
+pub(super) fn show_panes<C, I, S>(
+    ui: &mut Ui,
+    cells: &[Rect],
+    (comparison, input): (&mut C, &I),
+    show_header: fn(&C, &mut Ui, usize, &I, &mut PaneChange<S>),
+    show_body: fn(&mut C, &Ui, usize, Rect, &I) -> Interaction,
+) -> (PaneChange<S>, Interaction) {
+    let (mut change, mut interaction) = (None, Interaction::default());
+    for (number, cell) in cells.iter().enumerate() {
+        let place = body_place(*cell);
+        header(ui, number, [*cell, place], |ui| show_header(comparison, ui, number, input, &mut change));
+        let own = show_body(comparison, ui, number, place, input);
+        if own.load.is_some() || own.restore.is_some() {
+            interaction = own;
+        }
+    }
+    (change, interaction)
+}
+
 /// Shows the header of a pane, above the area of its body.
-pub(super) fn header(ui: &mut Ui, number: usize, [cell, place]: [Rect; 2], contents: impl FnOnce(&mut Ui)) {
+fn header(ui: &mut Ui, number: usize, [cell, place]: [Rect; 2], contents: impl FnOnce(&mut Ui)) {
     let header = Rect::from_min_max(cell.min, place.right_top());
     let inner = header.shrink2(vec2(8.0, 3.0));
     ui.scope_builder(UiBuilder::new().max_rect(inner).id_salt(("pane", number)), |ui| {

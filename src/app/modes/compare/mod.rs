@@ -9,7 +9,7 @@ use egui::{
 };
 use nalgebra::Vector2;
 
-use self::grid::{Grid, PaneBody, Preset, grow};
+use self::grid::{Grid, PaneBody, PaneChange, Preset, grow};
 use self::pane::{Doing, Equations, Turn};
 use self::setting::PANES;
 use self::trace::Trace;
@@ -295,15 +295,7 @@ impl Compare {
             pane.place = Some(grid::body_place(*cell));
         }
         self.look(ui, input);
-        let (mut change, mut wish) = (None, Interaction::default());
-        for (number, cell) in cells.into_iter().enumerate() {
-            let Some(place) = self.panes.get(number).and_then(Pane::place) else { continue };
-            grid::header(ui, number, [cell, place], |ui| self.header(ui, number, input, &mut change));
-            let own = self.body(ui, number, place, input);
-            if own.load.is_some() || own.restore.is_some() {
-                wish = own;
-            }
-        }
+        let (change, interaction) = grid::show_panes(ui, &cells, (self, input), Self::header, Self::body);
         self.show_values(ui, input.common.view);
         self.key(ui, key, input.common.view);
         match change {
@@ -321,7 +313,7 @@ impl Compare {
             _ => {}
         }
         ui.advance_cursor_after_rect(whole);
-        wish
+        interaction
     }
 
     /// Shows the values at the point of the body under the pointer, in every pane.
@@ -387,13 +379,7 @@ impl Compare {
     }
 
     /// Shows the pickers of a pane, and its result.
-    fn header(
-        &self,
-        ui: &mut Ui,
-        number: usize,
-        input: &CompareInput<'_>,
-        change: &mut Option<(usize, Option<PaneSetting>)>,
-    ) {
+    fn header(&self, ui: &mut Ui, number: usize, input: &CompareInput<'_>, change: &mut PaneChange<PaneSetting>) {
         let Some(pane) = self.panes.get(number) else { return };
         let palette = Palette::new(ui.visuals());
         let shown = pane.setting.of(input.common.scene);

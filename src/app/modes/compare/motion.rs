@@ -6,7 +6,7 @@ use std::time::Instant;
 use egui::{Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 use nalgebra::Vector2;
 
-use super::grid::{self, Grid, PaneBody, PaneInput, Preset, grow};
+use super::grid::{self, Grid, PaneBody, PaneChange, PaneInput, Preset, grow};
 use super::setting::PANES;
 use super::{mesh_picker, pick};
 use crate::app::language::{fill, joined, percent, sentence, tr, translated};
@@ -326,15 +326,7 @@ impl MotionCompare {
             pane.place = Some(grid::body_place(*cell));
         }
         self.look(ui, input);
-        let (mut change, mut wish) = (None, Interaction::default());
-        for (number, cell) in cells.into_iter().enumerate() {
-            let Some(place) = self.panes.get(number).and_then(MotionPane::place) else { continue };
-            grid::header(ui, number, [cell, place], |ui| self.header(ui, number, input, &mut change));
-            let own = self.body(ui, number, place, input);
-            if own.load.is_some() || own.restore.is_some() {
-                wish = own;
-            }
-        }
+        let (change, interaction) = grid::show_panes(ui, &cells, (self, input), Self::header, Self::body);
         grid::color_key(ui, key, key.left(), input.view, shared);
         match change {
             Some((number, Some(setting))) => {
@@ -347,7 +339,7 @@ impl MotionCompare {
             _ => {}
         }
         ui.advance_cursor_after_rect(whole);
-        wish
+        interaction
     }
 
     /// Fits the camera to all states of the bodies so far, unless the user has moved it.
@@ -367,13 +359,7 @@ impl MotionCompare {
     }
 
     /// Shows the pickers of a pane, and its result.
-    fn header(
-        &self,
-        ui: &mut Ui,
-        number: usize,
-        input: &PaneInput<'_>,
-        change: &mut Option<(usize, Option<MotionPaneSetting>)>,
-    ) {
+    fn header(&self, ui: &mut Ui, number: usize, input: &PaneInput<'_>, change: &mut PaneChange<MotionPaneSetting>) {
         let Some(pane) = self.panes.get(number) else { return };
         let palette = Palette::new(ui.visuals());
         let name = fill!("Pane %{n}", n = number + 1);

@@ -8,6 +8,7 @@ use egui::{Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
 
 use super::setting::PaneSetting;
+use crate::app::session::has_mesh_of;
 use crate::app::task::solve::{
     BackgroundSolve, Bodies, MOST_PANE_UNKNOWNS, Model, Phase, SolveRequest, SolveUpdate, Start,
 };
@@ -22,7 +23,7 @@ use crate::assembly::System;
 use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Beam, MeshFile, Scene};
-use crate::simulation::{ProbeResult, Simulation, SimulationError, Status, probe_results};
+use crate::simulation::{ProbeResult, Simulation, Status, probe_results};
 use crate::study::Reference;
 
 /// A background solve of an outdated load is cancelled after this time.
@@ -87,34 +88,20 @@ struct PaneSolve {
     since: Instant,
 }
 
-/// Model of a pane before its first iteration.
-struct PaneModel {
-    simulation: Option<Box<Simulation>>,
-    /// Existing equations of the scene's mesh.
-    system: Option<Arc<System>>,
-}
-
-impl PaneModel {
-    /// Sets up the simulation on the current thread.
-    fn set_up(self, scene: &Scene) -> Result<Box<Simulation>, SimulationError> {
-        Ok(match (self.simulation, self.system) {
-            (Some(mut simulation), _) => {
-                simulation.change_scene(scene)?;
-                simulation
-            }
-            (None, Some(system)) => Box::new(Simulation::with_system(scene, system)?),
-            (None, None) => Box::new(Simulation::new(scene)?),
-        })
+/// Returns the model of a pane: an existing simulation, existing equations of the scene's mesh, or a new mesh.
+fn model(simulation: Option<Box<Simulation>>, system: Option<Arc<System>>) -> Model {
+    match (simulation, system) {
+        (Some(simulation), _) => Model::Existing(Box::new((Bodies { simulation: *simulation, linear: None }, None))),
+        (None, Some(system)) => Model::Equations(system),
+        (None, None) => Model::New,
     }
 }
 
-impl From<PaneModel> for Model {
-    fn from(model: PaneModel) -> Self {
-        match (model.simulation, model.system) {
-            (Some(simulation), _) => Self::Existing(Box::new((Bodies { simulation: *simulation, linear: None }, None))),
-            (None, Some(system)) => Self::Equations(system),
-            (None, None) => Self::New,
-        }
+/// Sets up a model on the current thread.
+fn set_up(model: Model, scene: &Scene) -> Body {
+    match model.set_up(scene) {
+        Ok((bodies, _)) => Body::Here(Box::new(bodies.simulation)),
+        Err(rejected) => Body::Refused(rejected.error.to_string()),
     }
 }
 
@@ -339,7 +326,7 @@ impl Pane {
         }
         self.body = loop {
             match away.solve.poll() {
-                SolveUpdate::Phase | SolveUpdate::Snapshot(_) => {}
+                SolveUpdate::Progress(_) => {}
                 SolveUpdate::None => return false,
                 SolveUpdate::Done(Ok(solved)) => break Body::Here(Box::new(solved.snapshot.bodies.simulation)),
                 SolveUpdate::Done(Err(rejected)) => break Body::Refused(rejected.error.to_string()),
@@ -362,28 +349,29 @@ impl Pane {
             _ => None,
         };
         // A state cannot be transferred to another mesh.
-        let simulation = simulation.filter(|s| s.scene().beam == scene.beam && s.scene().mesh == scene.mesh);
+        let simulation = simulation.filter(|simulation| has_mesh_of(simulation.scene(), &scene));
         self.from_rest = simulation.is_none();
         let system = Equations::of(equations, &scene);
-        let model = PaneModel { simulation, system };
+        let model = model(simulation, system);
         self.is_large = scene.unknowns() > MOST_PANE_UNKNOWNS;
         if self.is_large {
             self.send(scene, model, Start::Present);
         } else {
-            self.body = model.set_up(&scene).map_or_else(|error| Body::Refused(error.to_string()), Body::Here);
+            self.body = set_up(model, &scene);
         }
     }
 
     /// Starts a solve in the background.
-    fn send(&mut self, scene: Scene, model: PaneModel, start: Start) {
+    fn send(&mut self, scene: Scene, model: Model, start: Start) {
         // A search that continues has made a part of its iterations.
-        let made = match (&model.simulation, &start) {
-            (Some(simulation), Start::Present) if *simulation.scene() == scene => simulation.iterations(),
+        let made = match (&model, &start) {
+            (Model::Existing(own), Start::Present) if *own.0.simulation.scene() == scene => {
+                own.0.simulation.iterations()
+            }
             _ => 0,
         };
         let iterations = self.setting.iterations.map(|most| most.saturating_sub(made));
-        let (model, residuals) = (model.into(), Vec::new());
-        let request = SolveRequest { scene, model, start, iterations, residuals, is_displayed: false };
+        let request = SolveRequest { scene, model, start, iterations, residuals: Vec::new(), is_displayed: false };
         self.body = match BackgroundSolve::start(request) {
             Ok(solve) => Body::Away(Box::new(PaneSolve { solve, since: Instant::now() })),
             Err(error) => Body::Refused(format!("no thread for the solve: {error}")),
@@ -418,7 +406,7 @@ impl Pane {
         }
         if let (Body::Here(simulation), Some(scene)) = (std::mem::take(&mut self.body), self.given.clone()) {
             let start = if ended { Start::Rest } else { Start::Present };
-            self.send(scene, PaneModel { simulation: Some(simulation), system: None }, start);
+            self.send(scene, model(Some(simulation), None), start);
         }
     }
 
@@ -443,13 +431,12 @@ impl Pane {
         let wanted = self.setting.apply(scene);
         let system = Equations::of(equations, &wanted);
         let most = self.setting.iterations;
-        let solved = PaneModel { simulation: None, system }.set_up(&wanted).map(|mut simulation| {
-            while !has_ended(&simulation, most) {
+        self.body = set_up(model(None, system), &wanted);
+        if let Body::Here(simulation) = &mut self.body {
+            while !has_ended(simulation, most) {
                 simulation.step();
             }
-            simulation
-        });
-        self.body = solved.map_or_else(|error| Body::Refused(error.to_string()), Body::Here);
+        }
         (self.wanted, self.given) = (Some(wanted.clone()), Some(wanted));
         (self.from_rest, self.end) = (true, None);
         self.conclude();
