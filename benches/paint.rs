@@ -7,9 +7,9 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use warpbeam::Simulation;
 use warpbeam::app::{Canvas, FrameTimes, Lab};
+use warpbeam::format::{engineering, two_digits};
 use warpbeam::render::Gpu;
 use warpbeam::scene::{Source, open};
-use warpbeam::words::{engineering, two_digits};
 
 fn frames(c: &mut Criterion) {
     let Ok(gpu) = Gpu::headless() else {

@@ -6,10 +6,10 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use warpbeam::Simulation;
+use warpbeam::format;
 use warpbeam::scene::{Analysis, Source, open, registry};
 use warpbeam::study::motion::MotionReference;
 use warpbeam::study::{Effort, Extent, Reference, StudyError};
-use warpbeam::words;
 
 /// Number of timed rounds; the median is printed.
 const ROUNDS: usize = 5;
@@ -32,7 +32,7 @@ fn main() {
         let (source, own_error) = match scene.analysis {
             Analysis::Dynamic => match MotionReference::new(&scene, Extent::Quick, go_on) {
                 Ok(found) => {
-                    let step = words::engineering(found.time_step, "s");
+                    let step = format::engineering(found.time_step, "s");
                     (format!("{} with steps of {step}", found.element.id()), Some(found.error_percent))
                 }
                 Err(error) => (error.to_string(), None),
@@ -54,10 +54,10 @@ fn main() {
             built_in.id,
             simulation.system().dofs(),
             own_error
-                .map_or_else(|| "—".to_owned(), |percent| format!("{} %", words::number(words::two_digits(percent)))),
-            words::engineering(words::two_digits(taken.as_secs_f64()), "s"),
-            words::engineering(words::two_digits(solve.as_secs_f64()), "s"),
-            words::number(words::two_digits(taken.as_secs_f64() / solve.as_secs_f64())),
+                .map_or_else(|| "—".to_owned(), |percent| format!("{} %", format::number(format::two_digits(percent)))),
+            format::engineering(format::two_digits(taken.as_secs_f64()), "s"),
+            format::engineering(format::two_digits(solve.as_secs_f64()), "s"),
+            format::number(format::two_digits(taken.as_secs_f64() / solve.as_secs_f64())),
         );
     }
 }

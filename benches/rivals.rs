@@ -21,7 +21,7 @@ fn steps(c: &mut Criterion) {
         let ours = Simulation::new(&scene).unwrap();
         let dofs = ours.system().dofs();
         for solver in RapierSolver::ALL {
-            let swing = Swing { solver, pace: 0.02, damping: 1.0, cg_iterations: 20 };
+            let swing = Swing { solver, frequency_factor: 0.02, damping: 1.0, cg_iterations: 20 };
             let mut rapier = Rapier::new(ours.problem(), end, swing).unwrap();
             group.bench_function(BenchmarkId::new(format!("rapier2d {}", solver.id()), dofs), |b| {
                 b.iter(|| rapier.step())

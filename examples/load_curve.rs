@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 
-use warpbeam::truth::BeamTruth;
+use warpbeam::exact_beam::ExactBeam;
 use warpbeam::{Material, MethodKind, Scene, Simulation, Status};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -41,7 +41,7 @@ pub fn curve() -> Result<String, Box<dyn Error>> {
             }
             deflections.push(-beam.probe("tip").unwrap_or_default().y / length);
         }
-        let exact = BeamTruth::of(newton.scene()).and_then(|truth| truth.tip_displacement());
+        let exact = ExactBeam::of(newton.scene()).and_then(|reference| reference.tip_displacement());
         let exact = exact.ok_or("no exact beam")?;
         writeln!(csv, "{alpha},{:.6},{:.6},{:.6}", deflections[0], deflections[1], -exact.y / length)?;
     }

@@ -8,7 +8,7 @@
 
 use nalgebra::Vector2;
 
-use crate::lanes::{LANES, Lanes, gather, zero_vector};
+use crate::simd::{LANES, Lanes, gather, zero_vector};
 
 /// Displacement of every node, m. Dereferences to the rounded values.
 #[derive(Clone, Debug, PartialEq)]

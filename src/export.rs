@@ -248,7 +248,7 @@ fn table_row(simulation: &Simulation) -> String {
         ledger.dissipated,
         ledger.integrator,
         ledger.pulses,
-        ledger.hands
+        ledger.mouse_spring
     );
     text
 }

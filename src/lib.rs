@@ -38,9 +38,9 @@
 //!
 //! Data flows in one direction; each module imports only from modules to its left:
 //!
-//! [`words`], [`timings`], the scene's data (`model`), [`lanes`] → [`rotation`], [`material`], [`displacement`] →
+//! [`format`], [`timings`], the scene's data (`model`), [`simd`] → [`rotation`], [`material`], [`displacement`] →
 //! [`element`] → [`mesh`] → [`solver`], [`scene`] (reads scenes and mesh files, and re-exports their data), [`state`] →
-//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`truth`] →
+//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`exact_beam`] →
 //! [`study`] → `plot`, the drawings → the window → the commands. [`article`] needs elements and rotations only. The list
 //! `LAYERS` in `tests/architecture.rs` holds this order, and a test fails on imports against it.
 //!
@@ -65,8 +65,9 @@ pub mod cli;
 pub mod displacement;
 pub mod dynamics;
 pub mod element;
+pub mod exact_beam;
 pub mod export;
-pub mod lanes;
+pub mod format;
 pub mod material;
 pub mod mesh;
 pub mod method;
@@ -79,14 +80,13 @@ pub mod plot;
 pub mod render;
 pub mod rotation;
 pub mod scene;
+pub mod simd;
 pub mod simulation;
 pub mod solver;
 pub mod state;
 pub mod stress;
 pub mod study;
 pub mod timings;
-pub mod truth;
-pub mod words;
 
 pub use nalgebra;
 

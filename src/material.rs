@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix2, Matrix3};
 
-use crate::lanes::Number;
 use crate::model::{Material, Plane};
+use crate::simd::Number;
 
 /// Lamé constants of the plane problem, Pa; times a thickness, N/m.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix2, SimdBool, Vector2};
 
-use crate::lanes::Number;
+use crate::simd::Number;
 
 /// Proper rotation of the plane, stored as cosine and sine; with SIMD `T`, one rotation per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]

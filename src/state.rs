@@ -15,7 +15,7 @@ pub struct State {
     /// R of every element or quadrature point. Where the polar factor of F is undefined, the previous rotation is kept.
     pub(crate) rotations: Vec<Rotation>,
     /// Rotation of every named edge since rest, rad, full turns included; 0 for edges that are not straight.
-    pub(crate) turns: Vec<f64>,
+    pub(crate) edge_angles: Vec<f64>,
     /// Velocity of every node, m/s; zero in statics.
     pub(crate) velocity: Vec<Vector2<f64>>,
     /// Time since the start, s; zero in statics.
@@ -56,7 +56,7 @@ impl State {
         Self {
             displacement: Displacement::zeros(nodes),
             rotations: vec![Rotation::IDENTITY; rotations],
-            turns: vec![0.0; edges],
+            edge_angles: vec![0.0; edges],
             velocity: vec![Vector2::zeros(); nodes],
             time: 0.0,
             net_force: vec![Vector2::zeros(); nodes],
@@ -68,7 +68,7 @@ impl State {
     pub(crate) fn reset(&mut self) {
         self.displacement.reset();
         self.rotations.fill(Rotation::IDENTITY);
-        self.turns.fill(0.0);
+        self.edge_angles.fill(0.0);
         self.stop();
     }
 
@@ -83,7 +83,7 @@ impl State {
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.displacement.copy_from(&other.displacement);
         self.rotations.clone_from(&other.rotations);
-        self.turns.clone_from(&other.turns);
+        self.edge_angles.clone_from(&other.edge_angles);
         self.velocity.clone_from(&other.velocity);
         self.time = other.time;
         self.net_force.clone_from(&other.net_force);
@@ -111,8 +111,8 @@ impl State {
     /// Returns the rotation of every named edge of the mesh since rest, rad, counter-clockwise, full turns included, in
     /// the order of their names; 0 for edges that are not straight.
     #[must_use]
-    pub fn turns(&self) -> &[f64] {
-        &self.turns
+    pub fn edge_angles(&self) -> &[f64] {
+        &self.edge_angles
     }
 
     /// Returns the velocity of every node, m/s.
@@ -133,7 +133,7 @@ impl State {
         let vectors = 2 * self.displacement.len() + self.velocity.len() + self.net_force.len();
         size_of::<Vector2<f64>>() * vectors
             + size_of_val(self.rotations.as_slice())
-            + size_of_val(self.turns.as_slice())
+            + size_of_val(self.edge_angles.as_slice())
     }
 
     /// Returns `true` if every number is finite.
@@ -142,7 +142,7 @@ impl State {
         is_finite(&self.displacement)
             && is_finite(&self.velocity)
             && self.rotations.iter().all(|r| r.c.is_finite() && r.s.is_finite())
-            && self.turns.iter().all(|t| t.is_finite())
+            && self.edge_angles.iter().all(|t| t.is_finite())
             && self.time.is_finite()
             && (!self.knows_net_force || is_finite(&self.net_force))
     }
@@ -166,7 +166,7 @@ impl State {
     pub(crate) fn accept(&self, other: &Self) -> Result<(), StateError> {
         same_length("displacements", self.displacement.len(), other.displacement.len())?;
         same_length("rotations", self.rotations.len(), other.rotations.len())?;
-        same_length("turns of edges", self.turns.len(), other.turns.len())?;
+        same_length("turns of edges", self.edge_angles.len(), other.edge_angles.len())?;
         same_length("velocities", self.velocity.len(), other.velocity.len())?;
         same_length("net forces", self.net_force.len(), other.net_force.len())?;
         if other.is_finite() { Ok(()) } else { Err(StateError::NotFinite { what: "numbers in a state" }) }

@@ -41,7 +41,7 @@ fn time_steps_allocate_nothing() {
                 let point = simulation.system().mesh().locate(simulation.system().mesh().nodes()[1]).unwrap();
                 assert!(simulation.grab(point));
                 (0..FIRST).for_each(|_| drop(simulation.step().clone()));
-                let mut place = simulation.hand().unwrap().0.target();
+                let mut place = simulation.mouse_spring().unwrap().0.target();
                 let made = allocations(|| {
                     for _ in 0..10 {
                         place += Vector2::new(1e-4, 2e-4);

@@ -8,6 +8,8 @@ use nalgebra::{Matrix2, Vector2};
 use warpbeam::article::affine::Affine2;
 use warpbeam::assembly::{Problem, SystemError};
 use warpbeam::element::{ELEMENTS, side_weights};
+use warpbeam::exact_beam::{ClampedBeam, ExactBeam};
+use warpbeam::format::{count, number};
 use warpbeam::mesh::{GmshError, MaterialPoint, MeshError};
 use warpbeam::rotation::{Rotation, polar};
 use warpbeam::scene::{Source, open};
@@ -15,8 +17,6 @@ use warpbeam::simulation::SimulationError;
 use warpbeam::solver::{Factor, Symbolic};
 use warpbeam::state::StateError;
 use warpbeam::study::{LoadCurve, Reference};
-use warpbeam::truth::{BeamTruth, ClampedBeam};
-use warpbeam::words::{count, number};
 use warpbeam::{Axis, ElementKind, Material, Mesh, MethodKind, Scene, Simulation, Status};
 
 const BAD: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300];
@@ -208,7 +208,7 @@ fn truths_and_words_take_any_number() {
         assert!(Affine2::from_triangle([Vector2::new(bad, 0.0); 3], [Vector2::zeros(); 3]).is_err());
         assert_eq!(number(bad), word);
     }
-    assert_eq!(BeamTruth::of(&Scene::named("nothing")), None);
+    assert_eq!(ExactBeam::of(&Scene::named("nothing")), None);
     assert_eq!(
         (count(0_u32, "step"), count(1_u32, "step"), count(2_u32, "step")),
         ("0 steps".into(), "1 step".into(), "2 steps".into())

@@ -17,9 +17,9 @@ use common::rust_files;
 /// Layers from the lowest to the highest, with their files and folders in `src`. The longest matching entry counts;
 /// `lib` is the crate's root.
 const LAYERS: &[(&str, &[&str])] = &[
-    ("foundations", &["words", "timings", "lanes", "picture"]),
+    ("foundations", &["format", "timings", "simd", "picture"]),
     ("model", &["model"]),
-    ("kinematics", &["rotation", "displacement", "material", "state", "truth"]),
+    ("kinematics", &["rotation", "displacement", "material", "state", "exact_beam"]),
     ("element", &["element"]),
     ("mesh", &["mesh", "article"]),
     ("scene files", &["scene"]),

@@ -5,9 +5,9 @@
 mod common;
 
 use common::{ids_of, scene};
+use warpbeam::exact_beam::{ExactBeam, error_percent};
 use warpbeam::method::{AutoReport, Decision};
 use warpbeam::scene::Analysis;
-use warpbeam::truth::{BeamTruth, error_percent};
 use warpbeam::{ElementKind, Load, MethodKind, Scene, Simulation, Status};
 
 fn scaled(scene: &Scene, factor: f64) -> Scene {
@@ -84,8 +84,8 @@ fn results_stay_within_the_asked_error_of_the_truth() {
         for factor in [1e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0] {
             let scene = scaled(&scene, factor);
             let auto = run(&scene, MethodKind::Auto);
-            let truth = BeamTruth::of(&scene).unwrap().tip_displacement().unwrap();
-            let error = error_percent(auto.probe("tip").unwrap(), truth).unwrap();
+            let reference = ExactBeam::of(&scene).unwrap().tip_displacement().unwrap();
+            let error = error_percent(auto.probe("tip").unwrap(), reference).unwrap();
             assert!(error <= 1.0, "{id} × {factor}: {error} %, {:?}", report(&auto));
             decisions.push(report(&auto).decision);
         }

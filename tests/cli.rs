@@ -760,8 +760,11 @@ fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
         .collect();
     // The row of the full load is the reference solution that `solve` compares with.
     let full = rows.iter().find(|r| (r[0] - 1.0).abs() < 1e-9).unwrap();
-    let truth = &solve_json(&["elastica"])["probes"][0]["truth_u"];
-    assert!((full[3] - truth[0].as_f64().unwrap()).abs() < 1e-6 && (full[4] - truth[1].as_f64().unwrap()).abs() < 1e-6);
+    let reference = &solve_json(&["elastica"])["probes"][0]["truth_u"];
+    assert!(
+        (full[3] - reference[0].as_f64().unwrap()).abs() < 1e-6
+            && (full[4] - reference[1].as_f64().unwrap()).abs() < 1e-6
+    );
     for (args, why) in [
         (&["curve", "swing"][..], "expected a scene at rest"),
         (&["curve", "shear", "--set", "solver.method=linear"], "expected a scene at rest"),
@@ -784,9 +787,9 @@ fn curve_follows_an_arch_through_its_limit_load() {
     let text = stdout(&output);
     assert!(text.contains("the limit load") && text.contains("stable under force control again"), "{text}");
     // Text output names a support as `solve` does; its number is for scripts.
-    assert!(text.contains("way of support (0.1, 0.0085)  its reaction"), "{text}");
+    assert!(text.contains("displacement of support (0.1, 0.0085)  its reaction"), "{text}");
     let picture = fs::read_to_string(folder.path().join("snap.svg")).unwrap();
-    let axes = ["way of support (0.1, 0.0085), mm", "its reaction along the way, N"];
+    let axes = ["displacement of support (0.1, 0.0085), mm", "its reaction along it, N"];
     assert!(axes.iter().all(|axis| picture.contains(axis)), "{axes:?}");
     let table = fs::read_to_string(folder.path().join("snap.csv")).unwrap();
     let mut lines = table.lines();

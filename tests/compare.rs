@@ -13,11 +13,11 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use warpbeam::app::{Lab, Pane, PaneSetting, parse_panes, picture};
+use warpbeam::format::{count, percent};
 use warpbeam::render::Gpu;
 use warpbeam::scene::{ElementKind, Load, MethodKind, Scene, Source};
 use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::Reference;
-use warpbeam::words::{count, percent};
 
 fn lab_of(id: &str, scene: Scene) -> Lab {
     let simulation = Simulation::new(&scene).unwrap();
@@ -79,7 +79,7 @@ fn load(scene: &Scene) -> f64 {
 /// Checks that error and iterations of every pane equal those of a separate simulation, and are shown in its header.
 fn panes_agree_with_solves(harness: &Harness<'_, Lab>) {
     let lab = harness.state();
-    let truth = Reference::of(lab.scene()).unwrap();
+    let reference = Reference::of(lab.scene()).unwrap();
     for (number, pane) in lab.panes().iter().enumerate() {
         let scene = pane.setting().apply(lab.scene());
         let mut alone = Simulation::new(&scene).unwrap();
@@ -90,7 +90,7 @@ fn panes_agree_with_solves(harness: &Harness<'_, Lab>) {
         if !alone.status().is_success() {
             continue;
         }
-        let error = truth.first().unwrap().error_percent(&alone.solution().probes[0]).unwrap();
+        let error = reference.first().unwrap().error_percent(&alone.solution().probes[0]).unwrap();
         assert!((pane.error_percent().unwrap() - error).abs() < 1e-6, "{}: {error}", pane.setting());
         let said = labels(harness).into_iter().find(|l| l.starts_with(&format!("Pane {}: ", number + 1))).unwrap();
         assert!(said.contains(&format!("error {}", percent(error))), "{said}");
@@ -365,8 +365,8 @@ fn every_pane_says_its_value_at_the_point_under_the_pointer() {
     }
     assert!(
         said[1].1.contains(&format!("u = {}", {
-            let round = [u.x, u.y].map(warpbeam::words::three_digits);
-            warpbeam::words::engineering_pair(round, "m")
+            let round = [u.x, u.y].map(warpbeam::format::three_digits);
+            warpbeam::format::engineering_pair(round, "m")
         })),
         "{said:?} {u}"
     );

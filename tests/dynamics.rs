@@ -12,10 +12,10 @@ use nalgebra::{Matrix2, Vector2};
 use warpbeam::assembly::Mass;
 use warpbeam::dynamics::{MotionDecision, MotionReport, StopReason, critical_step, lowest_frequency};
 use warpbeam::element::{DiscreteGradient, warped_strain};
+use warpbeam::exact_beam::ClampedBeam;
 use warpbeam::material::Lame;
 use warpbeam::rotation::{Rotation, polar_or};
 use warpbeam::scene::Analysis;
-use warpbeam::truth::ClampedBeam;
 use warpbeam::{IntegratorKind, Load, Material, MethodKind, Scene, Simulation, Status};
 
 const EULER: IntegratorKind = IntegratorKind::ImplicitEuler;
@@ -38,9 +38,9 @@ fn swing_truth() -> Vec<Vector2<f64>> {
 fn swing_error(kind: IntegratorKind, rate: usize, iterations: u32) -> f64 {
     let mut simulation = Simulation::new(&with("swing", kind, 1.0 / rate as f64, iterations, 2.0)).unwrap();
     let mut worst: f64 = 0.0;
-    for truth in swing_truth().iter().skip(240 / rate - 1).step_by(240 / rate) {
+    for reference in swing_truth().iter().skip(240 / rate - 1).step_by(240 / rate) {
         simulation.step();
-        worst = worst.max((simulation.probe("tip").unwrap() - truth).norm());
+        worst = worst.max((simulation.probe("tip").unwrap() - reference).norm());
     }
     assert_eq!(*simulation.status(), Status::Finished);
     worst
@@ -424,10 +424,10 @@ fn auto_swings_as_well_with_far_fewer_factorizations() {
         let errors = NEWTON_AND_AUTO.map(|method| {
             scene.solver.method = method;
             let mut simulation = Simulation::new(&scene).unwrap();
-            let truth = swing_truth().into_iter().skip(240 / rate - 1).step_by(240 / rate);
-            let off = truth.map(|truth| {
+            let reference = swing_truth().into_iter().skip(240 / rate - 1).step_by(240 / rate);
+            let off = reference.map(|reference| {
                 simulation.step();
-                (simulation.probe("tip").unwrap() - truth).norm()
+                (simulation.probe("tip").unwrap() - reference).norm()
             });
             (off.fold(0.0, f64::max), simulation.motion().unwrap().counts())
         });
@@ -680,17 +680,17 @@ fn works_are_forces_times_ways() {
                 let t = f64::from(step - steps / 4) * h;
                 simulation.pull_to(Vector2::new(0.6 - 0.1 * t, 0.01 + 0.2 * (8.0 * t).sin())).unwrap();
             }
-            let hand = |simulation: &Simulation| {
-                let (hand, force) = simulation.hand()?;
-                Some((hand.position(simulation.displacement()), force))
+            let spring = |simulation: &Simulation| {
+                let (spring, force) = simulation.mouse_spring()?;
+                Some((spring.position(simulation.displacement()), force))
             };
             let along = |simulation: &Simulation| {
                 let tip = simulation.probe("tip").unwrap();
-                Vector2::new(3.0, 20.0).dot(&tip) + 6.0 * simulation.state().turns()[right]
+                Vector2::new(3.0, 20.0).dot(&tip) + 6.0 * simulation.state().edge_angles()[right]
             };
-            let before = (along(&simulation), simulation.state().time(), hand(&simulation));
+            let before = (along(&simulation), simulation.state().time(), spring(&simulation));
             simulation.step();
-            let after = (along(&simulation), simulation.state().time(), hand(&simulation));
+            let after = (along(&simulation), simulation.state().time(), spring(&simulation));
             pulses += pulse(before.1, after.1) * (after.0 - before.0);
             if let (Some((x0, f0)), Some((x1, f1))) = (before.2, after.2) {
                 hands += 0.5 * (f0 + f1).dot(&(x1 - x0));
@@ -699,7 +699,12 @@ fn works_are_forces_times_ways() {
         let ledger = *simulation.motion().unwrap().ledger();
         assert!(pulses.abs() > 0.1 && hands.abs() > 0.1, "{pulses} {hands}");
         assert!((ledger.pulses - pulses).abs() < close * pulses.abs(), "{}: {} {pulses}", kind.id(), ledger.pulses);
-        assert!((ledger.hands - hands).abs() < 10.0 * close * hands.abs(), "{}: {} {hands}", kind.id(), ledger.hands);
+        assert!(
+            (ledger.mouse_spring - hands).abs() < 10.0 * close * hands.abs(),
+            "{}: {} {hands}",
+            kind.id(),
+            ledger.mouse_spring
+        );
     }
 }
 
@@ -845,12 +850,12 @@ fn one_solve_is_exact_in_linear_theory() {
     for kind in IMPLICIT {
         let mut scene = with("swing", kind, 1.0 / 60.0, 1, 1e3).with_method(MethodKind::Linear);
         scene.scale_loads(0.05);
-        for (mass, stiffness, hand) in
+        for (mass, stiffness, spring) in
             [(0.0, 0.0, false), (2.0, 0.0, false), (0.0, 0.02, false), (0.0, 0.0, true), (2.0, 0.02, true)]
         {
             (scene.dynamics.damping.mass, scene.dynamics.damping.stiffness) = (mass, stiffness);
             let mut simulation = Simulation::new(&scene).unwrap();
-            if hand {
+            if spring {
                 assert!(simulation.grab(simulation.system().mesh().locate(Vector2::new(0.9, 0.01)).unwrap()));
             }
             for step in 0..20 {
@@ -858,9 +863,9 @@ fn one_solve_is_exact_in_linear_theory() {
                 simulation.pull_to(to).unwrap();
                 simulation.step();
                 let left = simulation.residual();
-                assert!(left < 1e-11, "{} {mass} {stiffness} {hand} in step {step}: {left:e}", kind.id());
+                assert!(left < 1e-11, "{} {mass} {stiffness} {spring} in step {step}: {left:e}", kind.id());
             }
-            let pulled = simulation.hand().map_or(1.0, |(_, force)| force.norm());
+            let pulled = simulation.mouse_spring().map_or(1.0, |(_, force)| force.norm());
             assert!(pulled > 1e-3, "{pulled}");
         }
     }

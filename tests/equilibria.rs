@@ -6,7 +6,7 @@ mod common;
 use common::{cantilever, cantilever_table, scene, scene_with, solved};
 use nalgebra::Vector2;
 use warpbeam::assembly::{Forces, Kinematics};
-use warpbeam::method::{Decision, Reason, rho_words};
+use warpbeam::method::{Decision, Reason, rho_text};
 use warpbeam::{Axis, ElementKind, Load, Mesh, MethodKind, Scene, Simulation, Status};
 
 fn tip(simulation: &Simulation) -> Vector2<f64> {
@@ -287,7 +287,7 @@ fn steps_shrink_by_rho() {
         assert!((ratio / rho - 1.0).abs() < 0.01, "{factor}: {ratio} {rho}");
         assert!(ratio > before && ratio < 1.0);
         before = ratio;
-        let says = rho_words(rho);
+        let says = rho_text(rho);
         assert!(says.contains("converges near") && says.contains(&format!("{rho:.3}")), "{says}");
     }
     let mut newton = Simulation::new(&scene("cantilever").with_method(MethodKind::Newton)).unwrap();
@@ -296,8 +296,8 @@ fn steps_shrink_by_rho() {
     let mut auto = Simulation::new(&scene("cantilever").with_method(MethodKind::Auto)).unwrap();
     auto.solve();
     assert!(auto.iterations() > 2 && auto.step_ratio().is_some_and(|ratio| ratio > 0.0 && ratio < 0.5));
-    for (rho, words) in [(1.0, "cannot converge here: ρ = 1.000"), (999.0, "ρ = 999.000"), (1e3, "ρ = 1.0e3")] {
-        assert!(rho_words(rho).contains(words), "{}", rho_words(rho));
+    for (rho, text) in [(1.0, "cannot converge here: ρ = 1.000"), (999.0, "ρ = 999.000"), (1e3, "ρ = 1.0e3")] {
+        assert!(rho_text(rho).contains(text), "{}", rho_text(rho));
     }
 }
 

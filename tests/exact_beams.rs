@@ -5,7 +5,7 @@ mod common;
 
 use common::{scene, scene_with};
 use nalgebra::Vector2;
-use warpbeam::truth::{BeamTruth, ClampedBeam};
+use warpbeam::exact_beam::{ClampedBeam, ExactBeam};
 
 /// Returns a beam with ν = 0, unit length and unit bending stiffness.
 fn beam(length_over_height: f64) -> ClampedBeam {
@@ -101,13 +101,13 @@ fn very_large_loads_are_followed() {
 #[test]
 fn scenes_with_a_truth_are_recognised() {
     for id in ["article", "cantilever", "gravity", "elastica", "roll-up", "incline", "column"] {
-        assert!(matches!(BeamTruth::of(&scene(id)), Some(BeamTruth::Cantilever(_))), "{id}");
+        assert!(matches!(ExactBeam::of(&scene(id)), Some(ExactBeam::Cantilever(_))), "{id}");
     }
-    let stretch = BeamTruth::of(&scene("stretch")).unwrap().tip_displacement().unwrap();
+    let stretch = ExactBeam::of(&scene("stretch")).unwrap().tip_displacement().unwrap();
     assert!((stretch - Vector2::new(0.4, 0.0)).norm() < 1e-15);
     for id in ["bridge", "shear", "cook", "bracket"] {
-        assert_eq!(BeamTruth::of(&scene(id)), None, "{id}");
+        assert_eq!(ExactBeam::of(&scene(id)), None, "{id}");
     }
     // The exact beam has its load at the free end; a load at another place has none.
-    assert_eq!(BeamTruth::of(&scene_with("cantilever", &["load.0.edge=top"])), None);
+    assert_eq!(ExactBeam::of(&scene_with("cantilever", &["load.0.edge=top"])), None);
 }

@@ -149,7 +149,7 @@ fn the_first_frame_is_as_the_others() {
         let mut harness = harness_of(lab);
         harness.run();
         harness.key_press(Key::L);
-        let names = ["force", "u_x of tip", "u_y of tip", "u_x of end", "u_y of end", "its reaction along the way"];
+        let names = ["force", "u_x of tip", "u_y of tip", "u_x of end", "u_y of end", "its reaction along it"];
         let start = Instant::now();
         let texts = loop {
             harness.step();
@@ -221,7 +221,7 @@ fn curves_are_saved_as_files() {
     let rows = csv(&std::fs::read_to_string("warpbeam-001.csv").unwrap());
     assert_eq!(rows[0][..4], ["series", "force (N)", "u_x of tip (m)", "u_y of tip (m)"]);
     let curve = LoadCurve::new(&cantilever).unwrap();
-    let own: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.truth.x, s.truth.y]).collect();
+    let own: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.exact.x, s.exact.y]).collect();
     assert_eq!(points(&rows, "exact beam"), own);
     let linear: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.linear.x, s.linear.y]).collect();
     assert_eq!(points(&rows, "linear theory"), linear);
@@ -280,7 +280,7 @@ fn a_press_on_the_path_sets_its_load() {
     };
     let curve = LoadCurve::new(harness.state().scene()).unwrap();
     let sample = &curve.samples[20];
-    let place = Pos2::new(at(&numbers(&harness, false), sample.truth.x), at(&numbers(&harness, true), sample.truth.y));
+    let place = Pos2::new(at(&numbers(&harness, false), sample.exact.x), at(&numbers(&harness, true), sample.exact.y));
     assert!(area.contains(place), "{area:?} {place:?}");
     harness.hover_at(place);
     harness.run();

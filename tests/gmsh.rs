@@ -436,8 +436,8 @@ fn a_scene_of_quadrilaterals_needs_no_element() {
     let mut simulation = warpbeam::Simulation::new(&scene).unwrap();
     assert_eq!(*simulation.solve(), warpbeam::Status::Converged);
     // Its reference solution is computed on the refined mesh of the same element.
-    let truth = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().displacement;
-    assert!(truth.y < 0.0 && (simulation.solution().probes[0].u - truth).norm() < 0.2 * truth.norm());
+    let reference = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().displacement;
+    assert!(reference.y < 0.0 && (simulation.solution().probes[0].u - reference).norm() < 0.2 * reference.norm());
     let asked = open(&text.replace("mesh.file", "mesh.element = \"t3\"\n        mesh.file"));
     let error = warpbeam::Simulation::new(&asked).unwrap_err().to_string();
     assert!(error.contains("set element = \"q4\""), "{error}");

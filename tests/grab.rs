@@ -46,17 +46,17 @@ fn a_pulled_body_settles_where_the_spring_balances() {
             (scene.solver.max_iterations, scene.solver.max_error_percent) = (400, 0.01);
             let mut simulation = held(&scene);
             let size = simulation.system().size();
-            let before = simulation.hand().unwrap().0.target();
+            let before = simulation.mouse_spring().unwrap().0.target();
             for pull in [0.02, 0.1, 0.6] {
                 let target = before + Vector2::new(-0.3, 1.0) * (pull * size);
                 simulation.pull_to(target).unwrap();
                 let case = format!("{id} {} {method:?} pulled by {pull} sizes", element.id);
                 assert_eq!(*simulation.solve(), Status::Converged, "{case}");
-                let (hand, force) = simulation.hand().unwrap();
-                let stretch = hand.target() - hand.position(simulation.displacement());
-                let expected = hand.stiffness() * stretch.norm().min(hand.largest_force() / hand.stiffness());
+                let (spring, force) = simulation.mouse_spring().unwrap();
+                let stretch = spring.target() - spring.position(simulation.displacement());
+                let expected = spring.stiffness() * stretch.norm().min(spring.largest_force() / spring.stiffness());
                 assert!((force.norm() - expected).abs() < 1e-9 * expected, "{case}: {force} N");
-                assert!(force.norm() <= hand.largest_force() * (1.0 + 1e-12));
+                assert!(force.norm() <= spring.largest_force() * (1.0 + 1e-12));
                 let loads: Vector2<f64> = simulation.forces().external().iter().sum();
                 let reaction = simulation.solution().reaction.force;
                 // `auto` reports its error; the others solve to the tolerance.
@@ -85,7 +85,7 @@ fn no_pointer_is_too_wild() {
             }
             let case = format!("{id} {} {}", integrator.id, element.id);
             let mut simulation = held(&scene);
-            let (size, start) = (simulation.system().size(), simulation.hand().unwrap().0.target());
+            let (size, start) = (simulation.system().size(), simulation.mouse_spring().unwrap().0.target());
             let mut random = 1_u64;
             let mut next = || {
                 random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -121,7 +121,7 @@ fn a_hand_needs_a_body_and_a_place() {
     let mut finer = simulation.scene().clone();
     finer.beam.as_mut().unwrap().cells = [3, 3];
     simulation.change_scene(&finer).unwrap();
-    assert!(simulation.hand().is_none());
+    assert!(simulation.mouse_spring().is_none());
     simulation.pull_to(Vector2::zeros()).unwrap();
     simulation.release();
     simulation.step();
@@ -139,7 +139,7 @@ fn a_hand_pulls_down_the_gradient_of_its_energy() {
         let mut simulation = Simulation::new(&scene.clone().with_element(element.kind)).unwrap();
         let point = simulation.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap();
         assert!(simulation.grab(point));
-        let target = simulation.hand().unwrap().0.target();
+        let target = simulation.mouse_spring().unwrap().0.target();
         assert!((target - Vector2::new(3.7, 0.2)).norm() < 1e-9, "it holds the point where it is: {target}");
         for pull in [Vector2::new(0.03, 0.2), Vector2::new(-3.0, 5.0)] {
             simulation.pull_to(target + pull).unwrap();
@@ -150,10 +150,11 @@ fn a_hand_pulls_down_the_gradient_of_its_energy() {
             let (state, mut forces) = (state_of(&u), Forces::new(u.len()));
             problem.linearize(&state, &mut forces, None);
             problem.balance(&state, Kinematics::Corotated, FACTOR, &mut forces);
-            let force = problem.hand().unwrap().force_at_rest(&u);
-            let stretch = problem.hand().unwrap().target() - problem.hand().unwrap().position(&u);
+            let force = problem.mouse_spring().unwrap().force_at_rest(&u);
+            let stretch = problem.mouse_spring().unwrap().target() - problem.mouse_spring().unwrap().position(&u);
             assert!(force.perp(&stretch).abs() < 1e-9 * force.norm() * stretch.norm(), "along the spring");
-            let (k, cap) = (problem.hand().unwrap().stiffness(), problem.hand().unwrap().largest_force());
+            let (k, cap) =
+                (problem.mouse_spring().unwrap().stiffness(), problem.mouse_spring().unwrap().largest_force());
             assert!((force.norm() - (k * stretch.norm()).min(cap)).abs() < 1e-9 * force.norm());
             assert_eq!(k * stretch.norm() > cap, pull.norm() > 1.0, "one within the reach, one beyond");
             let scale = force.norm();
@@ -180,8 +181,8 @@ fn a_hands_energy_is_smooth_at_its_reach() {
     let scene = Scene::beam(4.0, 1.0).with_cells(4, 1).clamp("left").with_method(MethodKind::Newton);
     let mut simulation = Simulation::new(&scene).unwrap();
     assert!(simulation.grab(simulation.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap()));
-    let (hand, _) = simulation.hand().unwrap();
-    let (k, target, reach) = (hand.stiffness(), hand.target(), hand.largest_force() / hand.stiffness());
+    let (spring, _) = simulation.mouse_spring().unwrap();
+    let (k, target, reach) = (spring.stiffness(), spring.target(), spring.largest_force() / spring.stiffness());
     let mut energy = |part: f64| {
         simulation.pull_to(target + Vector2::new(0.6, -0.8) * (part * reach)).unwrap();
         simulation.problem().energy(&simulation.system().at_rest(), 1.0) / (k * reach * reach)
@@ -201,13 +202,13 @@ fn a_hand_is_as_firm_as_it_says() {
     let point = free.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap();
     assert!(free.grab(point));
     let mass = scene.material.area_density() * 4.0;
-    let (hand, force) = free.hand().unwrap();
-    assert!((hand.stiffness() / (mass * (10.0 * PI).powi(2)) - 1.0).abs() < 1e-12, "{}", hand.stiffness());
-    assert!((hand.largest_force() / (hand.stiffness() * 0.25 * free.system().size()) - 1.0).abs() < 1e-12);
+    let (spring, force) = free.mouse_spring().unwrap();
+    assert!((spring.stiffness() / (mass * (10.0 * PI).powi(2)) - 1.0).abs() < 1e-12, "{}", spring.stiffness());
+    assert!((spring.largest_force() / (spring.stiffness() * 0.25 * free.system().size()) - 1.0).abs() < 1e-12);
     assert_eq!(force, Vector2::zeros());
-    let u = hand.target() - hand.position(free.displacement());
-    let damper = hand.force(u, Vector2::new(0.01, -0.02)) - hand.force(u, Vector2::zeros());
-    let critical = 2.0 * (hand.stiffness() * mass).sqrt();
+    let u = spring.target() - spring.position(free.displacement());
+    let damper = spring.force(u, Vector2::new(0.01, -0.02)) - spring.force(u, Vector2::zeros());
+    let critical = 2.0 * (spring.stiffness() * mass).sqrt();
     assert!((damper / (-0.7 * critical) - Vector2::new(0.01, -0.02)).norm() < 1e-12, "{damper}");
 
     // A stiff cantilever: the softest direction at its upper corner, from three loads and the
@@ -224,7 +225,7 @@ fn a_hand_is_as_firm_as_it_says() {
     let mut held = common::solved(&scene);
     let point = held.system().mesh().locate(corner).unwrap();
     assert!(held.grab(point));
-    let stiffness = held.hand().unwrap().0.stiffness();
+    let stiffness = held.mouse_spring().unwrap().0.stiffness();
     assert!((stiffness * compliance / 10.0 - 1.0).abs() < 1e-6, "{stiffness} {compliance}");
     let pull = Vector2::new(0.01, -0.02);
     held.pull_to(corner + pull).unwrap();
@@ -233,10 +234,10 @@ fn a_hand_is_as_firm_as_it_says() {
     // Springs in series: the body with compliance C, and the spring with stiffness k.
     let c = Matrix2::from_columns(&[x, y]);
     let expected = c * (c + Matrix2::identity() / stiffness).try_inverse().unwrap() * pull;
-    let found = held.hand().unwrap().0.position(held.displacement()) - corner;
+    let found = held.mouse_spring().unwrap().0.position(held.displacement()) - corner;
     assert!((found - expected).norm() < 1e-6 * pull.norm(), "{found} {expected}");
     held.release();
-    assert!(held.hand().is_none());
+    assert!(held.mouse_spring().is_none());
     assert_eq!(*held.solve(), Status::Converged);
     assert!(held.displacement().iter().all(|u| u.norm() < 1e-12), "let go, it goes back");
 }
@@ -262,19 +263,19 @@ fn a_body_goes_along_with_a_steady_pointer() {
             let point = simulation.system().mesh().locate(middle).unwrap();
             assert!(simulation.grab(point));
             for step in 1..=(3.0 / h) as u32 {
-                let before = simulation.hand().unwrap().0.target();
+                let before = simulation.mouse_spring().unwrap().0.target();
                 simulation.pull_to(middle + velocity * (f64::from(step) * h)).unwrap();
-                assert_eq!(simulation.hand().unwrap().0.target(), before, "it sets out from where it is");
+                assert_eq!(simulation.mouse_spring().unwrap().0.target(), before, "it sets out from where it is");
                 simulation.step();
             }
-            let (hand, _) = simulation.hand().unwrap();
+            let (spring, _) = simulation.mouse_spring().unwrap();
             let target = middle + velocity * simulation.state().time();
-            assert!((hand.target() - target).norm() < 1e-9, "{}: {}", integrator.id, hand.target());
+            assert!((spring.target() - target).norm() < 1e-9, "{}: {}", integrator.id, spring.target());
             // Integrators that conserve energy also keep the body's vibrations, which short steps resolve better.
             let slack = if integrator.is_explicit() { 0.5 } else { 0.02 };
-            let behind = hand.target() - hand.position(simulation.displacement());
-            let way = velocity.norm() * h;
-            assert!(behind.norm() < slack * way, "{} {iterations}: {behind} of {way}", integrator.id);
+            let behind = spring.target() - spring.position(simulation.displacement());
+            let increment = velocity.norm() * h;
+            assert!(behind.norm() < slack * increment, "{} {iterations}: {behind} of {increment}", integrator.id);
         }
     }
 }
@@ -292,7 +293,7 @@ fn a_hand_keeps_its_hold_when_a_support_comes() {
     assert!(simulation.grab(simulation.system().mesh().locate(place).unwrap()));
     scene = scene.clamp("left");
     simulation.change_scene(&scene).unwrap();
-    let held = simulation.hand().unwrap().0.position(simulation.displacement());
+    let held = simulation.mouse_spring().unwrap().0.position(simulation.displacement());
     assert!((held - place).norm() < 1e-12);
     for step in 1..=30 {
         simulation.pull_to(place + Vector2::new(0.0, 0.01 * f64::from(step))).unwrap();
@@ -300,8 +301,8 @@ fn a_hand_keeps_its_hold_when_a_support_comes() {
     }
     let counts = simulation.motion().unwrap().counts();
     assert!(counts.halvings == 0 && counts.solves <= 7 * counts.steps, "{counts:?}");
-    let (hand, force) = simulation.hand().unwrap();
-    let lifted = hand.position(simulation.displacement()) - place;
+    let (spring, force) = simulation.mouse_spring().unwrap();
+    let lifted = spring.position(simulation.displacement()) - place;
     assert!(lifted.y > 0.15 && force.norm() > 0.0, "{lifted}");
 }
 
@@ -335,15 +336,15 @@ fn an_explicit_step_softens_the_hand() {
         }
         assert_eq!(simulation.motion().unwrap().counts().halvings, 0);
         let mass = Mass::new(simulation.system(), scene.material.area_density()).lumped()[node as usize];
-        let (hand, _) = simulation.hand().unwrap();
+        let (spring, _) = simulation.mouse_spring().unwrap();
         let soft = 0.25 * mass / (h * h);
         assert!(
-            soft < 0.9 * hand.stiffness(),
+            soft < 0.9 * spring.stiffness(),
             "the step is too long for the hand as it is: {soft} {}",
-            hand.stiffness()
+            spring.stiffness()
         );
         let expected = compliance * (compliance + Matrix2::identity() / soft).try_inverse().unwrap() * pull;
-        let found = hand.position(simulation.displacement()) - corner;
+        let found = spring.position(simulation.displacement()) - corner;
         assert!((found - expected).norm() < 1e-3 * pull.norm(), "{part}: {found} {expected}");
         assert!(simulation.state().velocity()[node as usize].norm() < 1e-3 * pull.norm(), "it has come to rest");
     }
@@ -367,7 +368,7 @@ fn a_hard_pull_leaves_a_drift_that_says_something() {
         steps(&mut simulation, 60);
         let point = simulation.system().mesh().locate(Vector2::new(0.75, 0.25)).unwrap();
         assert!(simulation.grab(point));
-        let start = simulation.hand().unwrap().0.target();
+        let start = simulation.mouse_spring().unwrap().0.target();
         for step in 1..=60 {
             simulation.pull_to(start + Vector2::new(1.6, 1.2) * (f64::from(step) / 60.0)).unwrap();
             simulation.step();
@@ -379,7 +380,7 @@ fn a_hard_pull_leaves_a_drift_that_says_something() {
         let drift = ledger.drift_of_input();
         assert!(range.contains(&drift), "{integrator:?}: {drift} {ledger:?}");
         assert!(ledger.put_in >= ledger.kinetic + ledger.elastic + ledger.dissipated + ledger.integrator);
-        assert!(ledger.put_in > 0.9 * ledger.hands, "{ledger:?}");
+        assert!(ledger.put_in > 0.9 * ledger.mouse_spring, "{ledger:?}");
     }
 }
 

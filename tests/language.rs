@@ -50,7 +50,7 @@ fn harness_of(id: &str, size: [f32; 2]) -> Harness<'static, Lab> {
 fn settled(id: &str, size: [f32; 2]) -> Harness<'static, Lab> {
     let mut harness = harness_of(id, size);
     harness.run();
-    wait(&mut harness, |lab| !lab.is_searching());
+    wait(&mut harness, |lab| !lab.is_computing());
     harness
 }
 
@@ -399,7 +399,7 @@ fn exploring_is_in_chinese() {
     press(&mut harness, "why?");
     press(&mut harness, "Fixed colour range");
     press(&mut harness, "Load curve");
-    wait(&mut harness, |lab| !lab.is_searching());
+    wait(&mut harness, |lab| !lab.is_computing());
     assert_tips_are_chinese(&mut harness, "Explore");
     for picker in ["Method", "Element", "Colour", "Force on", "Scene"] {
         harness.get_by_role_and_label(Role::ComboBox, &zh(picker)).click();
@@ -437,7 +437,7 @@ fn scenes_of_every_kind_are_in_chinese() {
         let mut harness = settled(id, size);
         press(&mut harness, "Details");
         press(&mut harness, "Load curve");
-        wait(&mut harness, |lab| !lab.is_searching());
+        wait(&mut harness, |lab| !lab.is_computing());
         press(&mut harness, "why?");
         assert_tips_are_chinese(&mut harness, id);
     }
@@ -453,7 +453,7 @@ fn motions_are_in_chinese() {
     press(&mut harness, "energy-momentum");
     harness.run_steps(100);
     press(&mut harness, "Pause");
-    wait(&mut harness, |lab| !lab.is_searching());
+    wait(&mut harness, |lab| !lab.is_computing());
     for plot in ["Energy", "Tip", "Phase", "Spectrum"] {
         press(&mut harness, plot);
         assert_chinese(&harness, plot);
@@ -496,7 +496,7 @@ fn every_card_is_in_chinese() {
     for card in 1..=warpbeam::app::card_count() {
         harness.state_mut().show_card(card);
         harness.run();
-        wait(&mut harness, |lab| !lab.is_searching());
+        wait(&mut harness, |lab| !lab.is_computing());
         assert_tips_are_chinese(&mut harness, &format!("card {card}"));
     }
 }

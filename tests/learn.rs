@@ -14,10 +14,10 @@ use warpbeam::article::affine::Affine2;
 use warpbeam::article::stiffness::ElementStiffness;
 use warpbeam::assembly::{Forces, Matrix};
 use warpbeam::element::{QuadraturePoint, Tangent};
+use warpbeam::format::{engineering, percent, three_digits};
 use warpbeam::rotation::polar;
 use warpbeam::scene::{ElementKind, MethodKind, Source};
 use warpbeam::simulation::{Simulation, Status};
-use warpbeam::words::{engineering, percent, three_digits};
 
 fn harness(size: [f32; 2]) -> Harness<'static, Lab> {
     let scene = common::scene("cantilever");
@@ -39,7 +39,7 @@ fn at_card(number: usize) -> Harness<'static, Lab> {
     let mut harness = harness([1280.0, 800.0]);
     harness.state_mut().show_card(number);
     harness.run();
-    wait(&mut harness, |lab| !lab.is_searching());
+    wait(&mut harness, |lab| !lab.is_computing());
     harness
 }
 
@@ -252,7 +252,7 @@ fn triangles_are_turned_back_onto_their_shape_at_rest() {
     harness.hover_at(at);
     harness.drag_at(at);
     harness.step();
-    assert!(harness.state().simulation().hand().is_none());
+    assert!(harness.state().simulation().mouse_spring().is_none());
     harness.drop_at(at);
     harness.run();
     assert!(text(&harness, "Triangle").starts_with("Triangle 2:"));
@@ -511,7 +511,7 @@ fn growth_is_seen_as_growth() {
         let mut harness = harness(size);
         harness.state_mut().show_card(1);
         harness.run();
-        wait(&mut harness, |lab| !lab.is_searching());
+        wait(&mut harness, |lab| !lab.is_computing());
         let camera = harness.state().camera();
         let slider = harness.get_by_role_and_label(Role::Slider, "Tip force").rect();
         let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
@@ -532,7 +532,7 @@ fn growth_is_seen_as_growth() {
         }
         harness.drop_at(at(1.2));
         harness.run();
-        wait(&mut harness, |lab| !lab.is_searching());
+        wait(&mut harness, |lab| !lab.is_computing());
         assert_eq!(harness.state().camera(), camera);
         assert!(painted(&harness).iter().any(|text| text == "area, linear"), "the bars say what they are of");
     }

@@ -59,7 +59,7 @@ fn the_work_is_right_from_rest() {
 
 fn turn_of_the_right_edge(system: &System, state: &State) -> f64 {
     let right = system.edges().iter().position(|e| e.name() == "right").unwrap();
-    state.turns()[right]
+    state.edge_angles()[right]
 }
 
 fn problem() -> Problem {
@@ -152,8 +152,8 @@ fn between_two_states_the_loads_work_by_their_potential() {
         let states = [from, to].map(|angle| rolled_state(&problem, angle));
         let mut force = vec![Vector2::zeros(); states[0].displacement().len()];
         problem.loads().force_between(problem.system(), [&states[0], &states[1]], &mut force);
-        let way = states[1].displacement().iter().zip(states[0].displacement()).map(|(b, a)| b - a);
-        let work: f64 = way.zip(&force).map(|(way, f)| way.dot(f)).sum();
+        let increment = states[1].displacement().iter().zip(states[0].displacement()).map(|(b, a)| b - a);
+        let work: f64 = increment.zip(&force).map(|(increment, f)| increment.dot(f)).sum();
         let fall = potential(&states[0]) - potential(&states[1]);
         assert!((work - fall).abs() < 1e-12 * (1.0 + fall.abs()), "{from} to {to}: {work} {fall}");
         let mut ordinary = force.clone();

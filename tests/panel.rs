@@ -13,11 +13,11 @@ use nalgebra::Vector2;
 use warpbeam::Scene;
 use warpbeam::app::Lab;
 use warpbeam::dynamics::INTEGRATORS;
+use warpbeam::format::percent;
 use warpbeam::scene::{Analysis, IntegratorKind, Load, MethodKind, Plane, Source};
 use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::Demand;
 use warpbeam::study::motion::{MotionMeasurement, MotionSetting};
-use warpbeam::words::percent;
 
 fn harness(id: &str) -> Harness<'static, Lab> {
     let mut harness = harness_of(id);
@@ -385,7 +385,7 @@ fn arrow_keys_step_a_slider_finely() {
 #[test]
 fn remedies_are_one_click_away() {
     let mut harness = harness("article");
-    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     let error = solve_json(&["article"])["probes"][0]["error_percent"].as_f64().unwrap();
     let shown = format!("ERROR {} mesh", percent(error));
@@ -395,7 +395,7 @@ fn remedies_are_one_click_away() {
     harness.get_by_label("Try t6 with newton").click();
     harness.run();
     assert_eq!(harness.state().scene().element().id(), "t6");
-    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
     assert!(harness.query_by_label_contains("ERROR 1.5 % mesh").is_some(), "{:?}", texts(&harness));
@@ -410,7 +410,7 @@ fn remedies_are_one_click_away() {
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
 
     let mut harness = self::harness("cook");
-    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     assert!(harness.query_by_label_contains("linear theory does not rotate").is_some(), "{:?}", texts(&harness));
 }
@@ -563,7 +563,7 @@ fn keys_are_listed_and_work() {
 fn scrolling_zooms_to_the_pointer_and_f_fits() {
     let mut harness = harness("article");
     // The view is also fitted to the outline of the reference solution.
-    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     let rect = harness.state().view_rect();
     let pointer = rect.center() + egui::vec2(150.0, -80.0);
@@ -600,7 +600,7 @@ fn scrolling_zooms_to_the_pointer_and_f_fits() {
 #[test]
 fn at_rest_nothing_is_redrawn() {
     let mut harness = harness("article");
-    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run_steps(3);
     assert!(!harness.state().iterates());
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
@@ -631,9 +631,9 @@ fn a_support_is_dragged_and_its_reaction_is_shown() {
     harness.drop_at(at(0.3));
     harness.run();
     let lab = harness.state();
-    let way = lab.scene().supports[2].displacement[1];
-    assert!((-0.012..-0.004).contains(&way), "{way}");
-    assert!((crown(lab)[1] - way).abs() < 1e-4, "{:?} {way}", crown(lab));
+    let increment = lab.scene().supports[2].displacement[1];
+    assert!((-0.012..-0.004).contains(&increment), "{increment}");
+    assert!((crown(lab)[1] - increment).abs() < 1e-4, "{:?} {increment}", crown(lab));
     type_into(&mut harness, "Move y", "0");
     assert!(crown(harness.state())[1].abs() < 1e-9);
     type_into(&mut harness, "Move y", "-1 mm");
@@ -654,7 +654,7 @@ fn results_are_certified_and_compared_with_the_truth() {
     let words = "The warped iteration cannot converge here: ρ = 4.039 > 1.";
     assert!(harness.query_by_label(words).is_some());
     assert!((json["fixed_point_rho"].as_f64().unwrap() - 4.039).abs() < 1e-3);
-    wait(&mut harness, "the truth", |lab| !lab.is_searching());
+    wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     let error = json["probes"][0]["error_percent"].as_f64().unwrap();
     let shown = format!("{} of ", percent(error));
@@ -848,26 +848,26 @@ fn a_beam_is_pulled_and_springs_back() {
     let grip = on_body(harness.state(), Vector2::new(4.9, 0.1));
     harness.drag_at(grip);
     harness.run();
-    let (hand, force) = harness.state().simulation().hand().expect("the body is held");
-    assert!(force.norm() < 1e-6 * hand.largest_force(), "a hand that does not pull pulls with {force} N");
+    let (spring, force) = harness.state().simulation().mouse_spring().expect("the body is held");
+    assert!(force.norm() < 1e-6 * spring.largest_force(), "a hand that does not pull pulls with {force} N");
     let pointer = grip + egui::vec2(30.0, -160.0);
     harness.hover_at(pointer);
     harness.run();
     let lab = harness.state();
     let (simulation, rect) = (lab.simulation(), lab.view_rect());
     assert_eq!(*simulation.status(), Status::Converged);
-    let (hand, force) = simulation.hand().unwrap();
-    let held = hand.position(simulation.displacement());
+    let (spring, force) = simulation.mouse_spring().unwrap();
+    let held = spring.position(simulation.displacement());
     let place = lab.camera().to_world([pointer.x - rect.center().x, pointer.y - rect.center().y].map(f64::from));
-    assert!((hand.target() - place).norm() < 1e-6, "the hand is at {}, the pointer at {place}", hand.target());
+    assert!((spring.target() - place).norm() < 1e-6, "the hand is at {}, the pointer at {place}", spring.target());
     // The spring is stiff, so that the point is near the pointer, and its force is its stretch times its stiffness.
     assert!((held - place).norm() < 0.1 * (place - Vector2::new(4.9, 0.1)).norm(), "{held} is pulled to {place}");
-    assert!((force - (place - held) * hand.stiffness()).norm() < 1e-9 * force.norm());
+    assert!((force - (place - held) * spring.stiffness()).norm() < 1e-9 * force.norm());
     assert_eq!(lab.camera(), camera, "the view moved with the body");
     harness.drop_at(pointer);
     harness.run();
     let simulation = harness.state().simulation();
-    assert!(simulation.hand().is_none());
+    assert!(simulation.mouse_spring().is_none());
     assert_eq!(*simulation.status(), Status::Converged);
     let away = simulation.displacement().iter().zip(&before).map(|(u, b)| (u - b).norm()).fold(0.0, f64::max);
     assert!(away < 1e-6, "it came back to within {away} m");
@@ -899,13 +899,13 @@ fn a_motion_is_run_paused_stepped_pulled_and_reset() {
     harness.run_steps(2);
     harness.hover_at(grip + egui::vec2(60.0, -80.0));
     harness.run_steps(4);
-    let force = harness.state().simulation().hand().expect("the tip is held").1;
+    let force = harness.state().simulation().mouse_spring().expect("the tip is held").1;
     assert!(force.norm() > 0.0);
     harness.drop_at(grip + egui::vec2(60.0, -80.0));
     harness.run_steps(2);
-    assert!(harness.state().simulation().hand().is_none());
+    assert!(harness.state().simulation().mouse_spring().is_none());
     let ledger = *harness.state().simulation().motion().unwrap().ledger();
-    assert!(ledger.hands != 0.0 && ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{ledger:?}");
+    assert!(ledger.mouse_spring != 0.0 && ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{ledger:?}");
     harness.get_by_label("Pause").click();
     harness.get_by_label("Reset").click();
     harness.run_steps(2);
@@ -1039,7 +1039,7 @@ fn the_error_says_that_the_reference_is_being_computed() {
         assert!(frames < 400, "it is never said");
         harness.step();
     }
-    wait(&mut harness, "the reference solution", |lab| !lab.is_searching());
+    wait(&mut harness, "the reference solution", |lab| !lab.is_computing());
     harness.run();
     assert!(!says(&harness));
 }

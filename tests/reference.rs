@@ -134,15 +134,15 @@ fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
             continue;
         }
         let error = percent(own.probe("probe").unwrap(), fine);
-        let words = format!(
+        let text = format!(
             "{seed}: claimed {claimed:.4} %, true {error:.4} %, own {:.4} %, independent ones {apart:.4} % apart, {}",
             first.own_error_percent, first.source
         );
-        println!("{words}");
+        println!("{text}");
         // The errors are percentages of different displacements, so that a large error has a large difference.
         let scale = 1.0 + 0.01 * error;
         if (claimed - error).abs() > (first.own_error_percent + 1.5 * apart) * scale + 1e-5 {
-            tally.wrong.push(words);
+            tally.wrong.push(text);
         }
         tally.judged += 1;
         tally.sharp += usize::from(first.own_error_percent < 0.3);

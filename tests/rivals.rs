@@ -25,7 +25,7 @@ fn rapier_rests_where_we_do() {
         let set: Vec<&str> = set.iter().copied().chain(["beam.cells=[20,2]", "solver.method=newton"]).collect();
         let ours = solved(&scene_with("cantilever", &set));
         let end = ours.probe("tip").unwrap();
-        let swing = Swing { solver: RapierSolver::Fem, pace: 0.05, damping: 1.0, cg_iterations: 500 };
+        let swing = Swing { solver: RapierSolver::Fem, frequency_factor: 0.05, damping: 1.0, cg_iterations: 500 };
         let mut rapier = Rapier::new(ours.problem(), end, swing).unwrap();
         assert_eq!(rapier.displacement().norm(), 0.0);
         for _ in 0..400 {
@@ -38,7 +38,7 @@ fn rapier_rests_where_we_do() {
 
 #[test]
 fn rapier_says_what_it_cannot_have() {
-    let swing = Swing { solver: RapierSolver::Fem, pace: 0.05, damping: 1.0, cg_iterations: 20 };
+    let swing = Swing { solver: RapierSolver::Fem, frequency_factor: 0.05, damping: 1.0, cg_iterations: 20 };
     let end = nalgebra::Vector2::new(0.0, 1.0);
     for (id, set) in
         [("roll-up", "beam.element=t3"), ("cantilever", "beam.element=t6"), ("cantilever", "support.0.fix=[\"x\"]")]

@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix2;
 use num_bigint::BigInt;
-use warpbeam::lanes::{LANES, Lanes};
 use warpbeam::rotation::{Rotation, polar, polar_or};
+use warpbeam::simd::{LANES, Lanes};
 
 /// Returns a finite f64 as an integer times 2^−1074, exactly.
 fn exact(value: f64) -> BigInt {

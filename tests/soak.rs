@@ -121,7 +121,7 @@ fn a_window_is_played_with() {
                     _ => harness.hover_at(place),
                 }
                 harness.step();
-                held += u32::from(harness.state().simulation().hand().is_some());
+                held += u32::from(harness.state().simulation().mouse_spring().is_some());
                 assert!(harness.state().simulation().state().is_finite(), "{id}: frame {frame}");
             }
         };

@@ -304,15 +304,15 @@ fn the_mesh_error_is_about_the_true_one() {
                 let scene = scene.clone().with_element(kind).with_cells(along, across);
                 let fine = [120, ((120.0 * beam.height / beam.length).round() as u32).max(2)];
                 let found = Errors::of(&scene, fine);
-                let words = format!("{id} {kind:?} {along}×{across}: {found:?}");
+                let text = format!("{id} {kind:?} {along}×{across}: {found:?}");
                 if kind == ElementKind::Q4 && across == 1 {
                     // In a single row every cell has the same error, which recovery cannot detect.
-                    assert_eq!(found.estimate, None, "{words}");
+                    assert_eq!(found.estimate, None, "{text}");
                     continue;
                 }
                 let effectivity = found.estimate.unwrap() / found.exact;
-                println!("{words}: effectivity {effectivity:.2}");
-                assert!((0.5..2.0).contains(&effectivity), "{words}");
+                println!("{text}: effectivity {effectivity:.2}");
+                assert!((0.5..2.0).contains(&effectivity), "{text}");
             }
         }
     }

@@ -183,25 +183,25 @@ fn a_study_of_a_motion_says_how_far_it_is_and_keeps_what_is_measured() {
 
 /// Compares the reference with a trajectory computed independently on the same mesh: `tests/data/swing.py`.
 #[test]
-fn the_reference_is_the_truth() {
+fn the_reference_equals_an_independent_trajectory() {
     // The independent mesh has six-node triangles, twice as fine as these cells.
     let scene = scene_with("swing", &["beam.element=t3"]);
     let reference = MotionReference::new(&scene, Extent::Quick, &mut go_on).unwrap();
     assert_eq!(reference.cells, Some([20, 1]));
     let rows = include_str!("data/swing.csv").lines().filter(|line| !line.starts_with('#')).skip(1);
-    let truth: Vec<(f64, Vector2<f64>)> = rows
+    let independent: Vec<(f64, Vector2<f64>)> = rows
         .map(|row| {
             let v: Vec<f64> = row.split(',').map(|v| v.parse().unwrap()).collect();
             (v[0], Vector2::new(v[1], v[2]))
         })
         .collect();
     // Every fourth of the 240 samples per second.
-    let truth: Vec<_> = truth.iter().skip(3).step_by(4).take(reference.path.len()).collect();
-    assert_eq!(truth.len(), 60);
-    for (i, (time, _)) in truth.iter().enumerate() {
+    let independent: Vec<_> = independent.iter().skip(3).step_by(4).take(reference.path.len()).collect();
+    assert_eq!(independent.len(), 60);
+    for (i, (time, _)) in independent.iter().enumerate() {
         assert!((time - reference.interval * (i + 1) as f64).abs() < 1e-9);
     }
-    let places: Vec<_> = truth.iter().map(|(_, u)| *u).collect();
+    let places: Vec<_> = independent.iter().map(|(_, u)| *u).collect();
     let [distance, _] = reference.distance(&places, &reference.path);
     assert!(distance <= reference.error_percent, "{distance} {}", reference.error_percent);
     // The mesh is the same, so that the only difference is due to the time step.
@@ -274,8 +274,8 @@ fn study_of_a_motion_writes_its_files() {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let summary = stdout(&output);
         assert_eq!(summary, fs::read_to_string(out.join("study.txt")).unwrap());
-        for words in ["its own error about", "real time", "an error of 10 % costs", "auto beside newton"] {
-            assert!(summary.contains(words), "{words}: {summary}");
+        for text in ["its own error about", "real time", "an error of 10 % costs", "auto beside newton"] {
+            assert!(summary.contains(text), "{text}: {summary}");
         }
         let csv = fs::read_to_string(out.join("study.csv")).unwrap();
         let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
@@ -287,11 +287,11 @@ fn study_of_a_motion_writes_its_files() {
              resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto"
         );
         let rows: Vec<_> = lines.collect();
-        let words = ["element", "integrator", "method", "ending", "resolved", "energy", "pareto"];
+        let text = ["element", "integrator", "method", "ending", "resolved", "energy", "pareto"];
         for row in &rows {
             assert_eq!(row.len(), header.len());
             let finished = row[8] == "finished";
-            for (column, value) in header.iter().zip(row).filter(|(column, _)| !words.contains(column)) {
+            for (column, value) in header.iter().zip(row).filter(|(column, _)| !text.contains(column)) {
                 // A run that did not finish has no error.
                 let empty = value.is_empty() && !finished && column.ends_with("_percent");
                 assert!(empty || value.parse::<f64>().unwrap().is_finite(), "{column}: {row:?}");
@@ -351,8 +351,8 @@ fn scaling_is_measured() {
         let dofs: Vec<u32> = own.iter().map(|row| row[3].parse().unwrap()).collect();
         assert!(dofs.len() >= 5 && dofs.is_sorted() && dofs[0] < 200 && *dofs.last().unwrap() > 1000, "{dofs:?}");
         assert!(own.iter().all(|row| row[4].parse::<f64>().unwrap() > 0.0), "{table}");
-        let words = stdout(&done);
-        assert!(words.contains(&format!("{}: time ∝ unknowns^", element.id())), "{words}");
+        let text = stdout(&done);
+        assert!(text.contains(&format!("{}: time ∝ unknowns^", element.id())), "{text}");
     }
     let picture = fs::read_to_string(folder.path().join("scaling.svg")).unwrap();
     assert_eq!(picture.matches("<polyline").count(), ElementKind::all().count());

@@ -83,11 +83,11 @@ fn a_rigid_turn_of_all_supports_leaves_no_stress() {
             let mut scene = clamped().with_element(element.kind).with_method(method.kind);
             for (support, middle) in [Vector2::new(0.0, 0.0), Vector2::new(10.0, 0.0)].into_iter().enumerate() {
                 let arm = middle - centre;
-                let way = match method.kind {
+                let increment = match method.kind {
                     MethodKind::Linear => Vector2::new(-arm.y, arm.x) * angle,
                     _ => rotated(arm, angle) - arm,
                 };
-                scene.move_support(support, way.into(), angle).unwrap();
+                scene.move_support(support, increment.into(), angle).unwrap();
             }
             let simulation = solved(&scene);
             let solution = simulation.solution();
@@ -104,9 +104,9 @@ fn a_rigid_turn_of_all_supports_leaves_no_stress() {
             }
             // The rotations of edges count full turns.
             assert!(
-                simulation.state().turns().iter().all(|t| (t - angle).abs() < 1e-9),
+                simulation.state().edge_angles().iter().all(|t| (t - angle).abs() < 1e-9),
                 "{:?}",
-                simulation.state().turns()
+                simulation.state().edge_angles()
             );
         }
     }
@@ -137,7 +137,7 @@ fn a_full_turn_of_one_end_is_not_rest() {
     scene.solver.max_iterations = 300;
     let mut simulation = solved(&scene);
     let turn =
-        simulation.state().turns()[simulation.system().edges().iter().position(|e| e.name() == "right").unwrap()];
+        simulation.state().edge_angles()[simulation.system().edges().iter().position(|e| e.name() == "right").unwrap()];
     assert!((turn - TAU).abs() < 1e-9, "{turn}");
     assert!(simulation.solution().energy.elastic > 10.0, "{:?}", simulation.solution().energy);
     assert!(simulation.load_stepping().1 > 6);
@@ -339,10 +339,10 @@ fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) ->
         for sign in [1.0, -1.0] {
             let force = (-q[1] + sign * root.sqrt()) / (2.0 * q[2]);
             let middle = |v: &Vector4<f64>| v[0] + v[1] * half + v[2] * c + v[3] * s;
-            let way = -(middle(&alone) + 0.5 * curvature * half * half + force * middle(&unit));
+            let increment = -(middle(&alone) + 0.5 * curvature * half * half + force * middle(&unit));
             // Only states count in which the crown is above the ends.
-            if force > best[0] && (0.0..rise).contains(&way) {
-                best = [force, way];
+            if force > best[0] && (0.0..rise).contains(&increment) {
+                best = [force, increment];
             }
         }
     }
@@ -362,14 +362,14 @@ fn the_arch_passes_its_limit_load() {
     let [a, b, c] = [0, 1, 2].map(|i| pairs[top - 1 + i][1]);
     let limit = b + (c - a).powi(2) / (8.0 * (2.0 * b - a - c));
     let (e, h, t) = (210e9, 0.001_f64, 0.02);
-    let [expected, way] = shallow_arch_limit(0.2, 0.008, [e * t * h.powi(3) / 12.0, e * t * h]);
+    let [expected, increment] = shallow_arch_limit(0.2, 0.008, [e * t * h.powi(3) / 12.0, e * t * h]);
     println!(
         "limit load {limit} N at {} mm, of shallow beam theory {expected} N at {} mm",
         1e3 * pairs[top][0],
-        1e3 * way
+        1e3 * increment
     );
     assert!((limit - expected).abs() < 0.005 * expected, "{limit} {expected}");
-    assert!((pairs[top][0] - way).abs() < 3e-4, "{} {way}", pairs[top][0]);
+    assert!((pairs[top][0] - increment).abs() < 3e-4, "{} {increment}", pairs[top][0]);
     // The same scene with the crown free along its path.
     let mut free = scene.clone();
     free.supports[2] = Support::new(free.supports[2].place.clone(), &[Axis::X]);

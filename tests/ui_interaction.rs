@@ -90,11 +90,11 @@ fn dragging_the_tip_of_the_arrow_sets_the_force() {
     drag(&mut harness, before, target, Modifiers::NONE);
     let lab = harness.state();
     let [fx, fy] = force(lab);
-    let way = target - start;
-    let wanted = f64::from(-way.y).atan2(f64::from(way.x)).to_degrees();
+    let vector = target - start;
+    let wanted = f64::from(-vector.y).atan2(f64::from(vector.x)).to_degrees();
     let direction = fy.atan2(fx).to_degrees();
     assert!((direction - wanted).abs() < 0.6, "the arrow points to {wanted}°, the force to {direction}°");
-    let shorter = f64::from(way.length() / (before - start).length());
+    let shorter = f64::from(vector.length() / (before - start).length());
     assert!((fx.hypot(fy) / 1000.0 - shorter).abs() < 0.02, "an arrow of {shorter} times the length: {fx} {fy}");
     assert_eq!(*lab.simulation().status(), Status::Converged);
     let direction_shown = shown(&harness, "Direction");
@@ -105,7 +105,7 @@ fn dragging_the_tip_of_the_arrow_sets_the_force() {
     assert!((u - Vector2::from(solved)).norm() < 1e-5 * u.norm(), "{u} {solved:?}");
     // The arrow keeps its dragged length, wherever the body has moved.
     let length = (tip(lab) - on_body(lab, Vector2::new(10.0, 0.0))).length();
-    assert!((length - way.length()).abs() < 1.5, "{length} {}", way.length());
+    assert!((length - vector.length()).abs() < 1.5, "{length} {}", vector.length());
     assert_ne!(lab.camera(), camera, "the view did not follow the body afterwards");
 }
 
@@ -121,13 +121,13 @@ fn an_arrow_of_twice_the_length_is_twice_the_force() {
         };
         let own = size(&harness);
         let (from, to) = (harness.state().arrow_feet()[0], tip(harness.state()));
-        let way = to - from;
-        drag(&mut harness, to, to + way, Modifiers::NONE);
+        let vector = to - from;
+        drag(&mut harness, to, to + vector, Modifiers::NONE);
         assert!((size(&harness) / (2.0 * own) - 1.0).abs() < 0.02, "{id}: {own} N, then {} N", size(&harness));
         key(&mut harness, Modifiers::COMMAND, Key::Z);
         for (modifiers, part) in [(Modifiers::NONE, 1.0), (Modifiers::CTRL, 0.1)] {
             let to = tip(harness.state());
-            drag(&mut harness, to, to + way.normalized() * 10.0, modifiers);
+            drag(&mut harness, to, to + vector.normalized() * 10.0, modifiers);
             let rate = (size(&harness) / own - 1.0) / 10.0;
             assert!((0.01 * part..=0.0205 * part).contains(&rate), "{id}: {rate} a point, {modifiers:?}");
             assert!(harness.state().simulation().status().is_success(), "{id}");
@@ -143,9 +143,9 @@ fn messages_stay_off_the_tips_of_arrows() {
         let mut harness = harness("article");
         harness.set_size(size.into());
         harness.run();
-        for way in [vec2(0.0, 0.0), vec2(-60.0, 50.0), vec2(-40.0, 30.0), vec2(-120.0, 10.0), vec2(60.0, 0.0)] {
+        for vector in [vec2(0.0, 0.0), vec2(-60.0, 50.0), vec2(-40.0, 30.0), vec2(-120.0, 10.0), vec2(60.0, 0.0)] {
             let from = tip(harness.state());
-            drag(&mut harness, from, from + way, Modifiers::NONE);
+            drag(&mut harness, from, from + vector, Modifiers::NONE);
             let at = tip(harness.state());
             harness.hover_at(at);
             harness.run();
@@ -184,7 +184,7 @@ fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     assert!(harness.query_all_by_label_contains("Shown is the last equilibrium").next().is_some());
     // No error is shown for the hidden state.
     let mut frames = 0;
-    while harness.state().is_searching() {
+    while harness.state().is_computing() {
         std::thread::sleep(std::time::Duration::from_millis(10));
         harness.step();
         frames += 1;
@@ -252,7 +252,7 @@ fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
     harness.step();
     harness.hover_at(tip + vec2(-25.0, 0.0));
     harness.step();
-    assert!(harness.state().simulation().hand().is_none(), "the body was taken with the tip");
+    assert!(harness.state().simulation().mouse_spring().is_none(), "the body was taken with the tip");
     assert_ne!(force(harness.state()), before);
     assert_eq!(harness.state().camera(), camera, "the view moved with the tip");
     harness.drop_at(tip + vec2(-25.0, 0.0));
@@ -266,7 +266,7 @@ fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
     harness.step();
     harness.hover_at(body + vec2(0.0, 60.0));
     harness.step();
-    assert!(harness.state().simulation().hand().is_some());
+    assert!(harness.state().simulation().mouse_spring().is_some());
     assert_eq!((force(harness.state()), harness.state().camera()), (before, camera));
     harness.drop_at(body + vec2(0.0, 60.0));
     harness.run();
@@ -476,7 +476,7 @@ fn the_end_of_a_moments_arrow_sets_it() {
     assert!((0.75..0.82).contains(&(less / before)), "{before} {less}: 30° of 135° less");
     unfold(&mut harness, "Moment");
     let shown = harness.get_by_role_and_label(Role::SpinButton, "Moment").accesskit_node().value().unwrap();
-    assert_eq!(shown, warpbeam::words::editable(less, "N m"));
+    assert_eq!(shown, warpbeam::format::editable(less, "N m"));
     let json = solve_json(&["roll-up", "--set", &format!("load.0.moment={less}")]);
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
     let u = harness.state().simulation().solution().probes[0].u;
@@ -1097,8 +1097,8 @@ fn the_card_of_a_point_is_of_one_deformation() {
             let largest = 100.0 * strain.symmetric_eigenvalues().amax();
             assert!((largest - printed).abs() < 0.011 + 0.006 * printed, "{id} {kind}: {largest} % {card:?}");
             let state = harness.state().simulation().point_state(point, values).unwrap();
-            let stress = warpbeam::words::engineering(
-                warpbeam::words::three_digits(state.field(Field::VonMises).unwrap()),
+            let stress = warpbeam::format::engineering(
+                warpbeam::format::three_digits(state.field(Field::VonMises).unwrap()),
                 "Pa",
             );
             assert_eq!(card["σ"], stress, "{id} {kind}");

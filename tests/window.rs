@@ -480,9 +480,9 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     window.point(tip.x, tip.y);
     desktop.xdotool(&["mousedown", "1"]);
     // To the left and up: a smaller force in another direction.
-    let way = egui::vec2(-60.0, -45.0);
+    let increment = egui::vec2(-60.0, -45.0);
     for part in [0.25, 0.5, 0.75, 1.0] {
-        window.point(tip.x + part * way.x, tip.y + part * way.y);
+        window.point(tip.x + part * increment.x, tip.y + part * increment.y);
     }
     wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 10_000).then_some(()));
     desktop.xdotool(&["mouseup", "1"]);

@@ -3,11 +3,11 @@
 use crate::app::language::{count, fill, percent, sentence, tr, translated};
 use crate::app::readout::Readout;
 use crate::app::widgets::palette::Palette;
-use crate::method::{floor_words, rho_words};
+use crate::format::{self, engineering, number, two_digits};
+use crate::method::{floor_text, rho_text};
 use crate::scene::{ElementKind, MethodKind, Scene, limits};
 use crate::simulation::{Simulation, Status, probe_results};
 use crate::study::Reference;
-use crate::words::{self, engineering, number, two_digits};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy that the integrator has added, or with a minus lost, over the energy that was put in: by the \
@@ -43,22 +43,22 @@ pub(crate) struct Errors {
 /// moves or is grabbed: the reference solution holds for equilibrium only.
 pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     let simulation = input.simulation;
-    let at_rest = simulation.is_at_rest() && simulation.hand().is_none();
+    let at_rest = simulation.is_at_rest() && simulation.mouse_spring().is_none();
     let Some(reference) = input.reference.filter(|_| at_rest) else { return Errors::default() };
-    let Some(truth) = reference.first() else { return Errors::default() };
+    let Some(first) = reference.first() else { return Errors::default() };
     let percent_of = |simulation: &Simulation| {
         let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
-        Some((truth.error_percent(&probe)?, probe.u))
+        Some((first.error_percent(&probe)?, probe.u))
     };
     // A state that is not drawn has no error to show.
     let own = percent_of(simulation).filter(|_| !input.shows_converged);
-    let source = own.filter(|(error, _)| words::percent(*error) != words::percent(0.0)).map(|(_, u)| {
+    let source = own.filter(|(error, _)| format::percent(*error) != format::percent(0.0)).map(|(_, u)| {
         if !simulation.status().is_success() {
             return ErrorSource::Iteration;
         }
         let theory = reference.linear.filter(|_| simulation.is_linear());
         let [of_theory, of_mesh] =
-            theory.map_or([0.0, 1.0], |fine| [(fine - truth.displacement).norm(), (u - fine).norm()]);
+            theory.map_or([0.0, 1.0], |fine| [(fine - first.displacement).norm(), (u - fine).norm()]);
         if of_theory > of_mesh { ErrorSource::Theory } else { ErrorSource::Mesh }
     });
     let linear = input.linear.and_then(percent_of).map(|(error, _)| error);
@@ -88,7 +88,7 @@ pub(crate) fn is_stale(input: &Readout<'_>) -> bool {
 
 /// Returns the status as a sentence, and `true` if it reports a failure. `shows_converged` is `true` if the last
 /// equilibrium is drawn.
-pub(crate) fn status_words(simulation: &Simulation, running: bool, shows_converged: bool) -> (String, bool) {
+pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converged: bool) -> (String, bool) {
     let moves = simulation.motion().is_some();
     let said = |reason: &dyn std::fmt::Display| translated(&reason.to_string());
     match simulation.status() {
@@ -118,16 +118,16 @@ pub(crate) fn status_words(simulation: &Simulation, running: bool, shows_converg
 /// Returns the status in one line, such as `Converged · stable · 21 iterations`, and `true` if it needs attention.
 pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     let simulation = input.simulation;
-    let (mut words, bad) = status_words(simulation, input.running, input.shows_converged);
+    let (mut text, bad) = status_text(simulation, input.running, input.shows_converged);
     if bad {
-        return (words, true);
+        return (text, true);
     }
     if is_stale(input) {
         return (tr("Paused: the picture is older than the load").to_owned(), false);
     }
     let mut add = |part: String| {
-        words.push_str(" · ");
-        words.push_str(&part);
+        text.push_str(" · ");
+        text.push_str(&part);
     };
     let inside_out = input.quality.is_inside_out(simulation);
     if inside_out {
@@ -135,7 +135,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     }
     if simulation.motion().is_some() {
         add(format!("{:.2} s", simulation.state().time()));
-        return (words, inside_out);
+        return (text, inside_out);
     }
     if let Some(stable) = stability(simulation) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
@@ -144,7 +144,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     if let Some(path) = input.jump.filter(|_| simulation.status().is_success()) {
         path.sentences().for_each(|sentence| add(translated(&sentence)));
     }
-    (words, inside_out || stability(simulation) == Some(false))
+    (text, inside_out || stability(simulation) == Some(false))
 }
 
 /// Returns `true` if a converged equilibrium is stable; `None` if it has no certificate.
@@ -164,9 +164,9 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
     if input.quality.is_inside_out(simulation) {
-        let words = "Turned inside out: the area of an element is negative. The equations are solved, but no body can do \
+        let text = "Turned inside out: the area of an element is negative. The equations are solved, but no body can do \
                      that: pull less, or make the cells smaller.";
-        lines.push(tr(words).to_owned());
+        lines.push(tr(text).to_owned());
     }
     if let Some(motion) = simulation.motion() {
         let counts = motion.counts();
@@ -196,15 +196,15 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         ),
     });
     if let Some(floor) = simulation.residual_floor() {
-        lines.push(sentence(&translated(&floor_words(floor, input.scene.solver.tolerance))));
+        lines.push(sentence(&translated(&floor_text(floor, input.scene.solver.tolerance))));
     }
     let stable = stability(simulation).map(|stable| match stable {
         true => "Stable: pushed a little, the body comes back (the exact tangent is positive definite).",
         false => "Unstable: pushed a little, the body leaves (the exact tangent is not positive definite).",
     });
-    lines.extend(stable.map(|words| tr(words).to_owned()));
+    lines.extend(stable.map(|text| tr(text).to_owned()));
     if let Some(rho) = rho(input) {
-        lines.push(sentence(&translated(&rho_words(rho))));
+        lines.push(sentence(&translated(&rho_text(rho))));
         let converged = *simulation.status() == Status::Converged;
         if rho > 1.0 && converged {
             lines.push(match input.scene.solver.method {
@@ -226,7 +226,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Remedy {
     /// Description of the problem.
-    pub words: String,
+    pub text: String,
     /// Label of the button.
     pub offer: String,
     /// Label of the control that it edits.
@@ -242,17 +242,17 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     if simulation.motion().is_some() || !simulation.is_at_rest() {
         return None;
     }
-    let with_newton = |words: String| {
+    let with_newton = |text: String| {
         let mut scene = Box::new(scene.clone());
         scene.solver.method = MethodKind::Newton;
-        Remedy { words, offer: tr("Use newton").to_owned(), edits: "Method", scene }
+        Remedy { text, offer: tr("Use newton").to_owned(), edits: "Method", scene }
     };
     if !simulation.status().is_success() {
-        let words = rho(input).filter(|&rho| rho > 1.0).map_or_else(
+        let text = rho(input).filter(|&rho| rho > 1.0).map_or_else(
             || fill!("The %{method} iteration does not converge.", method = tr(scene.solver.method.id())),
             |rho| fill!("Cannot converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
         );
-        return (scene.solver.method != MethodKind::Newton).then(|| with_newton(words));
+        return (scene.solver.method != MethodKind::Newton).then(|| with_newton(text));
     }
     let off = errors.own.filter(|&error| error > LARGE)?;
     let off = percent(off);
@@ -263,7 +263,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         let better = [ElementKind::T6, ElementKind::Q4].into_iter().find(|e| scene.elements().any(|own| own == *e))?;
         let mut scene = Box::new(scene.clone());
         scene.set_element(better);
-        let words = fill!("%{error} error: three-node triangles lock in bending.", error = off);
+        let text = fill!("%{error} error: three-node triangles lock in bending.", error = off);
         // A body that bends more rotates more, and the warped iteration may then diverge.
         let offer = if scene.solver.method == MethodKind::Warped {
             scene.solver.method = MethodKind::Newton;
@@ -271,14 +271,14 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         } else {
             fill!("Try %{element}", element = better.id())
         };
-        return Some(Remedy { words, offer, edits: "Element", scene });
+        return Some(Remedy { text, offer, edits: "Element", scene });
     }
     let mut scene = Box::new(scene.clone());
     let beam = scene.beam.as_mut()?;
     beam.cells = beam.cells.map(|n| n.saturating_mul(2));
     let fits = f64::from(beam.cells[0]) * f64::from(beam.cells[1]) <= limits::TOTAL_CELLS.max;
-    let words = fill!("%{error} error: the mesh is coarse.", error = off);
-    fits.then_some(Remedy { words, offer: tr("Halve its cells").to_owned(), edits: "Cells along", scene })
+    let text = fill!("%{error} error: the mesh is coarse.", error = off);
+    fits.then_some(Remedy { text, offer: tr("Halve its cells").to_owned(), edits: "Cells along", scene })
 }
 
 /// Formats ρ with two significant digits.
@@ -287,6 +287,9 @@ pub(crate) fn rho_number(rho: f64) -> String {
 }
 
 /// Returns the name of the reference solution, or a text for the case that it is not known yet.
-pub(crate) fn truth_words(truth: Option<&Reference>) -> String {
-    truth.map_or_else(|| tr("the reference, once that is known").to_owned(), |truth| translated(&truth.to_string()))
+pub(crate) fn reference_text(reference: Option<&Reference>) -> String {
+    reference.map_or_else(
+        || tr("the reference, once that is known").to_owned(),
+        |reference| translated(&reference.to_string()),
+    )
 }

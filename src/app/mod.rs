@@ -33,7 +33,7 @@ pub use panel::PANEL_WIDTH;
 pub use session::recovery::{Recovery, Unsaved};
 pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
-pub use window::{Display, NoDisplay, opens_beside, run};
+pub use window::{Display, NoDisplay, opens_in_background, run};
 
 /// Error if all numbered file names are taken.
 #[derive(Debug, Error)]

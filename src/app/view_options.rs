@@ -79,7 +79,7 @@ impl CurvePlot {
         if axis == 0 { Self::X } else { Self::Y }
     }
 
-    pub(crate) fn words(self) -> (&'static str, &'static str) {
+    pub(crate) fn text(self) -> (&'static str, &'static str) {
         match self {
             Self::Reaction => ("Reaction", "The reaction of the support over its displacement"),
             Self::Path => ("Path", "The path of the point where errors are measured: u_y against u_x, in one scale"),
@@ -126,7 +126,7 @@ impl Drawer {
     }
 
     /// Returns the drawer's name and a description of its content.
-    pub(crate) fn words(self) -> (&'static str, &'static str) {
+    pub(crate) fn text(self) -> (&'static str, &'static str) {
         match self {
             Self::Curve => ("Load curve", "Load against deflection (L)"),
             Self::Motion => ("Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),

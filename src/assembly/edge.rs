@@ -6,9 +6,9 @@ use nalgebra::Vector2;
 
 use super::Kinematics;
 use crate::element::side_weights;
+use crate::format::{engineering, number};
 use crate::mesh::Mesh;
 use crate::scene::Invalid;
-use crate::words::{engineering, number};
 
 /// Nodes with a weight each.
 pub type NodeWeights = Vec<(u32, f64)>;
@@ -87,7 +87,7 @@ impl Edge {
 
     /// Returns the angle between the edge's rest and current directions, rad, chosen nearest to `previous` among
     /// multiples of 2π; `previous` if the edge has shrunk to a point.
-    pub(super) fn turn(&self, u: &[Vector2<f64>], previous: f64) -> f64 {
+    pub(super) fn angle(&self, u: &[Vector2<f64>], previous: f64) -> f64 {
         use std::f64::consts::TAU;
         let now = self.direction(u);
         let angle = self.direction.perp(&now).atan2(self.direction.dot(&now));
@@ -96,7 +96,7 @@ impl Edge {
     }
 
     /// Returns the rotation angle of linear theory, rad, which is linear in the displacement.
-    pub(super) fn linear_turn(&self, u: &[Vector2<f64>]) -> f64 {
+    pub(super) fn linear_angle(&self, u: &[Vector2<f64>]) -> f64 {
         self.direction.perp(&self.sum(u))
     }
 }

@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
 use super::edge::{no_such_edge, node_at};
+use crate::format::number;
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, Axis, Invalid, Place, Support};
-use crate::words::number;
 /// Returns the unknowns (2 · node + axis) that supports fix: `true` for fixed ones.
 pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bool>, Invalid> {
     let mut fixed = vec![false; 2 * mesh.nodes().len()];

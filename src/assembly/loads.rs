@@ -50,11 +50,11 @@ impl Moment {
         force: &mut [Vector2<f64>],
     ) {
         let edge = &system.edges()[self.edge];
-        let turned = gradient(edge, self.edge) * (factor * self.now);
+        let scaled = gradient(edge, self.edge) * (factor * self.now);
         // If the edge has shrunk to a point, θ has no gradient and nothing is added.
-        if turned.iter().all(|v| v.is_finite()) {
+        if scaled.iter().all(|v| v.is_finite()) {
             for &(node, c) in edge.arms() {
-                force[node as usize] += turned * c;
+                force[node as usize] += scaled * c;
             }
         }
     }
@@ -141,7 +141,7 @@ impl Loads {
             }
         }
         for moment in self.moments.iter().filter(|m| m.pulse.is_some()) {
-            moment.add_force(system, factor, |edge, _| turn_gradient(edge.direction_in(u, kinematics)), force);
+            moment.add_force(system, factor, |edge, _| angle_gradient(edge.direction_in(u, kinematics)), force);
         }
     }
 
@@ -157,14 +157,14 @@ impl Loads {
     #[must_use]
     pub(crate) fn pulse_work(&self, [before, after]: [&State; 2]) -> f64 {
         let mean = |pulse: &Pulse| pulse.mean(before.time, after.time);
-        let way = |node: u32| after.displacement[node as usize] - before.displacement[node as usize];
+        let increment = |node: u32| after.displacement[node as usize] - before.displacement[node as usize];
         let forces = self
             .pulses
             .iter()
-            .map(|(pulse, forces)| mean(pulse) * forces.iter().map(|&(node, f)| f.dot(&way(node))).sum::<f64>());
+            .map(|(pulse, forces)| mean(pulse) * forces.iter().map(|&(node, f)| f.dot(&increment(node))).sum::<f64>());
         let moments = self.moments.iter().filter_map(|m| {
             let pulse = m.pulse.as_ref()?;
-            Some(mean(pulse) * m.moment * (after.turns[m.edge] - before.turns[m.edge]))
+            Some(mean(pulse) * m.moment * (after.edge_angles[m.edge] - before.edge_angles[m.edge]))
         });
         forces.chain(moments).sum()
     }
@@ -189,7 +189,7 @@ impl Loads {
         factor: f64,
         force: &mut [Vector2<f64>],
     ) {
-        self.sum(system, factor, force, |edge, _| turn_gradient(edge.direction_in(u, kinematics)));
+        self.sum(system, factor, force, |edge, _| angle_gradient(edge.direction_in(u, kinematics)));
     }
 
     /// Adds to `bound` an upper bound of the rounding error of the moments' part of an external force, N. Dead forces
@@ -224,10 +224,10 @@ impl Loads {
         self.sum(system, 1.0, force, |edge, number| {
             let (d0, d1) = (edge.direction(&before.displacement), edge.direction(&after.displacement));
             let (mean, change) = ((d0 + d1) * 0.5, d1 - d0);
-            let gradient = turn_gradient(mean);
-            let turned = after.turns[number] - before.turns[number];
+            let gradient = angle_gradient(mean);
+            let scaled = after.edge_angles[number] - before.edge_angles[number];
             if change.norm() > NO_TURN * mean.norm() {
-                gradient + change * ((turned - gradient.dot(&change)) / change.norm_squared())
+                gradient + change * ((scaled - gradient.dot(&change)) / change.norm_squared())
             } else {
                 gradient
             }
@@ -270,12 +270,12 @@ impl Loads {
     pub fn potential(&self, state: &State, factor: f64) -> f64 {
         let dead: f64 = self.constant.iter().zip(&state.displacement).map(|(f, u)| f.dot(u)).sum();
         let always = self.moments.iter().filter(|m| m.pulse.is_none());
-        let moments: f64 = always.map(|m| m.moment * state.turns[m.edge]).sum();
+        let moments: f64 = always.map(|m| m.moment * state.edge_angles[m.edge]).sum();
         -factor * (dead + moments)
     }
 }
 
 /// Returns ∇θ with respect to an edge's direction d: d rotated by 90°, over its squared length.
-fn turn_gradient(d: Vector2<f64>) -> Vector2<f64> {
+fn angle_gradient(d: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-d.y, d.x) / d.norm_squared()
 }

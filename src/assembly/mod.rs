@@ -6,12 +6,12 @@
 //! - [`Problem`]: a system with its material, loads and probes; forces, tangents and energies of a state.
 
 mod edge;
-mod hand;
 mod hold;
 mod kinematics;
 mod loads;
 mod mass;
 mod matrix;
+mod mouse_spring;
 mod pattern;
 mod probe;
 mod problem;
@@ -19,11 +19,11 @@ mod supports;
 mod system;
 
 pub use edge::{Edge, NodeWeights};
-pub use hand::Hand;
 pub use kinematics::Kinematics;
 pub use loads::Loads;
 pub use mass::Mass;
 pub use matrix::Matrix;
+pub use mouse_spring::MouseSpring;
 pub use pattern::Pattern;
 pub use probe::NodalProbe;
 pub use problem::{Change, Forces, Problem};

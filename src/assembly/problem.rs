@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::{Hand, Kinematics, Loads, Matrix, NodalProbe, Supports, System, SystemError};
+use super::{Kinematics, Loads, Matrix, MouseSpring, NodalProbe, Supports, System, SystemError};
 use crate::element::{Elements, MatrixSum, Rotations, Tangent, UNIT};
 use crate::material::Lame;
 use crate::rotation::Rotation;
@@ -22,7 +22,7 @@ pub struct Problem {
     scene_supports: Vec<Support>,
     supports: Supports,
     probes: Vec<NodalProbe>,
-    hand: Option<Hand>,
+    mouse_spring: Option<MouseSpring>,
 }
 
 /// Extent of a change of the scene; each variant includes the ones before it.
@@ -102,7 +102,7 @@ impl Problem {
             supports: Supports::new(&scene.supports, &scene.material, &system)?,
             probes: NodalProbe::of(&scene.probes, &system)?,
             system,
-            hand: None,
+            mouse_spring: None,
         })
     }
 
@@ -151,10 +151,10 @@ impl Problem {
         } else if change == Change::Stiffness {
             self.supports.set_stiffness(&scene.material, &system);
         }
-        self.hand = match change {
+        self.mouse_spring = match change {
             Change::Mesh => None,
-            Change::Unknowns => self.hand.as_ref().map(|hand| hand.adapt(&system)),
-            Change::Stiffness | Change::Loads => self.hand.take(),
+            Change::Unknowns => self.mouse_spring.as_ref().map(|spring| spring.adapt(&system)),
+            Change::Stiffness | Change::Loads => self.mouse_spring.take(),
         };
         self.system = system;
         self.material = scene.material;
@@ -192,12 +192,12 @@ impl Problem {
 
     /// Returns the mouse spring, if there is one.
     #[must_use]
-    pub fn hand(&self) -> Option<&Hand> {
-        self.hand.as_ref()
+    pub fn mouse_spring(&self) -> Option<&MouseSpring> {
+        self.mouse_spring.as_ref()
     }
 
-    pub(crate) fn hand_mut(&mut self) -> &mut Option<Hand> {
-        &mut self.hand
+    pub(crate) fn mouse_spring_mut(&mut self) -> &mut Option<MouseSpring> {
+        &mut self.mouse_spring
     }
 
     /// Sets loads and mouse spring to a time, s.
@@ -208,8 +208,8 @@ impl Problem {
     /// Sets the mouse spring to a time, s, and every pulse to a factor of its full size; see [`Loads::set_pulses`].
     pub(crate) fn set_stage(&mut self, time: f64, factor: &dyn Fn(&Pulse) -> f64) {
         self.loads.set_pulses(factor);
-        if let Some(hand) = &mut self.hand {
-            hand.set_time(time);
+        if let Some(spring) = &mut self.mouse_spring {
+            spring.set_time(time);
         }
     }
 
@@ -244,7 +244,7 @@ impl Problem {
         forces: &mut Forces,
         tangent: Option<(Tangent, &mut Matrix)>,
     ) {
-        self.system.turn_edges(state, kinematics);
+        self.system.rotate_edges(state, kinematics);
         let State { displacement: u, rotations, .. } = state;
         let rotations = match kinematics {
             Kinematics::Corotated => Rotations::Follow(rotations),
@@ -294,8 +294,8 @@ impl Problem {
             let factor = load_factor * tangent.geometric;
             self.loads.add_stiffness(&self.system, &state.displacement, factor, matrix);
         }
-        if let Some(hand) = self.hand.as_ref().filter(|_| tangent.warped != 0.0) {
-            hand.add_largest_stiffness(load_factor * tangent.warped, matrix);
+        if let Some(spring) = self.mouse_spring.as_ref().filter(|_| tangent.warped != 0.0) {
+            spring.add_largest_stiffness(load_factor * tangent.warped, matrix);
         }
     }
 
@@ -307,8 +307,8 @@ impl Problem {
         let Forces { internal, magnitude, external, residual, below_rounding } = forces;
         *below_rounding = None;
         self.loads.force(&self.system, &state.displacement, kinematics, load_factor, external);
-        if let Some(hand) = &self.hand {
-            hand.add_force(hand.force_at_rest(&state.displacement) * load_factor, external);
+        if let Some(spring) = &self.mouse_spring {
+            spring.add_force(spring.force_at_rest(&state.displacement) * load_factor, external);
         }
         for (residual, (external, internal)) in residual.iter_mut().zip(external.iter().zip(internal)) {
             *residual = *external - *internal;
@@ -332,7 +332,7 @@ impl Problem {
     /// the unit roundoff: residuals below it are as good as double precision allows. `None` if a mouse spring is
     /// attached. `scratch` is a nodal work vector.
     pub fn residual_floor(&self, state: &State, forces: &Forces, scratch: &mut [Vector2<f64>]) -> Option<f64> {
-        if self.hand.is_some() {
+        if self.mouse_spring.is_some() {
             return None;
         }
         let Forces { magnitude, external, residual, .. } = forces;
@@ -361,7 +361,7 @@ impl Problem {
     /// its stationary points.
     #[must_use]
     pub fn energy(&self, state: &State, load_factor: f64) -> f64 {
-        let hand = self.hand.as_ref().map_or(0.0, |hand| hand.energy(&state.displacement));
-        self.elastic_energy(state) + self.loads.potential(state, load_factor) + load_factor * hand
+        let spring = self.mouse_spring.as_ref().map_or(0.0, |spring| spring.energy(&state.displacement));
+        self.elastic_energy(state) + self.loads.potential(state, load_factor) + load_factor * spring
     }
 }

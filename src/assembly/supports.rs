@@ -9,11 +9,11 @@ use super::hold::{axes, nodes_of};
 use super::{Kinematics, Matrix, NodeWeights, System};
 use crate::displacement::Displacement;
 use crate::element::{MatrixSum, Rotations, Tangent};
+use crate::format::number;
 use crate::mesh::Mesh;
 use crate::rotation::Rotation;
 use crate::scene::{Invalid, Material, Place, Support};
 use crate::state::State;
-use crate::words::number;
 
 /// Support on the nodes of a mesh.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,14 +28,14 @@ pub struct NodalSupport {
     /// Prescribed displacement at full load, m.
     pub displacement: Vector2<f64>,
     /// Prescribed rotation about the middle, rad.
-    pub turn: f64,
+    pub rotation: f64,
     /// Middle at rest, m.
     pub middle: Vector2<f64>,
 }
 
 impl NodalSupport {
     fn moves(&self) -> bool {
-        self.turn != 0.0 || self.displacement != Vector2::zeros()
+        self.rotation != 0.0 || self.displacement != Vector2::zeros()
     }
 
     /// Returns the prescribed displacement of a point at rest position `x`, m: u = (R(λφ) − I)(X − M) + λd; angle and
@@ -46,8 +46,8 @@ impl NodalSupport {
             return Vector2::zeros();
         }
         let arm = x - self.middle;
-        let angle = factor * self.turn;
-        let turned = match kinematics {
+        let angle = factor * self.rotation;
+        let rotated = match kinematics {
             Kinematics::Linear => Vector2::new(-arm.y, arm.x) * angle,
             Kinematics::Corotated => {
                 // cos − 1 = −2 sin² of half the angle keeps the digits of small angles.
@@ -55,7 +55,7 @@ impl NodalSupport {
                 Vector2::new(versine * arm.x - s * arm.y, s * arm.x + versine * arm.y)
             }
         };
-        turned + self.displacement * factor
+        rotated + self.displacement * factor
     }
 }
 
@@ -96,8 +96,8 @@ impl Supports {
             };
             let middle = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
             let place = support.place.clone();
-            let (displacement, turn) = (support.displacement.into(), support.turn);
-            let mut new = NodalSupport { place, nodes: Vec::new(), weights, displacement, turn, middle };
+            let (displacement, rotation) = (support.displacement.into(), support.turn);
+            let mut new = NodalSupport { place, nodes: Vec::new(), weights, displacement, rotation, middle };
             for node in nodes {
                 let mut own = axes(support);
                 for (axis, own) in own.iter_mut().enumerate().filter(|(_, own)| **own) {
@@ -205,15 +205,16 @@ impl Supports {
     /// Returns the rigid motion that best approximates the motion of the fixed components from this displacement to
     /// their positions at a load factor (least squares; the angle in closed form, as that of a polar factor).
     fn rigid_motion(&self, mesh: &Mesh, factor: f64, u: &[Vector2<f64>]) -> RigidMotion {
-        let mut ways: BTreeMap<u32, [Vector2<f64>; 2]> = BTreeMap::new();
+        let mut increments: BTreeMap<u32, [Vector2<f64>; 2]> = BTreeMap::new();
         for (node, axis, target) in self.targets(mesh, factor, Kinematics::Corotated) {
             let now = mesh.node(node) + u[node as usize];
-            ways.entry(node).or_insert([now; 2])[1][axis] = mesh.node(node)[axis] + target;
+            increments.entry(node).or_insert([now; 2])[1][axis] = mesh.node(node)[axis] + target;
         }
-        let count = ways.len().max(1) as f64;
-        let [from, to] = [0, 1].map(|end| ways.values().map(|way| way[end]).sum::<Vector2<f64>>() / count);
-        let (c, s) = ways.values().fold((0.0, 0.0), |(c, s), way| {
-            let (a, b) = (way[0] - from, way[1] - to);
+        let count = increments.len().max(1) as f64;
+        let [from, to] =
+            [0, 1].map(|end| increments.values().map(|increment| increment[end]).sum::<Vector2<f64>>() / count);
+        let (c, s) = increments.values().fold((0.0, 0.0), |(c, s), increment| {
+            let (a, b) = (increment[0] - from, increment[1] - to);
             (c + a.dot(&b), s + a.perp(&b))
         });
         let angle = f64::atan2(s, c);
@@ -221,13 +222,13 @@ impl Supports {
     }
 
     /// Iterates over the prescribed rotations of edges that are fixed in both directions, rad.
-    fn turns(&self) -> impl Iterator<Item = f64> {
+    fn rotations(&self) -> impl Iterator<Item = f64> {
         let is_held = |s: &&NodalSupport| s.nodes.len() > 1 && s.nodes.iter().any(|(_, own)| *own == [true; 2]);
-        self.all.iter().filter(is_held).map(|s| s.turn)
+        self.all.iter().filter(is_held).map(|s| s.rotation)
     }
 
-    fn mean_turn(&self) -> f64 {
-        self.turns().sum::<f64>() / self.turns().count().max(1) as f64
+    fn mean_rotation(&self) -> f64 {
+        self.rotations().sum::<f64>() / self.rotations().count().max(1) as f64
     }
 
     /// Returns the largest fraction of the motion from rest in which no support rotates by more than `angle` relative
@@ -235,8 +236,8 @@ impl Supports {
     fn load_step_within(&self, mesh: &Mesh, angle: f64) -> f64 {
         let rest = vec![Vector2::zeros(); mesh.nodes().len()];
         let whole = self.rigid_motion(mesh, 1.0, &rest).angle;
-        let whole = whole + TAU * ((self.mean_turn() - whole) / TAU).round();
-        let largest = self.turns().map(|turn| (turn - whole).abs()).fold(0.0, f64::max);
+        let whole = whole + TAU * ((self.mean_rotation() - whole) / TAU).round();
+        let largest = self.rotations().map(|rotation| (rotation - whole).abs()).fold(0.0, f64::max);
         if largest > angle { angle / largest } else { 1.0 }
     }
 
@@ -249,19 +250,19 @@ impl Supports {
         let RigidMotion { from, to, mut angle } = self.rigid_motion(mesh, factor, &state.displacement);
         if at_rest {
             // From rest the supports may make several full rotations; later steps are small.
-            angle += TAU * ((factor * self.mean_turn() - angle) / TAU).round();
+            angle += TAU * ((factor * self.mean_rotation() - angle) / TAU).round();
         }
         if angle.abs() < SMALL {
             return false;
         }
-        let turn = Rotation::from_angle(angle);
+        let rotation = Rotation::from_angle(angle);
         for (u, x) in state.displacement.overwrite().iter_mut().zip(mesh.nodes()) {
-            *u = turn.apply(x + *u - from) + to - x;
+            *u = rotation.apply(x + *u - from) + to - x;
         }
         for r in &mut state.rotations {
-            *r = Rotation { c: turn.c * r.c - turn.s * r.s, s: turn.s * r.c + turn.c * r.s };
+            *r = Rotation { c: rotation.c * r.c - rotation.s * r.s, s: rotation.s * r.c + rotation.c * r.s };
         }
-        state.turns.iter_mut().for_each(|t| *t += angle);
+        state.edge_angles.iter_mut().for_each(|t| *t += angle);
         true
     }
 }

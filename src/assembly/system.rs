@@ -306,16 +306,16 @@ impl System {
             Kinematics::Corotated => self.elements().rotations(u.view(), rotations),
             Kinematics::Linear => rotations.fill(Rotation::IDENTITY),
         }
-        self.turn_edges(state, kinematics);
+        self.rotate_edges(state, kinematics);
     }
 
     /// Sets the angles of the edges, rad, to those of the displaced edges.
-    pub(super) fn turn_edges(&self, state: &mut State, kinematics: Kinematics) {
-        let State { displacement: u, turns, .. } = state;
-        for (edge, turn) in self.edges().iter().zip(turns).filter(|(edge, _)| edge.is_straight()) {
-            *turn = match kinematics {
-                Kinematics::Corotated => edge.turn(u, *turn),
-                Kinematics::Linear => edge.linear_turn(u),
+    pub(super) fn rotate_edges(&self, state: &mut State, kinematics: Kinematics) {
+        let State { displacement: u, edge_angles, .. } = state;
+        for (edge, angle) in self.edges().iter().zip(edge_angles).filter(|(edge, _)| edge.is_straight()) {
+            *angle = match kinematics {
+                Kinematics::Corotated => edge.angle(u, *angle),
+                Kinematics::Linear => edge.linear_angle(u),
             };
         }
     }

@@ -10,7 +10,8 @@ use super::scene_args::{NumberError, RequiredSceneArgs, SceneArgs, parse_number}
 use crate::scene::limits::{BUDGET_MS, MAX_ERROR_PERCENT};
 use crate::study::Effort;
 
-const EXIT_CODES: &str = "Exit codes: 0 done and converged, 1 ran but did not converge (the result is still printed), \
+const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solver.accept_after iterations), \
+1 did not converge or was interrupted (the result is still printed), \
 2 bad input or usage, or a result that could not be written, 3 no usable graphics adapter.";
 
 const SOLVE_FILES: &str = "--out of a static scene:
@@ -128,8 +129,8 @@ pub(super) struct SolveArgs {
     #[arg(long, value_enum, default_value_t = ReferenceEffort::Bounded)]
     pub reference: ReferenceEffort,
     /// Same as --reference none.
-    #[arg(long, hide = true, conflicts_with = "reference")]
-    pub no_truth: bool,
+    #[arg(long = "no-truth", hide = true, conflicts_with = "reference")]
+    pub no_reference: bool,
     /// Certify the result, whatever the size of the scene: stability, ρ, and jumps on the load path to it.
     #[arg(long)]
     pub certificate: bool,
@@ -150,7 +151,7 @@ impl SolveArgs {
     /// Returns the effort for the reference solution; `None` for no reference.
     pub fn effort(&self) -> Option<Effort> {
         match self.reference {
-            _ if self.no_truth => None,
+            _ if self.no_reference => None,
             ReferenceEffort::None => None,
             ReferenceEffort::Bounded => Some(Effort::Bounded),
             ReferenceEffort::Full => Some(Effort::Full),

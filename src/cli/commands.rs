@@ -11,6 +11,7 @@ use super::progress::Watch;
 use super::solved::{Solved, Spent};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
 use crate::export::{self, ExportError, Format, MotionWriter};
+use crate::format::count;
 use crate::plot::{self, Drawing};
 use crate::scene::{self, Analysis, Scene};
 use crate::simulation::{Deformation, Simulation, Status, StressResult};
@@ -20,7 +21,6 @@ use crate::study::{
     Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MemoryMeter, MotionStudy, PathSummary, Reference,
     Scaling, Study, StudyError, Tuning, extremes, moved_points, parallel, path_chart,
 };
-use crate::words::count;
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let began = Instant::now();
@@ -43,7 +43,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         }
         (Analysis::Static, _) => {
             watch.solve(&mut simulation);
-            if certifies && !watch.is_called_off() {
+            if certifies && !watch.is_cancelled() {
                 simulation.certify();
             }
             out.as_deref().map_or(Ok(()), |path| export::write(&simulation, path))
@@ -70,10 +70,10 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let sought = Instant::now();
     let is_static = scene.analysis == Analysis::Static;
     let reference = effort
-        .filter(|_| is_static && !watch.is_called_off() && !scene.probes.is_empty())
+        .filter(|_| is_static && !watch.is_cancelled() && !scene.probes.is_empty())
         .map(|effort| Reference::find(&scene, Some(&simulation), effort, &mut |progress| watch.observe(&progress)));
     let reference_time = sought.elapsed();
-    let interrupted = watch.is_called_off();
+    let interrupted = watch.is_cancelled();
     drop(watch);
     let mut solution = simulation.solution();
     solution.energy.supports = solution.energy.supports.or(path.and_then(|path: PathSummary| path.supports_work));
@@ -118,7 +118,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
 fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &Watch) -> Result<(), ExportError> {
     let duration = simulation.scene().dynamics.duration;
     let mut written = Ok(());
-    while *simulation.status() == Status::Running && !watch.is_called_off() {
+    while *simulation.status() == Status::Running && !watch.is_cancelled() {
         simulation.step();
         let added = writer.as_mut().map_or(Ok(()), |writer| writer.add(simulation));
         if added.is_err() {
@@ -160,7 +160,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
         watch.show(fraction, || "following the load path".to_owned());
         watch.flow()
     });
-    let beam = if watch.is_called_off() { None } else { LoadCurve::new(&scene) };
+    let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene) };
     drop(watch);
     let (words, table) = match (&beam, &path) {
         (Some(curve), path) => {
@@ -310,7 +310,7 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     let watch = Watch::new();
     let observe = |done: usize| {
         watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
-        if watch.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if watch.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let entries = parallel::map(
         &cases,

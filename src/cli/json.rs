@@ -105,7 +105,7 @@ fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
     let energy = &mut object["energy"];
     energy["integrator"] = number(ledger.integrator);
     energy["pulses"] = number(ledger.pulses);
-    energy["hands"] = number(ledger.hands);
+    energy["hands"] = number(ledger.mouse_spring);
 }
 
 fn tensor(tensor: &PlaneTensor) -> Value {

@@ -12,11 +12,11 @@ use clap::Parser;
 use self::args::{Cli, Command};
 use crate::assembly::SystemError;
 use crate::export::ExportError;
+use crate::format::number;
 use crate::picture::PictureError;
 use crate::scene::{self, Analysis, Scene, SceneError};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::StudyError;
-use crate::words::number;
 
 mod args;
 mod commands;

@@ -29,14 +29,14 @@ pub(super) struct Watch {
     bar: ProgressBar,
     began: Instant,
     drawn: Cell<Option<Instant>>,
-    called_off: Arc<AtomicBool>,
+    cancelled: Arc<AtomicBool>,
 }
 
 impl Watch {
     /// Installs the signal handler. A process can have one watch.
     pub(super) fn new() -> Self {
-        let called_off = Arc::new(AtomicBool::new(false));
-        let heard = called_off.clone();
+        let cancelled = Arc::new(AtomicBool::new(false));
+        let heard = cancelled.clone();
         let listening = ctrlc::set_handler(move || {
             if heard.swap(true, Ordering::Relaxed) {
                 std::process::exit(KILLED_BY_INTERRUPT);
@@ -50,17 +50,17 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template("{msg}  {wide_bar} {prefix}") {
             bar.set_style(style);
         }
-        Self { bar, began: Instant::now(), drawn: Cell::new(None), called_off }
+        Self { bar, began: Instant::now(), drawn: Cell::new(None), cancelled }
     }
 
     /// Returns `true` if the command should end with its partial result.
-    pub(super) fn is_called_off(&self) -> bool {
-        self.called_off.load(Ordering::Relaxed)
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
     }
 
     /// Returns [`ControlFlow::Break`] if the command should end with its partial result.
     pub(super) fn flow(&self) -> ControlFlow<()> {
-        if self.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// Shows a message and the completed fraction, 0 to 1.
@@ -85,7 +85,7 @@ impl Watch {
     pub(super) fn solve(&self, simulation: &mut Simulation) {
         let tolerance = simulation.scene().solver.tolerance;
         while *simulation.status() == Status::Running {
-            if self.is_called_off() {
+            if self.is_cancelled() {
                 simulation.stop();
                 break;
             }

@@ -8,8 +8,8 @@ use super::draw_args::RecordArgs;
 use super::progress::Watch;
 use super::{CliError, NOT_CONVERGED, exit_code, text};
 use crate::app::{self, Phase, RecordOptions, RecordProgress, Recorded};
+use crate::format::{count, number};
 use crate::scene;
-use crate::words::{count, number};
 
 pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
     let RecordArgs { scene, output, seconds, speed, fps, size, overwrite, theme, language } = args;
@@ -18,8 +18,8 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
     let options = RecordOptions { size, seconds, speed, fps, overwrite, theme, language };
     let watch = Watch::new();
     let observe = &mut |progress: RecordProgress| {
-        watch.show(progress.fraction, || words(&progress));
-        if watch.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        watch.show(progress.fraction, || text(&progress));
+        if watch.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let recorded = app::record(&source, scene, &options, &output, observe);
     drop(watch);
@@ -39,7 +39,7 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
     Ok(exit_code(&recorded.status))
 }
 
-fn words(progress: &RecordProgress) -> String {
+fn text(progress: &RecordProgress) -> String {
     match (progress.phase, progress.pictures) {
         (Phase::Looking, _) => format!("looking ahead, {:.3} s", progress.time),
         (Phase::Drawing, pictures) => format!("drawing, {} of {pictures} pictures", progress.drawn),

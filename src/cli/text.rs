@@ -8,11 +8,11 @@ use nalgebra::Vector2;
 use super::CliError;
 use super::solved::Solved;
 use crate::export::csv_field;
-use crate::method::{Certificate, floor_words, rho_words};
+use crate::format::{count, engineering, engineering_pair, prefix};
+use crate::method::{Certificate, floor_text, rho_text};
 use crate::scene::{Analysis, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
-use crate::study::{LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_words};
-use crate::words::{count, engineering, engineering_pair, prefix};
+use crate::study::{LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_text};
 
 /// Prints to standard output. A closed pipe, as after `head`, is not an error.
 pub(super) fn print(text: &str) -> Result<(), CliError> {
@@ -42,7 +42,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         "{}: element {}, {}, {} unknowns\n",
         scene.name,
         scene.element().id(),
-        solver_words(scene),
+        solver_text(scene),
         solution.dofs
     );
     let word = solution.status.word();
@@ -67,7 +67,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         let _ = writeln!(text, "  {reason}");
     }
     if let Some(floor) = solution.residual_floor {
-        let _ = writeln!(text, "  {}", floor_words(floor, scene.solver.tolerance));
+        let _ = writeln!(text, "  {}", floor_text(floor, scene.solver.tolerance));
     }
     if let Some(path) = path {
         for sentence in path.sentences() {
@@ -99,7 +99,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         let _ = writeln!(text, "  this equilibrium is unstable: the exact tangent is not positive definite");
     }
     if let Some(rho) = fixed_point_rho {
-        let _ = writeln!(text, "{}", rho_words(rho));
+        let _ = writeln!(text, "{}", rho_text(rho));
     }
     let references = reference.map_or(&[][..], Reference::probes);
     for (i, probe) in solution.probes.iter().enumerate() {
@@ -167,7 +167,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         false => "\n".to_owned(),
     });
     if let Some(motion) = &solution.motion {
-        text.push_str(&books(motion));
+        text.push_str(&energy_text(motion));
     }
     for warning in warnings {
         let _ = writeln!(text, "note: {warning}");
@@ -192,7 +192,7 @@ fn reactions(scene: &Scene, solution: &Solution) -> String {
         return text;
     }
     for (i, (support, reaction)) in scene.supports.iter().zip(&solution.supports).enumerate() {
-        let _ = write!(text, "  {}", support_words(scene, i));
+        let _ = write!(text, "  {}", support_text(scene, i));
         if support.displacement != [0.0; 2] {
             let _ = write!(text, ", moved by {}", engineering_pair(support.displacement, "m"));
         }
@@ -217,7 +217,7 @@ fn joules(energy: f64) -> String {
 }
 
 /// Describes the method, or the integrator with its theory if that is linear.
-fn solver_words(scene: &Scene) -> String {
+fn solver_text(scene: &Scene) -> String {
     match scene.analysis {
         Analysis::Static => format!("method {}", scene.solver.method.id()),
         Analysis::Dynamic if scene.solver.method.moves_linearly() => {
@@ -228,7 +228,7 @@ fn solver_words(scene: &Scene) -> String {
 }
 
 /// Formats energies and momentum of a motion.
-fn books(motion: &MotionResult) -> String {
+fn energy_text(motion: &MotionResult) -> String {
     let MotionResult { counts, ledger, momentum, critical_step, .. } = motion;
     let mut text = format!(
         "kinetic energy {}, potential of the loads {}, dissipated {}, put in by pulses {}\n\
@@ -256,7 +256,7 @@ fn books(motion: &MotionResult) -> String {
 /// Formats a load–deflection curve for display.
 pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     // The whole table uses one prefix.
-    let tips = curve.samples.iter().flat_map(|s| [s.linear.x, s.linear.y, s.truth.x, s.truth.y]);
+    let tips = curve.samples.iter().flat_map(|s| [s.linear.x, s.linear.y, s.exact.x, s.exact.y]);
     let (power, symbol) = prefix(&tips.collect::<Vec<_>>(), "m");
     let scale = 10f64.powi(-power);
     let mut text = format!("{}: tip displacement, {symbol}m\n\n", scene.name);
@@ -269,8 +269,8 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
             100.0 * sample.factor,
             scale * sample.linear.x,
             scale * sample.linear.y,
-            scale * sample.truth.x,
-            scale * sample.truth.y,
+            scale * sample.exact.x,
+            scale * sample.exact.y,
             sample.linear_error_percent(),
             sample.rotation.to_degrees(),
             sample.strain
@@ -313,8 +313,8 @@ pub(super) fn curve_table(curve: &LoadCurve) -> String {
             s.factor,
             s.linear.x,
             s.linear.y,
-            s.truth.x,
-            s.truth.y,
+            s.exact.x,
+            s.exact.y,
             s.linear_error_percent(),
             s.rotation.to_degrees(),
             s.strain
@@ -330,24 +330,24 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
         path.scene,
         count(path.states.len() as u64, "equilibrium state")
     );
-    let way = path.driven.map(|i| format!("way of {}", support_words(scene, i)));
-    let width = way.as_ref().map_or(0, |way| way.chars().count());
+    let displacement = path.driven.map(|i| format!("displacement of {}", support_text(scene, i)));
+    let width = displacement.as_ref().map_or(0, |displacement| displacement.chars().count());
     let probe = scene.probes.first().map(|p| p.name.as_str());
-    let _ = match &way {
-        Some(way) => write!(text, "   load   {way}  {:<17}", "its reaction"),
+    let _ = match &displacement {
+        Some(displacement) => write!(text, "   load   {displacement}  {:<17}", "its reaction"),
         None => write!(text, "   load   "),
     };
     let _ = writeln!(text, "{}", probe.map_or_else(String::new, |probe| format!("displacement of {probe}")));
     let shown = (path.states.len() / 12).max(1);
     for state in path.states.iter().step_by(shown) {
         let _ = write!(text, "{:5.1} %  ", 100.0 * state.factor);
-        if let Some(words) = driven_words(scene, path, state) {
+        if let Some(words) = driven_text(scene, path, state) {
             let _ = write!(text, "{:<width$}  {:<15}  ", words[0], words[1]);
         }
         if let Some(u) = state.probes.first() {
             let _ = write!(text, "{:<24}", pair(*u, "m"));
         }
-        let word = if state.stable == Some(false) { path_chart::unstable_words(path) } else { "" };
+        let word = if state.stable == Some(false) { path_chart::unstable_text(path) } else { "" };
         let _ = writeln!(text, "{word}");
     }
     text.push('\n');
@@ -357,8 +357,8 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
             [Some(false), Some(true)] => (&pair[1], "stable under force control again"),
             _ => continue,
         };
-        if let Some([way, force]) = driven_words(scene, path, at) {
-            let _ = writeln!(text, "{way}, {force}: {word}");
+        if let Some([displacement, force]) = driven_text(scene, path, at) {
+            let _ = writeln!(text, "{displacement}, {force}: {word}");
         }
     }
     text.push_str(&events(path));
@@ -373,12 +373,12 @@ pub(super) fn events(path: &LoadPath) -> String {
 }
 
 /// Formats the motion of the moving support, and its reaction along it.
-fn driven_words(scene: &Scene, path: &LoadPath, state: &PathState) -> Option<[String; 2]> {
-    let [way, force] = path.driven_pair(scene, state)?;
+fn driven_text(scene: &Scene, path: &LoadPath, state: &PathState) -> Option<[String; 2]> {
+    let [displacement, force] = path.driven_pair(scene, state)?;
     let turns = scene.supports.get(path.driven?)?.displacement == [0.0; 2];
     Some(match turns {
-        true => [engineering(way.to_degrees(), "°"), engineering(force, "N m")],
-        false => [engineering(way, "m"), engineering(force, "N")],
+        true => [engineering(displacement.to_degrees(), "°"), engineering(force, "N m")],
+        false => [engineering(displacement, "m"), engineering(force, "N")],
     })
 }
 

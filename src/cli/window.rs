@@ -42,7 +42,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     )?;
     let watch = Watch::new();
     let status = app::shot(source, scene, simulation, &options, &output, &mut |progress| watch.observe(&progress))?;
-    let interrupted = watch.is_called_off();
+    let interrupted = watch.is_cancelled();
     drop(watch);
     if interrupted {
         eprintln!("warpbeam: interrupted: the picture has what was measured until then");
@@ -65,7 +65,7 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
     let scene = scene::open(&source)?;
     let simulation = || Ok::<_, CliError>(simulate(&source)?.1);
     // A window opens without waiting for a large mesh; errors of a small one are reported before opening a window.
-    let small = if app::opens_beside(&scene) { None } else { Some(simulation()?) };
+    let small = if app::opens_in_background(&scene) { None } else { Some(simulation()?) };
     match app::Display::open() {
         Ok(display) => app::run(display, source, scene, small)?,
         Err(reason) => {
@@ -81,7 +81,7 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
                 json: false,
                 out: None,
                 reference: ReferenceEffort::Bounded,
-                no_truth: false,
+                no_reference: false,
                 certificate: false,
                 no_certificate: false,
             })?;

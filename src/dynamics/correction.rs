@@ -87,7 +87,7 @@ impl Corrector {
     }
 
     /// Discards factors of equations that have changed.
-    pub fn forget(&mut self) {
+    pub fn invalidate(&mut self) {
         self.constant = None;
         self.kept.weights = None;
     }

@@ -6,7 +6,7 @@
 //! residual of the step; the halves of a halved step conserve them too.
 
 use super::stage::{Stage, Step};
-use super::step::{Booking, Solves, StepError, combine};
+use super::step::{Solves, StepEnergy, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
 use crate::scene::IntegratorKind;
@@ -22,14 +22,14 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     step,
 };
 
-fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
-    let Step { solver, h, start, state, books, .. } = step;
+fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
+    let Step { solver, h, start, state, records_energy, .. } = step;
     let h = *h;
     // With a fixed number of solves the remaining residual would add energy, which grows.
     if let Solves::Times(_) = solver.solves {
         solver.solves = Solves::Tolerance(solver.tolerance);
     }
-    let hand_at_start = solver.hand_force(start);
+    let spring_at_start = solver.mouse_spring_force(start);
     solver.problem.set_stage(start.time + 0.5 * h, &|pulse| pulse.mean(start.time, start.time + h));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
@@ -43,7 +43,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
         tangent: Tangent { warped: 0.5, geometric: 0.5, definite: false },
         rate: 1.0 / h,
         others: &[(-1.0 / h, &start.displacement)],
-        damps_half_way: true,
+        damps_at_midpoint: true,
         damping: 1.0,
     };
     solver.solve(&stage, start, state)?;
@@ -52,5 +52,5 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
         [(2.0 / h, &state.displacement), (-2.0 / h, &start.displacement), (-1.0, &start.velocity)],
     );
     state.time = start.time + h;
-    Ok(if *books { solver.book(&stage, start, state, hand_at_start) } else { Booking::default() })
+    Ok(if *records_energy { solver.record(&stage, start, state, spring_at_start) } else { StepEnergy::default() })
 }

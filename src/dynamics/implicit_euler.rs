@@ -5,7 +5,7 @@
 //! second keeps 72 % of its energy per period.
 
 use super::stage::{Stage, Step};
-use super::step::{Booking, Solves, StepError, combine, work};
+use super::step::{Solves, StepEnergy, StepError, combine, work};
 use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
 use crate::scene::IntegratorKind;
@@ -21,10 +21,10 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     step,
 };
 
-fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
-    let Step { solver, h, start, state, books, .. } = step;
+fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
+    let Step { solver, h, start, state, records_energy, .. } = step;
     let h = *h;
-    let hand_at_start = solver.hand_force(start);
+    let spring_at_start = solver.mouse_spring_force(start);
     solver.problem.set_stage(start.time + h, &|pulse| pulse.mean(start.time, start.time + h));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
     // A single solve loses least energy from the current state and with A alone; an iteration starts nearer to its
@@ -45,16 +45,16 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
         tangent,
         rate: 1.0 / h,
         others: &[(-1.0 / h, &start.displacement)],
-        damps_half_way: true,
+        damps_at_midpoint: true,
         damping: 1.0,
     };
     solver.solve(&stage, start, state)?;
     combine(&mut state.velocity, [(1.0 / h, &state.displacement), (-1.0 / h, &start.displacement)]);
     state.time = start.time + h;
-    if !*books {
-        return Ok(Booking::default());
+    if !*records_energy {
+        return Ok(StepEnergy::default());
     }
-    let mut booking = solver.book(&stage, start, state, hand_at_start);
+    let mut energies = solver.record(&stage, start, state, spring_at_start);
     // ½ |Δv|² in the norm of M is the energy that the scheme removes from any non-uniform motion.
     let [change, momentum] = &mut solver.memory.scratch;
     combine(change, [(1.0, &state.velocity), (-1.0, &start.velocity)]);
@@ -63,6 +63,6 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     let elastic = solver.problem.elastic_energy(state) - solver.problem.elastic_energy(start);
     let forces = &solver.memory.forces;
     let internal = work(&forces.internal, start, state) - elastic;
-    booking.lost = Some(booking.lost.unwrap_or(0.0) + jolt + internal);
-    Ok(booking)
+    energies.lost = Some(energies.lost.unwrap_or(0.0) + jolt + internal);
+    Ok(energies)
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::Inertia;
-use super::step::Booking;
+use super::step::StepEnergy;
 use crate::assembly::{Mass, Problem};
 use crate::state::State;
 
@@ -25,7 +25,7 @@ pub struct Ledger {
     /// Work of pulses.
     pub pulses: f64,
     /// Work of mouse springs.
-    pub hands: f64,
+    pub mouse_spring: f64,
     /// Energy added by edits of the scene during the motion.
     pub edits: f64,
     /// Kinetic, elastic and potential energy at the start.
@@ -62,26 +62,33 @@ impl Ledger {
     }
 
     /// Records a step that ended in `state`.
-    pub(crate) fn book(&mut self, booking: &Booking, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
+    pub(crate) fn record(
+        &mut self,
+        energies: &StepEnergy,
+        problem: &Problem,
+        mass: &Mass,
+        inertia: Inertia,
+        state: &State,
+    ) {
         let before = *self;
         self.measure(problem, mass, inertia, state);
-        self.dissipated += booking.dissipated;
-        self.pulses += booking.pulses;
-        self.hands += booking.hand;
+        self.dissipated += energies.dissipated;
+        self.pulses += energies.pulses;
+        self.mouse_spring += energies.mouse_spring;
         let changes = [self.kinetic - before.kinetic, self.elastic - before.elastic, self.potential - before.potential];
-        let lost = booking
-            .lost
-            .unwrap_or_else(|| booking.pulses + booking.hand - booking.dissipated - changes.iter().sum::<f64>());
+        let lost = energies.lost.unwrap_or_else(|| {
+            energies.pulses + energies.mouse_spring - energies.dissipated - changes.iter().sum::<f64>()
+        });
         self.integrator += lost;
-        let booked = [booking.dissipated, booking.pulses, booking.hand, lost];
-        self.throughput += changes.iter().chain(&booked).map(|v| v.abs()).sum::<f64>();
+        let recorded = [energies.dissipated, energies.pulses, energies.mouse_spring, lost];
+        self.throughput += changes.iter().chain(&recorded).map(|v| v.abs()).sum::<f64>();
         self.note_put_in();
     }
 
     /// Returns `true` if the integrator has added more energy since `before` than the fraction `part` of the energy at
     /// that time plus the work done since.
     pub(crate) fn has_gained_since(&self, before: &Self, part: f64) -> bool {
-        let work = (self.pulses - before.pulses).abs() + (self.hands - before.hands).abs();
+        let work = (self.pulses - before.pulses).abs() + (self.mouse_spring - before.mouse_spring).abs();
         let there = before.kinetic + before.elastic + (self.potential - before.potential).abs();
         before.integrator - self.integrator > part * (there + work)
     }
@@ -114,7 +121,7 @@ impl Ledger {
     /// is right.
     #[must_use]
     pub fn imbalance(&self) -> f64 {
-        self.total() - self.start + self.dissipated + self.integrator - self.pulses - self.hands - self.edits
+        self.total() - self.start + self.dissipated + self.integrator - self.pulses - self.mouse_spring - self.edits
     }
 
     /// Returns the energy added by the integrator relative to the largest kinetic energy; 0 if nothing has moved.
@@ -178,7 +185,7 @@ mod tests {
             potential: -1.0,
             integrator: 0.5,
             pulses: 1.0,
-            hands: -2.0,
+            mouse_spring: -2.0,
             ..Ledger::default()
         };
         // The energy was 3 + 2 J, the potential changes by 2.5 J, and the works since are 1.5 J and 3 J.
@@ -188,7 +195,7 @@ mod tests {
             potential: 1.5,
             integrator: 0.5 - added,
             pulses: -0.5,
-            hands: -5.0,
+            mouse_spring: -5.0,
             ..before
         };
         for (added, gained) in [(2.99, false), (3.01, true), (0.0, false), (-10.0, false)] {

@@ -51,7 +51,7 @@ struct Scratch {
     /// Corotated state at the end of a step.
     seen: State,
     /// Displacement of the step, as a state of linear theory.
-    way: State,
+    increment: State,
     forces: Forces,
     /// Corotated internal force at the start of the step, N.
     before: Vec<Vector2<f64>>,
@@ -69,7 +69,7 @@ impl Scratch {
             matrix: Matrix::new(system.pattern()),
             factor: Factor::new(system.symbolic())?,
             seen: rest.clone(),
-            way: rest,
+            increment: rest,
         })
     }
 
@@ -91,7 +91,7 @@ impl LinearTheory {
     /// Returns `true` if linear theory should be tried for a step from `state`; `asked` is the requested error. The
     /// rotations of the state decide if linear theory is not in use.
     pub fn is_worth_a_try(&self, state: &State, asked: f64) -> bool {
-        let most = if self.refused { AGAIN } else { 1.0 } * largest_turn(asked);
+        let most = if self.refused { AGAIN } else { 1.0 } * largest_linear_rotation(asked);
         self.phase <= USABLE * asked && (self.in_use || largest_rotation(&state.rotations) <= most)
     }
 
@@ -118,19 +118,20 @@ impl LinearTheory {
             scratch.before.copy_from_slice(&scratch.forces.internal);
             self.checked = None;
         }
-        let Scratch { seen, way, forces, before, .. } = &mut **scratch;
+        let Scratch { seen, increment, forces, before, .. } = &mut **scratch;
         seen.copy_from(end);
         problem.follow_and_linearize(seen, Kinematics::Corotated, forces, None);
-        combine(way.displacement.overwrite(), [(1.0, &end.displacement), (-1.0, &start.displacement)]);
-        let (stored, stiffness) = (problem.elastic_energy(end), 2.0 * problem.elastic_energy(way));
-        let corotated = dot(&way.displacement, &forces.internal) - dot(&way.displacement, before);
+        combine(increment.displacement.overwrite(), [(1.0, &end.displacement), (-1.0, &start.displacement)]);
+        let (stored, stiffness) = (problem.elastic_energy(end), 2.0 * problem.elastic_energy(increment));
+        let corotated = dot(&increment.displacement, &forces.internal) - dot(&increment.displacement, before);
         let off = if stiffness > NO_WAY * stored { (corotated / stiffness - 1.0).abs() } else { 0.0 };
         before.copy_from_slice(&forces.internal);
         let length = mass.energy_product(&end.displacement);
         // Where the displacement passes zero the estimated angle is unbounded; it is limited to 1 rad.
         let angle = if length > 0.0 { h * (mass.energy_product(&end.velocity) / length).sqrt() } else { 0.0 };
         let phase = self.phase + 0.5 * off * angle.min(1.0);
-        let mut accepted = largest_rotation(&seen.rotations) <= largest_turn(asked) && off.max(phase) <= USABLE * asked;
+        let mut accepted =
+            largest_rotation(&seen.rotations) <= largest_linear_rotation(asked) && off.max(phase) <= USABLE * asked;
         let due = |(steps, energy): (u32, f64)| steps >= CHECK_EVERY || stored > CHECK_AHEAD * CHECK_AHEAD * energy;
         if accepted && self.checked.is_none_or(due) {
             accepted = scratch.is_stable(problem);
@@ -155,18 +156,18 @@ impl LinearTheory {
     }
 
     /// Resets everything but the work memory, for another motion.
-    pub fn forget(&mut self) {
+    pub fn invalidate(&mut self) {
         *self = Self { scratch: self.scratch.take(), ..Self::default() };
     }
 
     /// Resets everything, for another system.
-    pub fn forget_system(&mut self) {
+    pub fn invalidate_system(&mut self) {
         *self = Self::default();
     }
 }
 
 /// Returns the largest rotation of a part of the body that is within the requested error, rad.
-fn largest_turn(asked: f64) -> f64 {
+fn largest_linear_rotation(asked: f64) -> f64 {
     USABLE * asked / SHORTENING
 }
 

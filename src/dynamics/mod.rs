@@ -26,8 +26,8 @@ pub(crate) use linear_theory::LinearTheory;
 pub use modes::{critical_step, lowest_frequency};
 pub use report::{MotionDecision, MotionReport};
 pub(crate) use stage::{StageSolver, Step};
-pub(crate) use step::{Booking, Memory, Solves};
 pub use step::{Counts, StepError, StopReason};
+pub(crate) use step::{Memory, Solves, StepEnergy};
 
 /// Mass matrix of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub struct IntegratorEntry {
     /// Mass matrix.
     pub inertia: Inertia,
     /// Function that computes a step.
-    pub(crate) step: fn(&mut Step<'_>) -> Result<Booking, StepError>,
+    pub(crate) step: fn(&mut Step<'_>) -> Result<StepEnergy, StepError>,
 }
 
 impl IntegratorEntry {

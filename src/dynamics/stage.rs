@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::correction::{Accuracy, Weights};
-use super::step::{Booking, Counts, Memory, Solves, StepError, combine, work};
-use crate::assembly::{Hand, Kinematics, Mass, Problem};
+use super::step::{Counts, Memory, Solves, StepEnergy, StepError, combine, work};
+use crate::assembly::{Kinematics, Mass, MouseSpring, Problem};
 use crate::element::{StrainRate, Tangent};
 use crate::method::MotionMethod;
 use crate::scene::Damping;
@@ -37,7 +37,7 @@ pub(super) struct Stage<'a> {
     pub others: &'a [(f64, &'a [Vector2<f64>])],
     /// `true` if damping acts on the configuration half way between the start of the step and the end of the stage;
     /// `false` at the end.
-    pub damps_half_way: bool,
+    pub damps_at_midpoint: bool,
     /// m, factor of the damping force.
     pub damping: f64,
 }
@@ -93,7 +93,7 @@ pub(crate) struct Step<'a> {
     /// Intermediate state, for integrators that need one.
     pub middle: &'a mut State,
     /// `true` if the ledger is kept.
-    pub books: bool,
+    pub records_energy: bool,
 }
 
 impl StageSolver<'_> {
@@ -158,7 +158,7 @@ impl StageSolver<'_> {
 
     /// Returns the weights of the matrix if it is constant: with linear theory and without a mouse spring.
     fn constant(&self, stage: &Stage<'_>) -> Option<Weights> {
-        let is_constant = self.kinematics == Kinematics::Linear && self.problem.hand().is_none();
+        let is_constant = self.kinematics == Kinematics::Linear && self.problem.mouse_spring().is_none();
         is_constant.then(|| self.weights(stage))
     }
 
@@ -187,7 +187,7 @@ impl StageSolver<'_> {
     /// Computes the residual force of a state into the memory's forces, and the elements' matrix if requested. Damping
     /// and the mouse spring are included in the residual only.
     fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
-        let Memory { corrector, forces, free_flight, mean, scratch: [way, momentum], .. } = &mut *self.memory;
+        let Memory { corrector, forces, free_flight, mean, scratch: [increment, momentum], .. } = &mut *self.memory;
         let (problem, system) = (&*self.problem, self.problem.system());
         let matrix = tangent.map(|tangent| (tangent, &mut corrector.matrix));
         match self.kinematics {
@@ -208,8 +208,8 @@ impl StageSolver<'_> {
         for (i, residual) in forces.residual.iter_mut().enumerate() {
             *residual = forces.external[i] - forces.internal[i] + stage.start_force.map_or(Vector2::zeros(), |s| s[i]);
         }
-        combine(way, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
-        self.mass.multiply(way, momentum);
+        combine(increment, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
+        self.mass.multiply(increment, momentum);
         scale = scale.max(pattern.norm(momentum));
         subtract(momentum, &mut forces.residual);
         if self.damping != Damping::default() {
@@ -218,10 +218,10 @@ impl StageSolver<'_> {
             scale = scale.max(self.problem.system().pattern().norm(damping));
             subtract(damping, &mut forces.residual);
         }
-        let applied = self.applied_hand_force(stage, start, state);
+        let applied = self.applied_mouse_spring_force(stage, start, state);
         let (problem, forces) = (&*self.problem, &mut self.memory.forces);
-        if let Some(hand) = problem.hand() {
-            hand.add_force(applied, &mut forces.residual);
+        if let Some(spring) = problem.mouse_spring() {
+            spring.add_force(applied, &mut forces.residual);
         }
         let norm = problem.system().pattern().norm(&forces.residual);
         self.memory.residual = if scale > 0.0 { norm / scale } else { 0.0 };
@@ -270,11 +270,11 @@ impl StageSolver<'_> {
             let loads = self.problem.loads();
             loads.add_stiffness(self.problem.system(), &state.displacement, tangent.geometric, matrix);
         }
-        if let Some(hand) = self.problem.hand() {
-            let (u, v) = held(stage, hand, start, state);
+        if let Some(spring) = self.problem.mouse_spring() {
+            let (u, v) = held(stage, spring, start, state);
             // Half way through the stage, the point moves half as far as at the end.
             let share = if stage.between { 0.5 } else { 1.0 };
-            hand.add_stiffness(u, v, stage.rate / share, share, matrix);
+            spring.add_stiffness(u, v, stage.rate / share, share, matrix);
         }
     }
 
@@ -383,15 +383,15 @@ impl StageSolver<'_> {
     /// Stores the same force as it results from the stage's equations at its end: α M (u − û) + f_d without mouse
     /// spring and pulses.
     pub(super) fn keep_net_force(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) {
-        let Memory { free_flight, scratch: [way, _], .. } = &mut *self.memory;
-        combine(way, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
-        self.mass.multiply(way, &mut state.net_force);
+        let Memory { free_flight, scratch: [increment, _], .. } = &mut *self.memory;
+        combine(increment, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
+        self.mass.multiply(increment, &mut state.net_force);
         if self.damping != Damping::default() {
             self.damping_force(stage, start, state);
             state.net_force.iter_mut().zip(&self.memory.damping).for_each(|(f, d)| *f += d);
         }
-        let applied = self.applied_hand_force(stage, start, state);
-        self.add_hand_force(-applied, &mut state.net_force);
+        let applied = self.applied_mouse_spring_force(stage, start, state);
+        self.add_mouse_spring_force(-applied, &mut state.net_force);
         let mut net_force = std::mem::take(&mut state.net_force);
         self.add_pulse_force(state, -1.0, &mut net_force);
         state.net_force = net_force;
@@ -405,24 +405,24 @@ impl StageSolver<'_> {
     }
 
     /// Returns the force of the mouse spring at the state's time, N.
-    pub fn hand_force(&mut self, state: &State) -> Vector2<f64> {
+    pub fn mouse_spring_force(&mut self, state: &State) -> Vector2<f64> {
         self.problem.set_time(state.time);
-        let force = |hand: &Hand| hand.force(hand.mean(&state.displacement), hand.mean(&state.velocity));
-        self.problem.hand().map_or_else(Vector2::zeros, force)
+        let force = |spring: &MouseSpring| spring.force(spring.mean(&state.displacement), spring.mean(&state.velocity));
+        self.problem.mouse_spring().map_or_else(Vector2::zeros, force)
     }
 
     /// Adds a force of the mouse spring to nodal forces, N.
-    pub(super) fn add_hand_force(&self, hand: Vector2<f64>, forces: &mut [Vector2<f64>]) {
-        if let Some(point) = self.problem.hand() {
-            point.add_force(hand, forces);
+    pub(super) fn add_mouse_spring_force(&self, spring: Vector2<f64>, forces: &mut [Vector2<f64>]) {
+        if let Some(point) = self.problem.mouse_spring() {
+            point.add_force(spring, forces);
         }
     }
 
     /// Returns the force of the mouse spring in a stage's equations, N.
-    fn applied_hand_force(&self, stage: &Stage<'_>, start: &State, state: &State) -> Vector2<f64> {
-        self.problem.hand().map_or_else(Vector2::zeros, |hand| {
-            let (u, v) = held(stage, hand, start, state);
-            hand.force(u, v)
+    fn applied_mouse_spring_force(&self, stage: &Stage<'_>, start: &State, state: &State) -> Vector2<f64> {
+        self.problem.mouse_spring().map_or_else(Vector2::zeros, |spring| {
+            let (u, v) = held(stage, spring, start, state);
+            spring.force(u, v)
         })
     }
 
@@ -432,34 +432,34 @@ impl StageSolver<'_> {
     /// mouse spring and the work of the forces used. Averaged forces do the work of the potential, and pulses and mouse
     /// spring do the work of their forces half way. Forces at the end do not: pulses are recorded with their mean over
     /// the stage, the mouse spring by the trapezoidal rule.
-    pub(super) fn book(
+    pub(super) fn record(
         &mut self,
         stage: &Stage<'_>,
         start: &State,
         state: &State,
-        hand_at_start: Vector2<f64>,
-    ) -> Booking {
-        let applied = self.applied_hand_force(stage, start, state);
+        spring_at_start: Vector2<f64>,
+    ) -> StepEnergy {
+        let applied = self.applied_mouse_spring_force(stage, start, state);
         self.residual(stage, None, start, state);
-        let hand_at_end = self.hand_force(state);
+        let spring_at_end = self.mouse_spring_force(state);
         let loads = self.problem.loads();
-        let moved = |hand: &Hand| hand.mean(&state.displacement) - hand.mean(&start.displacement);
-        let moved = self.problem.hand().map_or_else(Vector2::zeros, moved);
+        let moved = |spring: &MouseSpring| spring.mean(&state.displacement) - spring.mean(&start.displacement);
+        let moved = self.problem.mouse_spring().map_or_else(Vector2::zeros, moved);
         let Memory { forces, damping, .. } = &*self.memory;
-        let (used, used_hand) = (work(&forces.external, start, state), applied.dot(&moved));
+        let (used, spring_work) = (work(&forces.external, start, state), applied.dot(&moved));
         let potential = loads.potential(start, 1.0) - loads.potential(state, 1.0);
-        let (pulses, hand) = if stage.between {
-            (used - potential, used_hand)
+        let (pulses, spring) = if stage.between {
+            (used - potential, spring_work)
         } else {
-            (loads.pulse_work([start, state]), (hand_at_start + hand_at_end).dot(&moved) * 0.5)
+            (loads.pulse_work([start, state]), (spring_at_start + spring_at_end).dot(&moved) * 0.5)
         };
         let damps = self.damping != Damping::default();
         let unsolved = work(&forces.residual, start, state);
-        Booking {
+        StepEnergy {
             dissipated: if damps { work(damping, start, state) } else { 0.0 },
-            lost: Some(unsolved + (potential + pulses - used) + (hand - used_hand)),
+            lost: Some(unsolved + (potential + pulses - used) + (spring - spring_work)),
             pulses,
-            hand,
+            mouse_spring: spring,
         }
     }
 
@@ -481,7 +481,7 @@ fn damped_configuration(
     state: &State,
     configuration: &mut [Vector2<f64>],
 ) {
-    let at_start = if stage.damps_half_way { 0.5 } else { 0.0 };
+    let at_start = if stage.damps_at_midpoint { 0.5 } else { 0.0 };
     match kinematics {
         Kinematics::Linear => configuration.fill(Vector2::zeros()),
         Kinematics::Corotated => {
@@ -498,10 +498,10 @@ fn terms<'a>(stage: &Stage<'a>, state: &'a State) -> [(f64, &'a [Vector2<f64>]);
 }
 
 /// Returns displacement and velocity of the point of the mouse spring, at the place of the stage's forces.
-fn held(stage: &Stage<'_>, hand: &Hand, start: &State, state: &State) -> (Vector2<f64>, Vector2<f64>) {
-    let u = hand.mean(&state.displacement);
-    let v = u * stage.rate + stage.others.iter().map(|(c, other)| hand.mean(other) * *c).sum::<Vector2<f64>>();
-    (if stage.between { (u + hand.mean(&start.displacement)) * 0.5 } else { u }, v)
+fn held(stage: &Stage<'_>, spring: &MouseSpring, start: &State, state: &State) -> (Vector2<f64>, Vector2<f64>) {
+    let u = spring.mean(&state.displacement);
+    let v = u * stage.rate + stage.others.iter().map(|(c, other)| spring.mean(other) * *c).sum::<Vector2<f64>>();
+    (if stage.between { (u + spring.mean(&start.displacement)) * 0.5 } else { u }, v)
 }
 
 fn subtract(what: &[Vector2<f64>], from: &mut [Vector2<f64>]) {

@@ -6,9 +6,9 @@ use thiserror::Error;
 use super::correction::Corrector;
 use crate::assembly::{Forces, System};
 use crate::element::Tangent;
+use crate::format::number;
 use crate::solver::SolverError;
 use crate::state::State;
-use crate::words::number;
 
 /// Reason why a step failed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
@@ -92,7 +92,7 @@ pub struct Counts {
 
 /// Entries of a step in the ledger, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Booking {
+pub(crate) struct StepEnergy {
     /// Energy removed by damping.
     pub dissipated: f64,
     /// Energy removed by the integrator, if it is computed independently; `None` if it is the remainder of the balance.
@@ -100,7 +100,7 @@ pub(crate) struct Booking {
     /// Work of pulses.
     pub pulses: f64,
     /// Work of the mouse spring.
-    pub hand: f64,
+    pub mouse_spring: f64,
 }
 
 /// Work memory of time steps, allocated once per system.
@@ -143,8 +143,8 @@ pub(super) fn dot(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
 
 /// Returns the work Σ f(x) · (uᵢ(after) − uᵢ(before)) over nodes.
 pub(super) fn work(force: &[Vector2<f64>], before: &State, after: &State) -> f64 {
-    let ways = after.displacement.iter().zip(&before.displacement);
-    force.iter().zip(ways).map(|(f, (after, before))| f.dot(&(after - before))).sum()
+    let increments = after.displacement.iter().zip(&before.displacement);
+    force.iter().zip(increments).map(|(f, (after, before))| f.dot(&(after - before))).sum()
 }
 
 /// Computes result = Σ cᵢ xᵢ.

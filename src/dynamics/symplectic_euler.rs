@@ -6,9 +6,9 @@
 use nalgebra::Vector2;
 
 use super::stage::Step;
-use super::step::{Booking, Memory, StepError, combine, work};
+use super::step::{Memory, StepEnergy, StepError, combine, work};
 use super::{Inertia, IntegratorEntry};
-use crate::assembly::Hand;
+use crate::assembly::MouseSpring;
 use crate::element::StrainRate;
 use crate::scene::IntegratorKind;
 use crate::state::is_finite;
@@ -25,28 +25,28 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     step,
 };
 
-fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
-    let Step { solver, h, start, state, books, .. } = step;
+fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
+    let Step { solver, h, start, state, records_energy, .. } = step;
     let h = *h;
     solver.problem.set_stage(start.time, &|pulse| pulse.mean(start.time, start.time + h));
     let lumped = solver.mass.lumped();
-    let pull = |hand: Option<&Hand>, state: &_| {
-        let force = |hand: &Hand| {
+    let pull = |spring: Option<&MouseSpring>, state: &_| {
+        let force = |spring: &MouseSpring| {
             let crate::state::State { displacement, velocity, .. } = state;
-            hand.softened_force(hand.mean(displacement), hand.mean(velocity), lumped, h)
+            spring.softened_force(spring.mean(displacement), spring.mean(velocity), lumped, h)
         };
-        hand.map_or_else(Vector2::zeros, force)
+        spring.map_or_else(Vector2::zeros, force)
     };
     let problem = &*solver.problem;
     let system = problem.system();
     let Memory { forces, damping, .. } = &mut *solver.memory;
-    let hand_at_start = pull(problem.hand(), start);
+    let spring_at_start = pull(problem.mouse_spring(), start);
     timed(&mut solver.timings.assemble, || {
         problem.linearize(start, forces, None);
         problem.loads().force(system, &start.displacement, solver.kinematics, 1.0, &mut forces.external);
         combine(&mut forces.residual, [(1.0, &forces.external), (-1.0, &forces.internal)]);
-        if let Some(hand) = problem.hand() {
-            hand.add_force(hand_at_start, &mut forces.residual);
+        if let Some(spring) = problem.mouse_spring() {
+            spring.add_force(spring_at_start, &mut forces.residual);
         }
         for ((d, v), m) in damping.iter_mut().zip(&start.velocity).zip(lumped) {
             *d = v * (solver.damping.mass * m);
@@ -70,14 +70,19 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     }
     solver.follow(state);
     state.time = start.time + h;
-    if !*books {
-        return Ok(Booking::default());
+    if !*records_energy {
+        return Ok(StepEnergy::default());
     }
     let dissipated = work(&solver.memory.damping, start, state);
     solver.problem.set_time(state.time);
-    let hand = solver.problem.hand();
-    let moved =
-        hand.map_or_else(Vector2::zeros, |hand| hand.mean(&state.displacement) - hand.mean(&start.displacement));
-    let hand = (hand_at_start + pull(hand, state)).dot(&moved) * 0.5;
-    Ok(Booking { dissipated, lost: None, pulses: solver.problem.loads().pulse_work([start, state]), hand })
+    let spring = solver.problem.mouse_spring();
+    let moved = spring
+        .map_or_else(Vector2::zeros, |spring| spring.mean(&state.displacement) - spring.mean(&start.displacement));
+    let spring = (spring_at_start + pull(spring, state)).dot(&moved) * 0.5;
+    Ok(StepEnergy {
+        dissipated,
+        lost: None,
+        pulses: solver.problem.loads().pulse_work([start, state]),
+        mouse_spring: spring,
+    })
 }

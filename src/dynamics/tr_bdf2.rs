@@ -5,7 +5,7 @@
 //! damped, others hardly. Both stages have the same matrix up to the state at which it is evaluated.
 
 use super::stage::{Stage, Step};
-use super::step::{Booking, StepError, combine};
+use super::step::{StepEnergy, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::scene::IntegratorKind;
 use std::f64::consts::SQRT_2;
@@ -24,11 +24,11 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
 /// End of the trapezoidal stage, as a fraction of the step.
 const GAMMA: f64 = 2.0 - SQRT_2;
 
-fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
-    let Step { solver, h, start, state, middle, books } = step;
+fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
+    let Step { solver, h, start, state, middle, records_energy } = step;
     let h = *h;
-    let mut hand = solver.hand_force(start);
-    let mut booking = Booking::default();
+    let mut spring = solver.mouse_spring_force(start);
+    let mut energies = StepEnergy::default();
 
     // Trapezoidal stage: x_g = x₀ + γh (v₀ + v_g)/2, M (v_g − v₀) = γh (f₀ + f_g)/2 − γh f_d.
     let g = GAMMA * h;
@@ -41,7 +41,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     solver.follow(state);
     // `state.net_force` is overwritten at the end of the step.
     let mut net_force = std::mem::take(&mut state.net_force);
-    solver.add_hand_force(hand, &mut net_force);
+    solver.add_mouse_spring_force(spring, &mut net_force);
     // Half of the pulses acts at the start of the step, half at the end of the stage, both with their mean.
     solver.add_pulse_force(start, 1.0, &mut net_force);
     let trapezoid = Stage {
@@ -52,25 +52,25 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
         tangent: solver.solves.tangent(),
         rate: 1.0 / g,
         others: &[(-1.0 / g, &start.displacement)],
-        damps_half_way: true,
+        damps_at_midpoint: true,
         damping: 2.0,
     };
     let solved = solver.solve(&trapezoid, start, state);
-    let booked = solved.is_ok() && *books;
+    let recorded = solved.is_ok() && *records_energy;
     combine(
         &mut state.velocity,
         [(2.0 / g, &state.displacement), (-2.0 / g, &start.displacement), (-1.0, &start.velocity)],
     );
     state.time = start.time + g;
-    if booked {
-        let stage = solver.book(&trapezoid, start, state, hand);
+    if recorded {
+        let stage = solver.record(&trapezoid, start, state, spring);
         // The damping force of the stage is twice that of the step, because it acts over half of the stage's time.
-        booking = Booking { dissipated: 0.5 * stage.dissipated, lost: None, ..stage };
+        energies = StepEnergy { dissipated: 0.5 * stage.dissipated, lost: None, ..stage };
     }
     state.net_force = net_force;
     solved?;
     middle.copy_from(state);
-    hand = solver.hand_force(middle);
+    spring = solver.mouse_spring_force(middle);
 
     // Backward difference: v₁ = (x₁ − c₁x_g + c₀x₀)/w, M (v₁ − c₁v_g + c₀v₀)/w = f₁ − f_d.
     let w = h * (1.0 - GAMMA) / (2.0 - GAMMA);
@@ -98,7 +98,7 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
         tangent: solver.solves.tangent(),
         rate: 1.0 / w,
         others: &[(-c1 / w, &middle.displacement), (c0 / w, &start.displacement)],
-        damps_half_way: false,
+        damps_at_midpoint: false,
         damping: 1.0,
     };
     solver.solve(&backward, start, state)?;
@@ -108,11 +108,11 @@ fn step(step: &mut Step<'_>) -> Result<Booking, StepError> {
     );
     state.time = start.time + h;
     solver.keep_net_force(&backward, start, state);
-    if *books {
-        let stage = solver.book(&backward, middle, state, hand);
-        booking.dissipated += stage.dissipated;
-        booking.pulses += stage.pulses;
-        booking.hand += stage.hand;
+    if *records_energy {
+        let stage = solver.record(&backward, middle, state, spring);
+        energies.dissipated += stage.dissipated;
+        energies.pulses += stage.pulses;
+        energies.mouse_spring += stage.mouse_spring;
     }
-    Ok(booking)
+    Ok(energies)
 }

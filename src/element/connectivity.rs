@@ -1,6 +1,6 @@
 //! Node numbers of elements, per element and per SIMD batch.
 
-use crate::lanes::{LANES, Numbers, filled};
+use crate::simd::{LANES, Numbers, filled};
 
 /// Node numbers of elements with `N` nodes.
 #[derive(Debug)]

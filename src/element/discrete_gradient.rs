@@ -3,9 +3,9 @@
 use nalgebra::Matrix2;
 
 use super::cosine_minus_1;
-use crate::lanes::{Number, one_plus};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
+use crate::simd::{Number, one_plus};
 
 /// Discrete gradient between two deformation gradients F₀ = I + H₀ and F₁ = I + H₁.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,9 +14,9 @@ use super::{
     warped_strain,
 };
 use crate::displacement::Compensated;
-use crate::lanes::{LANES, Lanes, Number, apply, filled, one_plus, product, sum_of_lanes, zero_vector};
 use crate::material::Lame;
 use crate::rotation::{Rotation, polar_or};
+use crate::simd::{LANES, Lanes, Number, apply, filled, one_plus, product, sum_of_lanes, zero_vector};
 
 /// Values at the corners of ξη, the bilinear function that is not linear.
 const TWIST: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
@@ -211,13 +211,13 @@ struct Twisted<T> {
 impl<T: Number> Twisted<T> {
     #[inline(always)]
     fn new(k: &Matrix2<T>, q: Vector2<T>) -> Self {
-        let (force, turned) = (apply(k, &q), quarter(q));
-        let of_turn = apply(k, &turned);
+        let (force, rotated) = (apply(k, &q), quarter(q));
+        let of_rotated = apply(k, &rotated);
         Self {
             force,
-            moment: -force.dot(&turned),
-            cross: quarter(force) - of_turn,
-            second: turned.dot(&of_turn) - force.dot(&q),
+            moment: -force.dot(&rotated),
+            cross: quarter(force) - of_rotated,
+            second: rotated.dot(&of_rotated) - force.dot(&q),
         }
     }
 }
@@ -236,12 +236,12 @@ fn add_twist<T: Number>(
     inverse_trace: T,
     tangent: Tangent,
 ) {
-    let turn = r.matrix();
-    let turned = product(&product(&turn, k), &turn.transpose());
-    let turned = rows(&turned).map(|k| T::splat(tangent.warped) * k);
+    let rotation_matrix = r.matrix();
+    let rotated = product(&product(&rotation_matrix, k), &rotation_matrix.transpose());
+    let rotated = rows(&rotated).map(|k| T::splat(tangent.warped) * k);
     sum.add_blocks(|a, b| {
         let product = quad.gamma[a] * quad.gamma[b];
-        turned.map(|k| product * k)
+        rotated.map(|k| product * k)
     });
     if tangent.geometric == 0.0 {
         return;
@@ -320,7 +320,7 @@ impl IncompatibleQuads {
 
 /// Returns cosine and sine of half the angle from the first rotation to the second, for an angle of at most 180°.
 #[inline(always)]
-fn half_turn<T: Number>([r0, r1]: [Rotation<T>; 2]) -> Rotation<T> {
+fn half_rotation<T: Number>([r0, r1]: [Rotation<T>; 2]) -> Rotation<T> {
     let (c, s) = (r0.c * r1.c + r0.s * r1.s, r0.c * r1.s - r0.s * r1.c);
     let half = T::splat(0.5);
     // Compute the larger of cosine and sine first and the other from it, so that no digits cancel.
@@ -378,10 +378,10 @@ impl Elements for IncompatibleQuads {
             let k = symmetric(*k) * mu;
             let twisted = Twisted::new(&k, r.apply_inverse(quad.twist(&u)));
             let stress = product(&r.matrix(), &moduli.stress(&strain)) * quad.centre.area;
-            let (twist, turn) = (r.apply(twisted.force), twisted.moment * inverse_trace);
+            let (twist, couple) = (r.apply(twisted.force), twisted.moment * inverse_trace);
             let mut own = [zero_vector(); 4];
             for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
-                *own = apply(&stress, g) + twist * *gamma + r.apply(quarter(*g)) * turn;
+                *own = apply(&stress, g) + twist * *gamma + r.apply(quarter(*g)) * couple;
             }
             add_forces(numbers.count, nodes, &own, force, magnitude);
             if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
@@ -404,21 +404,21 @@ impl Elements for IncompatibleQuads {
             let twisted = Twisted::new(&k, r.apply_inverse(q.value));
             let inverse_trace = inverse_trace(r, &h);
             // In the rotated frame |R| is its own transpose.
-            let size = seen.turn * q.value.abs();
-            let dq = seen.turn * q.error + size * (8.0 * UNIT) + seen.turned * q.value.abs() * seen.angle;
+            let size = seen.rotation * q.value.abs();
+            let dq = seen.rotation * q.error + size * (8.0 * UNIT) + seen.rotated * q.value.abs() * seen.angle;
             let (force, across) = (twisted.force.abs(), Vector2::new(size.y, size.x));
             let dforce = k.abs() * (dq + size * (5.0 * UNIT));
             let dmoment = (dforce + force * (4.0 * UNIT)).dot(&across) + force.dot(&Vector2::new(dq.y, dq.x));
             let moment = force.dot(&across);
-            let turn = moment * inverse_trace;
-            let dturn = dmoment * inverse_trace + turn * (seen.trace + 4.0 * UNIT);
-            let twist = seen.turn * force;
-            let dtwist = seen.turn * dforce + twist * (10.0 * UNIT) + seen.turned * force * seen.angle;
+            let couple = moment * inverse_trace;
+            let dcouple = dmoment * inverse_trace + couple * (seen.trace + 4.0 * UNIT);
+            let twist = seen.rotation * force;
+            let dtwist = seen.rotation * dforce + twist * (10.0 * UNIT) + seen.rotated * force * seen.angle;
             for ((&node, g), gamma) in nodes.iter().zip(&quad.centre.gradients).zip(&quad.gamma) {
                 let g_across = Vector2::new(g.y.abs(), g.x.abs());
-                let turned =
-                    seen.turn * g_across * (dturn + turn * 10.0 * UNIT) + seen.turned * g_across * (turn * seen.angle);
-                bound[node as usize] += seen.force(g, 3.0) + dtwist * gamma.abs() + turned;
+                let rotated = seen.rotation * g_across * (dcouple + couple * 10.0 * UNIT)
+                    + seen.rotated * g_across * (couple * seen.angle);
+                bound[node as usize] += seen.force(g, 3.0) + dtwist * gamma.abs() + rotated;
             }
         }
     }
@@ -450,11 +450,11 @@ impl Elements for IncompatibleQuads {
             let between = DiscreteGradient::new(h, r);
             let stress = between.stress(moduli) * quad.centre.area;
             let k = symmetric(*k) * mu;
-            let half_turn = half_turn(r);
+            let half_rotation = half_rotation(r);
             // R̄ is R₁ rotated back by δ/2.
             let middle = Rotation {
-                c: r[1].c * half_turn.c + r[1].s * half_turn.s,
-                s: r[1].s * half_turn.c - r[1].c * half_turn.s,
+                c: r[1].c * half_rotation.c + r[1].s * half_rotation.s,
+                s: r[1].s * half_rotation.c - r[1].c * half_rotation.s,
             };
             let mean = apply(&k, &((r[0].apply_inverse(q[0]) + r[1].apply_inverse(q[1])) * half));
             let sum_of_q = middle.apply_inverse(q[0] + q[1]);
@@ -463,10 +463,10 @@ impl Elements for IncompatibleQuads {
             let [(t0, follows0), (t1, follows1)] = [following(r[0], &h[0]), following(r[1], &h[1])];
             let inverse_sum = Lanes::ONE / (t0 + t1).simd_max(Lanes::splat(f64::MIN_POSITIVE));
             let inverse_sum = inverse_sum.select(follows0 & follows1, Lanes::ZERO);
-            let (twist, turn) = (middle.apply(mean) * half_turn.c, -mean.dot(&quarter(sum_of_q)) * inverse_sum);
+            let (twist, couple) = (middle.apply(mean) * half_rotation.c, -mean.dot(&quarter(sum_of_q)) * inverse_sum);
             let mut own = [zero_vector(); 4];
             for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
-                *own = apply(&stress, g) + twist * *gamma + middle.apply(quarter(*g)) * turn;
+                *own = apply(&stress, g) + twist * *gamma + middle.apply(quarter(*g)) * couple;
             }
             add_forces(numbers.count, nodes, &own, force, magnitude);
             if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
@@ -508,9 +508,9 @@ impl Elements for IncompatibleQuads {
             }
             let stress = f * moduli.stress(&strain_rate) * quad.centre.area;
             let twist = symmetric(k) * twist_rate * moduli.mu;
-            let turned = f * twist;
+            let rotated = f * twist;
             for ((&node, g), gamma) in nodes.iter().zip(&quad.centre.gradients).zip(&quad.gamma) {
-                force[node as usize] += stress * g + q * g.dot(&twist) + turned * *gamma;
+                force[node as usize] += stress * g + q * g.dot(&twist) + rotated * *gamma;
             }
         }
     }
@@ -524,7 +524,7 @@ impl Elements for IncompatibleQuads {
             let k = symmetric(k) * mu;
             let left = f * f.transpose() * mu;
             let gradients = &quad.centre.gradients;
-            let turned = gradients.map(|g| f * g);
+            let rotated = gradients.map(|g| f * g);
             // The derivative of F₀ᵀ q with respect to every node.
             let mut twist = [Matrix2::zeros(); 4];
             for ((twist, g), gamma) in twist.iter_mut().zip(gradients).zip(&quad.gamma) {
@@ -533,7 +533,7 @@ impl Elements for IncompatibleQuads {
             let stiff = twist.map(|twist| twist.transpose() * k);
             let mut sum = ElementMatrix::<4, f64>::zero();
             sum.add_blocks(|a, b| {
-                let (g, h) = (turned[a], turned[b]);
+                let (g, h) = (rotated[a], rotated[b]);
                 let plane =
                     g * h.transpose() * lambda + h * g.transpose() * mu + left * gradients[a].dot(&gradients[b]);
                 rows(&(plane * quad.centre.area + stiff[a] * twist[b]))

@@ -12,9 +12,9 @@ use super::{
     warped_strain,
 };
 use crate::displacement::Compensated;
-use crate::lanes::{LANES, Lanes, apply, gather, lane, matrix_lane, one_plus, product, sum_of_lanes, zero_vector};
 use crate::material::Lame;
 use crate::rotation::Rotation;
+use crate::simd::{LANES, Lanes, apply, gather, lane, matrix_lane, one_plus, product, sum_of_lanes, zero_vector};
 
 /// Elements with `N` nodes and `Q` quadrature points.
 #[derive(Debug)]
@@ -238,9 +238,9 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
                 let f = Matrix2::identity() + point.displacement_gradient(&own);
                 let left = f * f.transpose();
                 // With g = F ∇Nₐ and h = F ∇N_b the block is λ g hᵀ + μ h gᵀ + μ (∇Nₐ·∇N_b) F Fᵀ.
-                let turned = point.gradients.map(|g| f * g);
+                let rotated = point.gradients.map(|g| f * g);
                 sum.add_blocks(|a, b| {
-                    let (g, h) = (turned[a], turned[b]);
+                    let (g, h) = (rotated[a], rotated[b]);
                     let product = mu * point.gradients[a].dot(&point.gradients[b]);
                     let block = g * h.transpose() * lambda + h * g.transpose() * mu + left * product;
                     [block.m11, block.m12, block.m21, block.m22].map(|k| k * point.area)

@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::point::{PointTangent, QuadraturePoint};
-use crate::lanes::Number;
 use crate::rotation::Rotation;
+use crate::simd::Number;
 
 impl<T: Number> PointTangent<T> {
     /// Returns the common factors of all blocks K_ab of a node b with rotated gradient h: for each component of g, its
@@ -49,11 +49,11 @@ impl<const N: usize, T: Number> ElementMatrix<N, T> {
     /// Adds the tangent of a quadrature point with rotation `r`.
     #[inline(always)]
     pub(super) fn add(&mut self, point: &QuadraturePoint<N, T>, r: Rotation<T>, tangent: PointTangent<T>) {
-        let mut turned = point.gradients;
-        turned.iter_mut().for_each(|g| *g = r.apply(*g));
+        let mut rotated = point.gradients;
+        rotated.iter_mut().for_each(|g| *g = r.apply(*g));
         for b in 0..N {
-            let [x, y] = tangent.column(turned[b]);
-            for (row, g) in self.0.iter_mut().zip(&turned).skip(b + 1) {
+            let [x, y] = tangent.column(rotated[b]);
+            for (row, g) in self.0.iter_mut().zip(&rotated).skip(b + 1) {
                 for (i, sum) in row[b].iter_mut().enumerate() {
                     *sum += g.x * x[i] + g.y * y[i];
                 }

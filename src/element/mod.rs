@@ -6,10 +6,10 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::displacement::Compensated;
-use crate::lanes::{LANES, Lanes, Number, one_plus};
 use crate::material::Lame;
 use crate::model::ElementKind;
 use crate::rotation::{Rotation, polar_or_else};
+use crate::simd::{LANES, Lanes, Number, one_plus};
 
 pub mod cell;
 mod connectivity;

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix2, SimdValue, Vector2};
 
 use super::{ElementType, Tangent, warped_strain};
-use crate::lanes::{LANES, Lanes, Number, lane, outer, side_by_side, zero_matrix, zero_vector};
 use crate::material::Lame;
 use crate::rotation::Rotation;
+use crate::simd::{LANES, Lanes, Number, lane, outer, side_by_side, zero_matrix, zero_vector};
 
 /// Quadrature point of an element with `N` nodes, at rest; with SIMD `T`, one point per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -51,9 +51,9 @@ impl Rounded {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RoundedPoint {
     /// |R|.
-    pub turn: Matrix2<f64>,
+    pub rotation: Matrix2<f64>,
     /// |R J|.
-    pub turned: Matrix2<f64>,
+    pub rotated: Matrix2<f64>,
     /// Bound of the error of the angle, rad.
     pub angle: f64,
     /// Bound of the relative error of tr S.
@@ -106,12 +106,12 @@ impl RoundedPoint {
             double * (xy + 5.0 * UNIT * size.m12),
             of(yy + 5.0 * UNIT * size.m22, sums.0 + sums.1),
         );
-        let (turn, turned) = (Matrix2::new(c, s, s, c), Matrix2::new(s, c, c, s));
-        let value = product(&turn, &t);
-        let error = turn * dt + value * (8.0 * UNIT) + product(&turned, &t) * angle;
+        let (rotation, rotated) = (Matrix2::new(c, s, s, c), Matrix2::new(s, c, c, s));
+        let value = product(&rotation, &t);
+        let error = rotation * dt + value * (8.0 * UNIT) + product(&rotated, &t) * angle;
         Self {
-            turn,
-            turned,
+            rotation,
+            rotated,
             angle,
             trace: (c * da + s * db + 7.0 * UNIT * (c * a.abs() + s * b.abs())) / trace,
             stress: [value * point.area, error * point.area],

@@ -12,9 +12,9 @@ use thiserror::Error;
 use super::{Mesh, MeshError, Segment, side_key};
 use crate::element::cell::{SQUARE, TRIANGLE};
 use crate::element::{ELEMENTS, ElementType};
+use crate::format::number;
 use crate::model::ElementKind;
 use crate::model::limits::{COORDINATE, TOTAL_CELLS};
-use crate::words::number;
 
 /// Reason why a mesh file cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -71,15 +71,16 @@ pub fn support_stiffness(
         for (sign, u) in [(1.0, &mut ahead), (-1.0, &mut trial.displacement)] {
             supports.put(mesh, load_factor + h + sign * H, Kinematics::Corotated, u);
         }
-        let mut way: Vec<_> = ahead.iter().zip(&trial.displacement).map(|(a, b)| (a - b) / (2.0 * H)).collect();
+        let mut increment: Vec<_> = ahead.iter().zip(&trial.displacement).map(|(a, b)| (a - b) / (2.0 * H)).collect();
         supports.put(mesh, load_factor + h, Kinematics::Corotated, &mut trial.displacement);
         pattern.advance(&free, h, &mut trial.displacement);
         system.follow(&mut trial, Kinematics::Corotated);
         problem.linearize(&trial, forces, None);
         problem.balance(&trial, Kinematics::Corotated, load_factor, forces);
         // Along the free unknowns the forces balance up to the error of `free`, which therefore enters quadratically.
-        pattern.add_free(&free, 1.0, &mut way);
-        let force: f64 = way.iter().zip(forces.residual()).map(|(way, residual)| -way.dot(residual)).sum();
+        pattern.add_free(&free, 1.0, &mut increment);
+        let force: f64 =
+            increment.iter().zip(forces.residual()).map(|(increment, residual)| -increment.dot(residual)).sum();
         stiffness += force / (2.0 * h);
     }
     stiffness.is_finite().then_some(stiffness)
@@ -87,7 +88,7 @@ pub fn support_stiffness(
 
 /// Describes ρ in a sentence.
 #[must_use]
-pub fn rho_words(rho: f64) -> String {
+pub fn rho_text(rho: f64) -> String {
     if rho < 1.0 {
         format!("the warped iteration converges near here: ρ = {rho:.3} < 1")
     } else if rho < 1000.0 {

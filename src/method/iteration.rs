@@ -125,7 +125,7 @@ impl Iteration<'_> {
     }
 
     /// Returns `true` if the supports are at rest and rotate so far that their motion must be applied in parts.
-    pub(super) fn supports_must_turn_in_steps(&self) -> bool {
+    pub(super) fn supports_rotate_in_steps(&self) -> bool {
         let supports = self.problem.supports();
         supports.largest_load_step() < 1.0 && supports.are_at_rest(&self.state.displacement)
     }

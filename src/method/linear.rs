@@ -39,7 +39,7 @@ impl Method for Linear {
     }
 
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        let held = it.problem.hand().is_some();
+        let held = it.problem.mouse_spring().is_some();
         if !self.factorized || held {
             it.assemble(Tangent::WARPED, 1.0);
             it.factorize()?;

@@ -19,11 +19,11 @@ mod status;
 mod warped;
 
 pub use auto::{AutoReport, Decision};
-pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_words, support_stiffness};
+pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_text, support_stiffness};
 pub(crate) use iteration::measure;
 pub use iteration::{Iteration, IterationError, Tolerances, Workspace};
 pub(crate) use status::is_useful_start;
-pub use status::{Reason, floor_words};
+pub use status::{Reason, floor_text};
 
 /// Entry of the registry.
 #[derive(Clone, Copy, Debug)]

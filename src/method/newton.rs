@@ -190,7 +190,7 @@ impl Method for Newton {
             }
             self.is_based = true;
             self.largest_load_step = it.problem.supports().largest_load_step();
-            if it.supports_must_turn_in_steps() {
+            if it.supports_rotate_in_steps() {
                 self.load_step = self.largest_load_step;
                 self.target = self.load_step;
                 it.workspace.tangent = None;

@@ -3,8 +3,8 @@
 use super::iteration::ROUNDING;
 use super::{Iteration, IterationError, Verdict};
 use crate::assembly::System;
+use crate::format::{count, number, two_digits};
 use crate::state::{State, largest};
-use crate::words::{count, number, two_digits};
 
 /// Reason why an iteration stopped before it converged.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +62,7 @@ impl std::fmt::Display for Reason {
 
 /// Explains in a sentence that a solve has ended at the rounding error of its residual.
 #[must_use]
-pub fn floor_words(floor: f64, tolerance: f64) -> String {
+pub fn floor_text(floor: f64, tolerance: f64) -> String {
     let [floor, tolerance] = [floor, tolerance].map(|v| number(two_digits(v)));
     format!("no digits are left: rounding may change the residual by {floor}, so {tolerance} cannot be asked for here")
 }

@@ -60,7 +60,7 @@ impl Method for Warped {
     }
 
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        if it.supports_must_turn_in_steps() {
+        if it.supports_rotate_in_steps() {
             (self.load_factor, self.load_steps) = (0.0, 0);
         }
         if self.load_factor < 1.0 {

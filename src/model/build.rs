@@ -4,7 +4,7 @@ use super::{
     Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
     MethodKind, Place, Plane, Probe, Pulse, Scene, SolverSettings, Start, Support,
 };
-use crate::words::engineering;
+use crate::format::engineering;
 
 impl Scene {
     /// Returns a scene without a mesh, for [`crate::Simulation::with_mesh`].
@@ -254,7 +254,7 @@ impl Scene {
     pub fn move_support(&mut self, support: usize, displacement: [f64; 2], turn: f64) -> Result<(), Invalid> {
         let count = self.supports.len();
         let Some(moved) = self.supports.get_mut(support) else {
-            let message = format!("expected one of {}, counted from 0", crate::words::count(count as u64, "support"));
+            let message = format!("expected one of {}, counted from 0", crate::format::count(count as u64, "support"));
             return Err(Invalid::new(format!("support.{support}"), message));
         };
         (moved.displacement, moved.turn) = (displacement, turn);

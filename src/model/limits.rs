@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::words::number;
+use crate::format::number;
 
 /// Closed range and its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +76,7 @@ pub const ACCELERATION: Limit = Limit::new("m/s²", 0.0, 1e6);
 /// A coordinate.
 pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
 /// Prescribed rotation of a support.
-pub const TURN: Limit = Limit::new("rad", -100.0, 100.0);
+pub const ROTATION: Limit = Limit::new("rad", -100.0, 100.0);
 /// Metres per unit of a mesh file.
 pub const MESH_SCALE: Limit = Limit::new("m", 1e-9, 1e6);
 /// Relative residual at which a solve has converged.

@@ -18,7 +18,7 @@ pub use error::{Invalid, ReadError, SceneError};
 pub use limits::OutOfRange;
 pub use place::{Axis, Load, Place, Probe, Support, TableError};
 
-use crate::words::number;
+use crate::format::number;
 
 /// Complete description of a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::dynamics::Pulse;
 use super::error::Invalid;
 use super::{is_zero, limits};
-use crate::words::number;
+use crate::format::number;
 
 /// Whole edge or single point.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,7 +136,7 @@ impl Support {
                 return refuse("displacement", message);
             }
         }
-        limits::TURN.check(self.turn).or_else(|e| refuse("turn", e.to_string()))?;
+        limits::ROTATION.check(self.turn).or_else(|e| refuse("turn", e.to_string()))?;
         if self.turn != 0.0 && !matches!(self.place, Place::Edge(_)) {
             return refuse(
                 "turn",
@@ -144,7 +144,10 @@ impl Support {
             );
         }
         if self.turn != 0.0 && !(self.fix.contains(&Axis::X) && self.fix.contains(&Axis::Y)) {
-            return refuse("turn", "expected fix = [\"x\", \"y\"] beside it: a turn moves nodes both ways".to_owned());
+            return refuse(
+                "turn",
+                "expected fix = [\"x\", \"y\"] beside it: a rotation moves nodes along both".to_owned(),
+            );
         }
         Ok(())
     }

@@ -100,7 +100,7 @@ const KEYS: &[(&str, Limit)] = &[
     ("material.thickness", limits::THICKNESS),
     ("support.at", limits::COORDINATE),
     ("support.displacement", limits::COORDINATE),
-    ("support.turn", limits::TURN),
+    ("support.turn", limits::ROTATION),
     ("load.at", limits::COORDINATE),
     ("load.force", limits::FORCE),
     ("load.acceleration", limits::ACCELERATION),
@@ -426,7 +426,7 @@ fn toml_number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::parse;
-    use crate::words::{editable, engineering};
+    use crate::format::{editable, engineering};
 
     #[test]
     fn what_is_shown_reads_back() {

@@ -2,11 +2,11 @@
 
 use super::drawing::{Anchor, Color, Drawing, Item, Text};
 use crate::element::ELEMENTS;
+use crate::format::number;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
-use crate::study::extremes::motion::{MotionEntry, MotionOutcome, variant_words, variants};
+use crate::study::extremes::motion::{MotionEntry, MotionOutcome, variant_text, variants};
 use crate::study::extremes::{Body, Case, Entry, FILES, Outcome, Start, alphas};
-use crate::words::number;
 
 /// Size of a cell.
 const CELL: [f64; 2] = [52.0, 20.0];
@@ -66,7 +66,7 @@ pub fn motion_atlas(entries: &[MotionEntry]) -> Drawing {
     };
     let (youngs, steps) = (sorted(|e| e.case.young), sorted(|e| e.case.time_step));
     let panel = |element: ElementKind, (integrator, iterations)| Panel {
-        title: format!("{} {}: E, Pa", element.id(), variant_words(integrator, iterations)),
+        title: format!("{} {}: E, Pa", element.id(), variant_text(integrator, iterations)),
         columns: youngs.iter().map(|&young| format!("{young:e}")).collect(),
         rows: steps
             .iter()

@@ -1,8 +1,8 @@
 //! Axes of drawings: margins, decades, grids and the marks of elements.
 
 use super::drawing::{Anchor, Color, Drawing, GRID, Item, Outline, Shape, Text, solid};
+use crate::format::number;
 use crate::scene::ElementKind;
-use crate::words::number;
 
 /// Size of a drawing.
 pub(super) const SIZE: [f64; 2] = [860.0, 560.0];
@@ -75,13 +75,13 @@ impl Margins {
     /// Draws lines at places of both axes with their numbers, and the labels of the axes.
     pub fn grid(&self, drawing: &mut Drawing, [x, y]: [Vec<(f64, String)>; 2], [x_label, y_label]: [&str; 2]) {
         let ([left, right], [bottom, top]) = (self.across(), self.up());
-        for (at, words) in x {
+        for (at, text) in x {
             drawing.line(vec![[at, top], [at, bottom]], GRID, solid(1.0));
-            drawing.text([at, bottom + 18.0], Anchor::Middle, words);
+            drawing.text([at, bottom + 18.0], Anchor::Middle, text);
         }
-        for (at, words) in y {
+        for (at, text) in y {
             drawing.line(vec![[left, at], [right, at]], GRID, solid(1.0));
-            drawing.text([left - 8.0, at + 4.0], Anchor::End, words);
+            drawing.text([left - 8.0, at + 4.0], Anchor::End, text);
         }
         drawing.text([0.5 * (left + right), SIZE[1] - 14.0], Anchor::Middle, x_label);
         let label = Text::new([22.0, 0.5 * (top + bottom)], Anchor::Middle, y_label);

@@ -81,12 +81,12 @@ pub(super) struct Text {
     pub color: Color,
     /// `true` if it is read from below.
     pub is_upright: bool,
-    pub words: String,
+    pub text: String,
 }
 
 impl Text {
-    pub fn new(at: [f64; 2], anchor: Anchor, words: impl Into<String>) -> Self {
-        Self { at, anchor, size: TEXT, color: BLACK, is_upright: false, words: words.into() }
+    pub fn new(at: [f64; 2], anchor: Anchor, text: impl Into<String>) -> Self {
+        Self { at, anchor, size: TEXT, color: BLACK, is_upright: false, text: text.into() }
     }
 }
 
@@ -120,8 +120,8 @@ impl Drawing {
         self.add(Shape::filled(Outline::Rect(corner_and_size), color));
     }
 
-    pub(super) fn text(&mut self, at: [f64; 2], anchor: Anchor, words: impl Into<String>) {
-        self.items.push(Item::Text(Text::new(at, anchor, words)));
+    pub(super) fn text(&mut self, at: [f64; 2], anchor: Anchor, text: impl Into<String>) {
+        self.items.push(Item::Text(Text::new(at, anchor, text)));
     }
 
     /// Draws what `draw` adds in a rectangle only.
@@ -217,7 +217,7 @@ impl Text {
         if self.color != BLACK {
             let _ = write!(attributes, " fill=\"{}\"", hex(self.color));
         }
-        format!("<text{attributes}>{}</text>", escape(&self.words))
+        format!("<text{attributes}>{}</text>", escape(&self.text))
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::axes::{Margins, SIZE, mark as element_mark};
 use super::drawing::{Anchor, Color, Drawing, Outline, Shape, Stroke, solid};
+use crate::format::{number, prefix, ticks};
 use crate::study::color;
 use crate::study::figure::{Figure, Ink, Mark};
-use crate::words::{number, prefix, ticks};
 
 /// Width of the table.
 const TABLE: f64 = 330.0;

@@ -88,7 +88,7 @@ impl Text {
         let mut path = BezPath::new();
         let mut pen = Pen { path: &mut path, at: 0.0 };
         let size = Size::new(self.size as f32);
-        for letter in self.words.chars() {
+        for letter in self.text.chars() {
             let Some((font, glyph)) = glyph(fonts, letter) else { continue };
             if let Some(outline) = font.outline_glyphs().get(glyph) {
                 // Without hints an outline cannot fail but by a broken font; the letter is then left out.
@@ -202,15 +202,15 @@ mod tests {
             let ink: Vec<usize> = all.filter(|&at| pixel(picture, at)[0] < 0xc0).map(|at| at[axis]).collect();
             [*ink.iter().min().unwrap(), *ink.iter().max().unwrap()]
         }
-        for words in ["MMMM", "位移 αβ"] {
+        for text in ["MMMM", "位移 αβ"] {
             for (anchor, [from, to]) in [(Anchor::Start, [50, 99]), (Anchor::Middle, [20, 80]), (Anchor::End, [0, 50])]
             {
                 for is_upright in [false, true] {
                     let mut drawing = Drawing::new([100.0, 100.0]);
-                    drawing.items.push(Item::Text(Text { is_upright, ..Text::new([50.0, 50.0], anchor, words) }));
+                    drawing.items.push(Item::Text(Text { is_upright, ..Text::new([50.0, 50.0], anchor, text) }));
                     let [low, high] = inked(&drawing.picture().unwrap(), usize::from(is_upright));
                     let [low, high] = if is_upright { [100 - high, 100 - low] } else { [low, high] };
-                    assert!(from <= low && high <= to && high - low > 20, "{words} {anchor:?}: {low} to {high}");
+                    assert!(from <= low && high <= to && high - low > 20, "{text} {anchor:?}: {low} to {high}");
                 }
             }
         }

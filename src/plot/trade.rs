@@ -158,9 +158,9 @@ impl Chart<'_> {
     fn key(&self, drawing: &mut Drawing) {
         let [_, right] = MARGINS.across();
         let mut row = MARGINS.top + 10.0;
-        let mut add = |symbol: Option<Shape>, words: &str| {
+        let mut add = |symbol: Option<Shape>, text: &str| {
             symbol.into_iter().for_each(|symbol| drawing.add(symbol));
-            drawing.text([right + 36.0, row + 4.0], Anchor::Start, words);
+            drawing.text([right + 36.0, row + 4.0], Anchor::Start, text);
             row += ROW;
             row
         };

@@ -27,7 +27,7 @@ pub struct Frame<'a> {
     pub lines: &'a [[u32; 2]],
     /// Triangle adjacent to each line. The line fades if the triangle's height on the screen is small, because the
     /// lines are then too close together.
-    pub beside: &'a [u32],
+    pub triangles_of_lines: &'a [u32],
     /// Number of triangles across an element.
     pub pieces: u32,
     /// Colour of the lines, gamma space, straight (not premultiplied) alpha.
@@ -375,8 +375,8 @@ impl BodyRenderer {
         let lines = self.scratch.len() as u32;
         let at = |node: u32| frame.positions.get(node as usize).copied().unwrap_or_default();
         let [r, g, b, opacity] = frame.line_color;
-        for (line, &beside) in frame.lines.iter().zip(frame.beside) {
-            let Some(corners) = frame.triangles.get(beside as usize) else { continue };
+        for (line, &triangles_of_lines) in frame.lines.iter().zip(frame.triangles_of_lines) {
+            let Some(corners) = frame.triangles.get(triangles_of_lines as usize) else { continue };
             let [p, q, s] = corners.map(at);
             let length = (at(line[1]) - at(line[0])).norm();
             let height = (q - p).perp(&(s - p)).abs() / length * f64::from(frame.pieces);
@@ -431,7 +431,7 @@ mod tests {
             range: [0.0, 1.0],
             map: ColorMap::SequentialOnDark,
             lines: &[[0, 2], [1, 2]],
-            beside: &[0, 0],
+            triangles_of_lines: &[0, 0],
             pieces: 1,
             line_color: [255, 255, 255, 200],
             background: [20, 20, 30],
@@ -444,7 +444,7 @@ mod tests {
             vec![View { frame: Frame { stamp: 2, positions: &sheared, ..frame }, ..view }],
             vec![View { camera: Camera { scale: 30.0, ..view.camera }, ..view }],
             vec![View { frame: Frame { range: [0.0, 2.0], ..frame }, ..view }],
-            vec![View { frame: Frame { lines: &[], beside: &[], ..frame }, ..view }],
+            vec![View { frame: Frame { lines: &[], triangles_of_lines: &[], ..frame }, ..view }],
             vec![View { frame: Frame { absent_color: [200, 0, 0], ..frame }, ..view }],
             vec![View { frame: Frame { background: [0, 90, 0], ..frame }, ..view }],
             vec![View { frame: Frame { line_color: [0, 0, 0, 255], ..frame }, ..view }],

@@ -24,7 +24,7 @@ pub(crate) struct DisplayGeometry {
     /// Segments of the element sides, as indices of points.
     pub lines: Vec<[u32; 2]>,
     /// Triangle adjacent to each segment.
-    pub beside: Vec<u32>,
+    pub triangles_of_lines: Vec<u32>,
     /// Number of segments per element side.
     pub pieces: u32,
     /// Closed lines around the body, counter-clockwise, as indices of points.
@@ -46,11 +46,13 @@ impl DisplayGeometry {
         for (number, nodes) in (0..).zip(mesh.elements()) {
             let first_triangle = drawing.triangles.len() as u32;
             let first = drawing.add(&pattern, number, nodes);
-            for ((side, points), beside) in mesh.sides(nodes).zip(&pattern.sides).zip(&pattern.beside) {
+            for ((side, points), triangles_of_lines) in
+                mesh.sides(nodes).zip(&pattern.sides).zip(&pattern.triangles_of_lines)
+            {
                 let points: Vec<u32> = points.iter().map(|p| first + p).collect();
                 if drawn.insert(side.key()) {
                     drawing.lines.extend(points.windows(2).map(|w| [w[0], w[1]]));
-                    drawing.beside.extend(beside.iter().map(|t| first_triangle + t));
+                    drawing.triangles_of_lines.extend(triangles_of_lines.iter().map(|t| first_triangle + t));
                 }
                 if boundary.contains(&side.key()) {
                     let [from, to] = side.ends();
@@ -148,7 +150,7 @@ struct CellPattern {
     /// Points along each side.
     sides: Vec<Vec<u32>>,
     /// Triangle adjacent to every segment of each side.
-    beside: Vec<Vec<u32>>,
+    triangles_of_lines: Vec<Vec<u32>>,
 }
 
 impl CellPattern {
@@ -161,12 +163,12 @@ impl CellPattern {
             let found = lattice.triangles.iter().position(|t| piece.iter().all(|p| t.contains(p)));
             found.unwrap_or_default() as u32
         };
-        let beside = lattice.sides.iter().map(|side| side.windows(2).map(triangle_at).collect()).collect();
+        let triangles_of_lines = lattice.sides.iter().map(|side| side.windows(2).map(triangle_at).collect()).collect();
         Self {
             points: lattice.points.iter().map(|&at| (entry.shape)(at)).collect(),
             triangles: triangles.collect(),
             sides: lattice.sides.clone(),
-            beside,
+            triangles_of_lines,
         }
     }
 }
@@ -198,10 +200,13 @@ mod tests {
             let around: f64 = line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
             assert!((around - 10.0).abs() < 1e-12, "{element:?}: {around}");
             assert_eq!(drawing.triangles.len(), drawing.value_of.len());
-            assert_eq!(drawing.lines.len(), drawing.beside.len());
+            assert_eq!(drawing.lines.len(), drawing.triangles_of_lines.len());
             let touches =
                 |(line, &t): (&[u32; 2], &u32)| line.iter().all(|p| drawing.triangles[t as usize].contains(p));
-            assert!(drawing.lines.iter().zip(&drawing.beside).all(touches), "{element:?}: a triangle elsewhere");
+            assert!(
+                drawing.lines.iter().zip(&drawing.triangles_of_lines).all(touches),
+                "{element:?}: a triangle elsewhere"
+            );
             // For a field that is linear within elements, the mean over the drawn triangles is exact.
             let entry = element.entry();
             let field = |nodes: &[u32], at: [f64; 2]| -> f64 {

@@ -8,7 +8,9 @@ use thiserror::Error;
 
 use self::motion::start_of;
 use self::search::Search;
-use crate::assembly::{Change, Forces, Hand, Kinematics, Mass, Matrix, NodalProbe, Problem, System, SystemError};
+use crate::assembly::{
+    Change, Forces, Kinematics, Mass, Matrix, MouseSpring, NodalProbe, Problem, System, SystemError,
+};
 use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
 use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
@@ -162,12 +164,12 @@ impl Process {
 }
 
 /// Frequency of the body's mass on the mouse spring, Hz; high enough to feel firm.
-const HAND_FREQUENCY: f64 = 5.0;
+const SPRING_FREQUENCY: f64 = 5.0;
 /// Damping ratio of this vibration.
-const HAND_DAMPING: f64 = 0.7;
+const SPRING_DAMPING: f64 = 0.7;
 /// Stiffness of the mouse spring relative to that of the body at the grabbed point, so that the body follows the
 /// pointer.
-const HAND_FIRMNESS: f64 = 10.0;
+const SPRING_FIRMNESS: f64 = 10.0;
 
 impl Simulation {
     /// Returns a simulation in the initial state of the scene.
@@ -393,15 +395,15 @@ impl Simulation {
     pub fn grab(&mut self, point: MaterialPoint) -> bool {
         let Body { scene, problem, state } = &mut self.body;
         let mass = Mass::new(problem.system(), scene.material.area_density()).total();
-        let omega = std::f64::consts::TAU * HAND_FREQUENCY;
+        let omega = std::f64::consts::TAU * SPRING_FREQUENCY;
         let mut stiffness = mass * omega * omega;
         if let Some(compliance) = compliance(problem, state, point) {
-            stiffness = stiffness.max(HAND_FIRMNESS / compliance);
+            stiffness = stiffness.max(SPRING_FIRMNESS / compliance);
         }
-        let delay = 2.0 * HAND_DAMPING * (mass / stiffness).sqrt();
-        let Some(mut hand) = Hand::new(problem.system(), point, stiffness, delay) else { return false };
-        hand.lead(hand.position(&state.displacement), state.time, 0.0);
-        *problem.hand_mut() = Some(hand);
+        let delay = 2.0 * SPRING_DAMPING * (mass / stiffness).sqrt();
+        let Some(mut spring) = MouseSpring::new(problem.system(), point, stiffness, delay) else { return false };
+        spring.lead(spring.position(&state.displacement), state.time, 0.0);
+        *problem.mouse_spring_mut() = Some(spring);
         self.pulled(false);
         true
     }
@@ -420,8 +422,8 @@ impl Simulation {
             Process::Motion(_) => self.body.scene.dynamics.time_step,
         };
         let now = self.body.state.time;
-        if let Some(hand) = self.body.problem.hand_mut() {
-            hand.lead(position, now, within);
+        if let Some(spring) = self.body.problem.mouse_spring_mut() {
+            spring.lead(position, now, within);
             self.pulled(true);
         }
         Ok(())
@@ -429,21 +431,21 @@ impl Simulation {
 
     /// Removes the mouse spring.
     pub fn release(&mut self) {
-        if self.body.problem.hand_mut().take().is_some() {
+        if self.body.problem.mouse_spring_mut().take().is_some() {
             self.pulled(false);
         }
     }
 
     /// Returns the mouse spring and its force on the body, N.
     #[must_use]
-    pub fn hand(&self) -> Option<(&Hand, Vector2<f64>)> {
+    pub fn mouse_spring(&self) -> Option<(&MouseSpring, Vector2<f64>)> {
         let State { displacement, velocity, .. } = &self.body.state;
-        let hand = self.body.problem.hand()?;
+        let spring = self.body.problem.mouse_spring()?;
         let force = match self.process {
-            Process::Search(_) => hand.force_at_rest(displacement),
-            Process::Motion(_) => hand.force(hand.mean(displacement), hand.mean(velocity)),
+            Process::Search(_) => spring.force_at_rest(displacement),
+            Process::Motion(_) => spring.force(spring.mean(displacement), spring.mean(velocity)),
         };
-        Some((hand, force))
+        Some((spring, force))
     }
 
     fn pulled(&mut self, moved_only: bool) {

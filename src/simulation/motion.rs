@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use super::{Body, SimulationError, Status};
 use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
 use crate::dynamics::{
-    Booking, Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionDecision, MotionReport,
-    Solves, StageSolver, Step, StepError, StopReason, critical_step,
+    Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionDecision, MotionReport, Solves,
+    StageSolver, Step, StepEnergy, StepError, StopReason, critical_step,
 };
 use crate::method::MotionMethod;
 use crate::scene::{DynamicsSettings, Load, MethodKind, Scene, Start};
@@ -128,7 +128,7 @@ impl Motion {
 
     /// Starts a motion from the current state and velocity.
     pub(super) fn begin(&mut self, body: &mut Body) {
-        self.linear.forget();
+        self.linear.invalidate();
         body.problem.system().follow(&mut body.state, self.kinematics());
         self.begin_steps(body);
         let Body { scene, problem, state } = body;
@@ -142,7 +142,7 @@ impl Motion {
     pub(super) fn return_to(&mut self, body: &mut Body, moment: &Moment) {
         let Moment { state, ledger, counts, report, is_linear, method } = moment;
         body.state.copy_from(state);
-        self.linear.forget();
+        self.linear.invalidate();
         self.linear.set_in_use(*is_linear);
         // Recomputed edge angles would differ by rounding errors.
         if *method != body.scene.solver.method {
@@ -156,12 +156,12 @@ impl Motion {
     fn begin_steps(&mut self, body: &mut Body) {
         let Body { problem, state, .. } = body;
         // Results must not depend on earlier steps.
-        self.memory.corrector.forget();
+        self.memory.corrector.invalidate();
         self.memory.residual = 0.0;
         problem.set_time(state.time);
         self.stopped = None;
         self.quiet_steps = 0;
-        self.is_guarded = problem.hand().is_some();
+        self.is_guarded = problem.mouse_spring().is_some();
         self.timings = Timings::default();
         self.last_step = Timings::default();
     }
@@ -173,13 +173,13 @@ impl Motion {
         let mass_changes = scene.material.area_density() != before.material.area_density();
         if change == Change::Unknowns {
             self.memory = Memory::new(problem.system())?;
-            self.linear.forget_system();
+            self.linear.invalidate_system();
         }
         if change == Change::Unknowns || mass_changes {
             self.mass = Mass::new(problem.system(), scene.material.area_density());
         }
-        self.memory.corrector.forget();
-        self.linear.forget();
+        self.memory.corrector.invalidate();
+        self.linear.invalidate();
         let fixed_stay = problem.system().pattern().are_fixed_at_rest(&state.displacement);
         if !(fixed_stay && state.is_finite()) {
             start(scene, problem, &self.mass, state);
@@ -226,7 +226,7 @@ impl Motion {
         while left > 0 {
             self.start.copy_from(&body.state);
             let part = whole / f64::from(1_u32 << halvings);
-            match self.take_step(body, part).and_then(|booking| self.book(&booking, body)) {
+            match self.take_step(body, part).and_then(|energies| self.record(&energies, body)) {
                 Ok(()) => left -= 1,
                 Err(error) => {
                     body.state.copy_from(&self.start);
@@ -262,10 +262,10 @@ impl Motion {
     }
 
     /// Records a step in the ledger; fails if the ledger shows spurious energy.
-    fn book(&mut self, booking: &Booking, body: &Body) -> Result<(), StepError> {
-        if self.keeps_books() {
+    fn record(&mut self, energies: &StepEnergy, body: &Body) -> Result<(), StepError> {
+        if self.records_energy() {
             let (Body { scene, problem, state }, mut ledger) = (body, self.ledger);
-            ledger.book(booking, problem, &self.mass, inertia(scene), state);
+            ledger.record(energies, problem, &self.mass, inertia(scene), state);
             if self.is_guarded && ledger.has_gained_since(&self.ledger, MOST_ADDED) {
                 return Err(StepError::AddedEnergy);
             }
@@ -274,37 +274,37 @@ impl Motion {
         Ok(())
     }
 
-    fn keeps_books(&self) -> bool {
+    fn records_energy(&self) -> bool {
         self.keeps_ledger || self.is_guarded
     }
 
     /// Performs a step of length h; `auto` uses linear theory if it is accurate enough.
-    fn take_step(&mut self, body: &mut Body, h: f64) -> Result<Booking, StepError> {
+    fn take_step(&mut self, body: &mut Body, h: f64) -> Result<StepEnergy, StepError> {
         let asked = asked_error(&body.scene);
         let decides = self.decides(&body.scene);
-        if decides && body.problem.hand().is_none() && self.linear.is_worth_a_try(&body.state, asked) {
+        if decides && body.problem.mouse_spring().is_none() && self.linear.is_worth_a_try(&body.state, asked) {
             let was_in_use = self.linear.is_in_use();
             if !was_in_use {
                 self.see(body, Kinematics::Linear);
             }
-            if let Ok(booking) = self.try_step(body, Kinematics::Linear, h)
+            if let Ok(energies) = self.try_step(body, Kinematics::Linear, h)
                 && self.linear.accepts(&body.problem, &self.mass, [&self.start, &body.state], h, asked)?
             {
-                if !was_in_use && self.keeps_books() {
+                if !was_in_use && self.records_energy() {
                     self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
                 }
-                return Ok(booking);
+                return Ok(energies);
             }
             body.state.copy_from(&self.start);
             self.linear.leave();
             self.see(body, Kinematics::Corotated);
-            if was_in_use && self.keeps_books() {
+            if was_in_use && self.records_energy() {
                 self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
             }
         } else if self.linear.is_in_use() {
             self.linear.leave();
             self.see(body, Kinematics::Corotated);
-            if self.keeps_books() {
+            if self.records_energy() {
                 self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
             }
         }
@@ -318,8 +318,8 @@ impl Motion {
         self.start.copy_from(&body.state);
     }
 
-    fn try_step(&mut self, body: &mut Body, kinematics: Kinematics, h: f64) -> Result<Booking, StepError> {
-        let books = self.keeps_books();
+    fn try_step(&mut self, body: &mut Body, kinematics: Kinematics, h: f64) -> Result<StepEnergy, StepError> {
+        let records_energy = self.records_energy();
         let Body { scene, problem, state } = body;
         let settings = &scene.dynamics;
         let solves = match settings.iterations {
@@ -344,7 +344,7 @@ impl Motion {
             start: &self.start,
             state,
             middle: &mut self.middle,
-            books,
+            records_energy,
         };
         (settings.integrator.entry().step)(&mut step)
     }
@@ -396,7 +396,7 @@ impl Motion {
 
     /// Updates the motion after a mouse spring was attached, moved or removed.
     pub(super) fn pulled(&mut self, body: &Body) {
-        if !self.keeps_books() {
+        if !self.records_energy() {
             self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);
         }
         self.is_guarded = true;

@@ -160,7 +160,7 @@ pub fn support_reactions(
 #[must_use]
 pub fn supports_power(problem: &Problem, reactions: &[SupportReaction]) -> f64 {
     let pairs = problem.supports().all().iter().zip(reactions);
-    pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.turn).sum()
+    pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.rotation).sum()
 }
 
 /// Largest von Mises stress of the recovered Cauchy stresses.

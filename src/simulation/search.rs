@@ -41,7 +41,7 @@ impl Search {
     pub fn new(body: &mut Body) -> Result<Self, SolverError> {
         let mut search = Self {
             method: (body.scene.solver.method.entry().start)(),
-            previous: (body.state.displacement.clone(), body.state.turns.clone()),
+            previous: (body.state.displacement.clone(), body.state.edge_angles.clone()),
             forces: Forces::new(body.state.displacement.len()),
             workspace: Some(Workspace::new(body.problem.system())?),
             residual: 0.0,
@@ -80,7 +80,7 @@ impl Search {
     }
 
     /// Marks the workspace's matrix as outdated.
-    fn forget_tangent(&mut self) {
+    fn discard_tangent(&mut self) {
         if let Some(workspace) = &mut self.workspace {
             workspace.tangent = None;
         }
@@ -99,7 +99,7 @@ impl Search {
         let moments = |scene: &Scene| scene.loads.iter().any(|load| load.is_moment());
         if moments(before) || moments(&body.scene) {
             // The exact tangent contains the moments.
-            self.forget_tangent();
+            self.discard_tangent();
         }
         let same_method = body.scene.solver.method == before.solver.method;
         let same_unknowns = change <= Change::Stiffness;
@@ -158,7 +158,7 @@ impl Search {
     pub fn pulled(&mut self, body: &mut Body, moved_only: bool) {
         let why = if moved_only { Restart::NewLoads } else { Restart::NewStiffness };
         // The tangent contains the mouse spring.
-        self.forget_tangent();
+        self.discard_tangent();
         self.method.restart(why);
         self.restart(body, why);
     }
@@ -170,9 +170,9 @@ impl Search {
         }
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         let mut timings = Timings::default();
-        let State { displacement, turns, .. } = &body.state;
+        let State { displacement, edge_angles, .. } = &body.state;
         self.previous.0.copy_from(displacement);
-        self.previous.1.clone_from(turns);
+        self.previous.1.clone_from(edge_angles);
         let iterated = self.with_method(body, &mut workspace, &mut timings, |method, it| method.iterate(it));
         self.iterations += 1;
         let measured = iterated.and_then(|()| {
@@ -181,7 +181,7 @@ impl Search {
         });
         if measured.is_err() {
             body.state.displacement.copy_from(&self.previous.0);
-            body.state.turns.copy_from_slice(&self.previous.1);
+            body.state.edge_angles.copy_from_slice(&self.previous.1);
             self.measure(body, &mut workspace, &mut timings);
         }
         let verdict = self.with_method(body, &mut workspace, &mut timings, |method, it| match measured {
@@ -288,7 +288,7 @@ impl Search {
         if let Some(certificate) = self.certificate {
             return certificate;
         }
-        let holds = problem.hand().is_some();
+        let holds = problem.mouse_spring().is_some();
         if holds || self.status == Status::Running || self.kinematics() == Kinematics::Linear {
             return Certificate::default();
         }

@@ -11,11 +11,11 @@ use super::convergence::remaining_error;
 use super::progress::{Observer, Progress, check};
 use crate::assembly::{Forces, System};
 use crate::element::ElementType;
+use crate::format::{count, engineering, engineering_pair};
 use crate::mesh::{Mesh, Segment, bent, straightened};
 use crate::method::{Workspace, is_stable};
 use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::words::{count, engineering, engineering_pair};
 
 /// Cost allowed for a reference solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

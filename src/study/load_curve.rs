@@ -5,10 +5,10 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use crate::assembly::System;
+use crate::exact_beam::{ExactBeam, error_percent};
 use crate::method::METHODS;
 use crate::scene::{MethodKind, Place, Scene};
 use crate::simulation::{Simulation, Status};
-use crate::truth::{BeamTruth, error_percent};
 
 /// Load factor with its deflections.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Sample {
     /// Displacement of the tip by linear beam theory, m.
     pub linear: Vector2<f64>,
     /// Displacement of the tip by the geometrically exact beam, m.
-    pub truth: Vector2<f64>,
+    pub exact: Vector2<f64>,
     /// Rotation of the tip, rad.
     pub rotation: f64,
     /// Largest bending strain: half the height times the curvature at the clamp.
@@ -29,7 +29,7 @@ impl Sample {
     /// Returns the difference between linear theory and the exact beam, relative to the exact displacement, percent.
     #[must_use]
     pub fn linear_error_percent(&self) -> f64 {
-        error_percent(self.linear, self.truth).unwrap_or(0.0)
+        error_percent(self.linear, self.exact).unwrap_or(0.0)
     }
 }
 
@@ -79,20 +79,20 @@ impl LoadCurve {
     /// Returns the curve, if the scene is a cantilever with an exact solution and a probe at its tip.
     #[must_use]
     pub fn new(scene: &Scene) -> Option<Self> {
-        let Some(BeamTruth::Cantilever(beam)) = BeamTruth::of(scene) else { return None };
+        let Some(ExactBeam::Cantilever(beam)) = ExactBeam::of(scene) else { return None };
         // A scene that cannot be simulated has no curve.
         let system = Simulation::new(scene).ok()?.system().clone();
         let height = scene.beam.as_ref()?.height;
         let linear = beam.linear_tip_displacement();
         let rest = Vector2::new(beam.length, 0.0);
         let none =
-            Sample { factor: 0.0, linear: Vector2::zeros(), truth: Vector2::zeros(), rotation: 0.0, strain: 0.0 };
+            Sample { factor: 0.0, linear: Vector2::zeros(), exact: Vector2::zeros(), rotation: 0.0, strain: 0.0 };
         let (loaded, buckles_at) = beam.path_to_critical(LARGEST_FACTOR, SAMPLES);
         let samples: Vec<Sample> = std::iter::once(none)
             .chain(loaded.into_iter().map(|p| Sample {
                 factor: p.factor,
                 linear: linear * p.factor,
-                truth: p.tip.x - rest,
+                exact: p.tip.x - rest,
                 rotation: p.tip.angle,
                 strain: 0.5 * height * (p.clamp_moment / beam.bending).abs(),
             }))
@@ -113,7 +113,7 @@ fn departure(samples: &[Sample], percent: f64) -> Option<Departure> {
     let at = Sample {
         factor: between(a.factor, b.factor),
         linear: a.linear + (b.linear - a.linear) * t,
-        truth: a.truth + (b.truth - a.truth) * t,
+        exact: a.exact + (b.exact - a.exact) * t,
         rotation: between(a.rotation, b.rotation),
         strain: between(a.strain, b.strain),
     };

@@ -7,11 +7,11 @@ use nalgebra::Vector2;
 
 use crate::assembly::{Forces, Kinematics, Problem};
 use crate::element::Tangent;
+use crate::format::engineering;
 use crate::method::{Workspace, support_stiffness};
 use crate::scene::{Analysis, MethodKind, Place, Scene};
 use crate::simulation::{Simulation, Status, SupportReaction, supports_power};
 use crate::state::{State, largest};
-use crate::words::engineering;
 
 /// Equilibrium on the path.
 #[derive(Clone, Debug, PartialEq)]
@@ -260,10 +260,10 @@ impl LoadPath {
     #[must_use]
     pub fn driven_pair(&self, scene: &Scene, state: &PathState) -> Option<[f64; 2]> {
         let (support, reaction) = (scene.supports.get(self.driven?)?, state.reactions.get(self.driven?)?);
-        let way = Vector2::from(support.displacement);
-        Some(match way.norm() {
+        let increment = Vector2::from(support.displacement);
+        Some(match increment.norm() {
             0.0 => [state.factor * support.turn, reaction.moment],
-            length => [state.factor * length, reaction.force.dot(&way) / length],
+            length => [state.factor * length, reaction.force.dot(&increment) / length],
         })
     }
 }
@@ -462,9 +462,9 @@ impl Follower {
         if self.reached > *factor {
             let part = (to - self.reached) / (self.reached - factor);
             let pairs = self.state.displacement.iter().zip(&before.displacement);
-            let ways: Vec<Vector2<f64>> = pairs.map(|(now, before)| (now - before) * part).collect();
-            for (u, way) in state.displacement.overwrite().iter_mut().zip(&ways) {
-                *u += way;
+            let increments: Vec<Vector2<f64>> = pairs.map(|(now, before)| (now - before) * part).collect();
+            for (u, increment) in state.displacement.overwrite().iter_mut().zip(&increments) {
+                *u += increment;
             }
         }
         state
@@ -574,7 +574,7 @@ fn part(scene: &Scene, factor: f64) -> Scene {
 
 /// Describes a support: `support left`, `support (0.1, 0.0085)`.
 #[must_use]
-pub fn support_words(scene: &Scene, number: usize) -> String {
+pub fn support_text(scene: &Scene, number: usize) -> String {
     scene.supports.get(number).map_or_else(|| "support".to_owned(), |support| format!("support {}", support.place))
 }
 

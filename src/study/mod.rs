@@ -23,7 +23,7 @@ pub use colors::color;
 pub use fine::{Effort, MovedPoint, moved_points};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
 pub use load_path::{
-    Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_words,
+    Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_text,
 };
 pub use motion::MotionStudy;
 pub use progress::{Extent, Observer, Progress, StudyError};

@@ -30,13 +30,13 @@ pub fn map<T: Sync, R: Send>(
     work: impl Fn(&T, &CalledOff) -> R + Sync,
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Vec<Option<R>> {
-    let called_off = CalledOff::default();
+    let cancelled = CalledOff::default();
     let (sender, receiver) = mpsc::channel();
     let one = |sender: &mut mpsc::Sender<()>, item: &T| {
-        if called_off.flow().is_break() {
+        if cancelled.flow().is_break() {
             return None;
         }
-        let result = work(item, &called_off);
+        let result = work(item, &cancelled);
         // Sending fails only if the caller panics.
         let _ = sender.send(());
         Some(result)
@@ -47,7 +47,7 @@ pub fn map<T: Sync, R: Send>(
         let mut done = 0;
         loop {
             if observe(done).is_break() {
-                called_off.0.store(true, Ordering::Relaxed);
+                cancelled.0.store(true, Ordering::Relaxed);
             }
             match receiver.recv_timeout(ASK) {
                 Ok(()) => done += 1,
@@ -82,8 +82,8 @@ mod tests {
     #[test]
     fn work_that_has_begun_is_told_that_it_is_called_off() {
         // Without the flag neither item would end.
-        let until_told = |_: &u32, called_off: &CalledOff| {
-            while called_off.flow().is_continue() {
+        let until_told = |_: &u32, cancelled: &CalledOff| {
+            while cancelled.flow().is_continue() {
                 thread::yield_now();
             }
         };

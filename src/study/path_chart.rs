@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, LoadAxis, Mark, Quantity, dominant_axis};
-use super::{LoadPath, PathState, support_words};
+use super::{LoadPath, PathState, support_text};
 use crate::scene::{MethodKind, Scene};
 
 /// The pair of quantities that is drawn.
@@ -43,10 +43,10 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Figure {
         (Ordinate::Usual | Ordinate::Reaction(_) | Ordinate::Probe(_), _) => [0, 3],
     };
     quantities.extend(match (ordinate, path.driven) {
-        (Ordinate::Reaction(i), _) => Some(Quantity::new(format!("reaction of {}", support_words(scene, *i)), "N")),
+        (Ordinate::Reaction(i), _) => Some(Quantity::new(format!("reaction of {}", support_text(scene, *i)), "N")),
         (Ordinate::Probe(_), _) => Some(Quantity::new(format!("displacement of {name}"), "m")),
         // The other axis names the support.
-        (_, Some(_)) => Some(Quantity::new("its reaction along the way", if along.turns { "N m" } else { "N" })),
+        (_, Some(_)) => Some(Quantity::new("its reaction along it", if along.turns { "N m" } else { "N" })),
         _ => None,
     });
     let point = |s: &PathState| {
@@ -101,8 +101,8 @@ impl Abscissa {
     fn of(path: &LoadPath, scene: &Scene) -> Self {
         let turns = path.driven.and_then(|i| scene.supports.get(i)).is_some_and(|s| s.displacement == [0.0; 2]);
         let quantity = match path.driven {
-            Some(i) if turns => Quantity::new(format!("turn of {}", support_words(scene, i)), "°"),
-            Some(i) => Quantity::new(format!("way of {}", support_words(scene, i)), "m"),
+            Some(i) if turns => Quantity::new(format!("rotation of {}", support_text(scene, i)), "°"),
+            Some(i) => Quantity::new(format!("displacement of {}", support_text(scene, i)), "m"),
             None => {
                 let LoadAxis { quantity, full } = LoadAxis::of(scene);
                 return Self { quantity, full, turns };
@@ -113,8 +113,8 @@ impl Abscissa {
 
     fn value(&self, path: &LoadPath, scene: &Scene, state: &PathState) -> f64 {
         match path.driven_pair(scene, state) {
-            Some([way, _]) if self.turns => way.to_degrees(),
-            Some([way, _]) => way,
+            Some([displacement, _]) if self.turns => displacement.to_degrees(),
+            Some([displacement, _]) => displacement,
             None => self.full * state.factor,
         }
     }
@@ -135,7 +135,7 @@ impl Piece {
     fn series(self, path: &LoadPath, points: Vec<FigurePoint>) -> FigureSeries {
         let (name, ink, mark) = match self {
             Self::Stable => ("stable", Ink::Method(MethodKind::Newton), Mark::Line),
-            Self::Unstable => (unstable_words(path), Ink::Unstable, Mark::Dashes),
+            Self::Unstable => (unstable_text(path), Ink::Unstable, Mark::Dashes),
             Self::Jump => ("it jumps", Ink::Unstable, Mark::Dots),
         };
         FigureSeries { name: name.to_owned(), ink, mark, may_leave: false, points }
@@ -188,6 +188,6 @@ fn bifurcations<'a>(path: &'a LoadPath, points: &'a [FigurePoint]) -> impl Itera
 }
 
 /// Name of the unstable part of a path: where a support moves, it is unstable only once that is let go of.
-pub(crate) fn unstable_words(path: &LoadPath) -> &'static str {
+pub(crate) fn unstable_text(path: &LoadPath) -> &'static str {
     if path.driven.is_some() { "unstable under force control" } else { "unstable" }
 }

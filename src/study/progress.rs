@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use crate::dynamics::StopReason;
+use crate::format::{number, two_digits};
 use crate::simulation::SimulationError;
-use crate::words::{number, two_digits};
 
 /// Reason why a scene cannot be studied.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]

@@ -1,5 +1,5 @@
 //! Reference solutions: displacements that errors are measured against, each with a bound of its own error. The exact
-//! beam of [`crate::truth`] if solutions on fine meshes confirm it, else the finest of these.
+//! beam of [`crate::reference`] if solutions on fine meshes confirm it, else the finest of these.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -10,10 +10,10 @@ use super::StudyError;
 use super::fine::{Effort, Fine, MovedPoint, fine};
 use super::progress::Observer;
 use crate::assembly::System;
+use crate::exact_beam::{ExactBeam, error_percent};
+use crate::format::{number, two_digits};
 use crate::scene::{Analysis, MethodKind, Place, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
-use crate::truth::{BeamTruth, error_percent};
-use crate::words::{number, two_digits};
 
 /// Origin of a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,7 +164,7 @@ impl Reference {
             return Err(StudyError::Unstable);
         }
         let near = near.filter(|near| *near.status() == Status::Converged && !near.is_linear());
-        let beam = BeamTruth::of(scene);
+        let beam = ExactBeam::of(scene);
         match (beam.and_then(|b| b.tip_displacement()), fine(scene, near, effort, observe)) {
             (Some(tip), Ok(fine)) => Ok(Self::confirmed(scene, beam, tip, fine)),
             (None, Ok(fine)) => Ok(Self::of_fine(scene, fine)),
@@ -191,7 +191,7 @@ impl Reference {
 
     /// Returns the exact beam's values for probes at its tip if a fine solution confirms them, the fine solution for
     /// all others.
-    fn confirmed(scene: &Scene, beam: Option<BeamTruth>, tip: Vector2<f64>, fine: Fine) -> Self {
+    fn confirmed(scene: &Scene, beam: Option<ExactBeam>, tip: Vector2<f64>, fine: Fine) -> Self {
         let own: Vec<Option<f64>> = fine.errors.clone();
         let ends = fine.probes.clone();
         let mut reference = Self::of_fine(scene, fine);
@@ -219,7 +219,7 @@ impl Reference {
 
     /// Returns the exact beam for a body too slender for any mesh: the assumption of plane sections has an error of the
     /// order of height over length. `None` if this ratio is not small, or a probe is not at the tip.
-    fn of_slender(scene: &Scene, beam: Option<BeamTruth>, tip: Vector2<f64>) -> Option<Self> {
+    fn of_slender(scene: &Scene, beam: Option<ExactBeam>, tip: Vector2<f64>) -> Option<Self> {
         /// Largest height over length for which the beam's own error is known.
         const STUBBY: f64 = 0.02;
         let rectangle = scene.beam.as_ref()?;

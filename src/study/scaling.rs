@@ -91,7 +91,7 @@ impl Scaling {
         // Small meshes of all elements first: memory kept by the allocator is then no more than the next mesh needs.
         for (&unknowns, element) in unknowns.iter().flat_map(|n| ElementKind::all().map(move |e| (n, e))) {
             let cells = cells(element, beam.length / beam.height, unknowns);
-            let now = super::trade::mesh_words(element, Some(cells));
+            let now = super::trade::mesh_text(element, Some(cells));
             if observe(Progress { fraction: done / all, now: &now }).is_break() {
                 study.is_partial = true;
                 break;

@@ -16,11 +16,11 @@ use super::progress::{Extent, Observer, Progress, StudyError, all_done, check};
 use super::reference::{ProbeReference, Reference, end, first_probe, system_of};
 use super::timing::{expected_time, times_from_rest};
 use crate::assembly::System;
+use crate::format::count;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
-use crate::words::count;
 
 /// Parameters varied in the study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,16 +59,16 @@ impl Setting {
 
 impl std::fmt::Display for Setting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mesh = mesh_words(self.element, self.cells);
+        let mesh = mesh_text(self.element, self.cells);
         write!(f, "{mesh}, {}, {}", self.method.id(), count(self.iterations, "iteration"))
     }
 }
 
-pub(super) fn mesh_words(element: ElementKind, cells: Option<[u32; 2]>) -> String {
-    format!("{} {}", element.id(), cells_words(cells))
+pub(super) fn mesh_text(element: ElementKind, cells: Option<[u32; 2]>) -> String {
+    format!("{} {}", element.id(), cells_text(cells))
 }
 
-pub(super) fn cells_words(cells: Option<[u32; 2]>) -> String {
+pub(super) fn cells_text(cells: Option<[u32; 2]>) -> String {
     cells.map_or_else(|| "as meshed".to_owned(), |[along, across]| format!("{along}×{across}"))
 }
 
@@ -249,13 +249,13 @@ impl Study {
         say: &mut dyn FnMut(f64, &str) -> Result<(), StudyError>,
     ) -> Result<(), StudyError> {
         let MeshChoice { element, cells, .. } = *mesh;
-        let words = mesh_words(element, cells);
+        let text = mesh_text(element, cells);
         let reference = self.against;
         let percent = |a, b| reference.percent(a, b);
         let MeshEnds { system, exact, linear, .. } = ends;
         let mut measurements = Vec::new();
         for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
-            say(number as f64 / METHODS.len() as f64, &format!("{words}, {}", method.id()))?;
+            say(number as f64 / METHODS.len() as f64, &format!("{text}, {}", method.id()))?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` decides itself how many iterations it needs.
             let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };

@@ -147,14 +147,14 @@ impl std::fmt::Display for Tuning {
             (false, _, true) => "the closest within the time",
             (false, _, false) => "the fastest of all",
         };
-        let words = if *met {
+        let text = if *met {
             format!("{meeting} of {measured} settings measured here meet {demand}; {which}")
         } else {
             format!("none of {measured} settings measured here meets {demand}; {which}")
         };
         let (e, own) = (&chosen.error, study.against.own_error_percent);
         writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference)?;
-        writeln!(f, "{words}:")?;
+        writeln!(f, "{text}:")?;
         writeln!(
             f,
             "  {}: {:.4} ms, error at most {:.4} %",

@@ -118,7 +118,7 @@ fn the_ledger_closes(entry: Entry) {
     for (what, booked) in [
         ("dissipated", ledger.dissipated),
         ("pulses", ledger.pulses.abs()),
-        ("hands", ledger.hands.abs()),
+        ("hands", ledger.mouse_spring.abs()),
         ("edits", ledger.edits.abs()),
     ] {
         assert!(booked > 1e-3, "{what} {booked}");

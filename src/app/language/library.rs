@@ -40,9 +40,9 @@ const SENTENCES: &[&str] = &[
     "no thread for the solve: %{error}",
     "no thread for the study: %{error}",
     // Axes of a load path.
-    "turn of support %{place}",
-    "way of support (%{x}, %{y})",
-    "way of support %{place}",
+    "rotation of support %{place}",
+    "displacement of support (%{x}, %{y})",
+    "displacement of support %{place}",
     "first %{load}, the others in proportion",
     "u_x of %{probe}",
     "u_y of %{probe}",
@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::app::language::{CHINESE, Language, speak};
     use crate::dynamics::{StepError, StopReason};
-    use crate::method::{Decision, IterationError, Reason, floor_words, rho_words};
+    use crate::method::{Decision, IterationError, Reason, floor_text, rho_text};
     use crate::scene::limits::{CELLS, FORCE};
     use crate::scene::{self, Source, units};
     use crate::study::{Jump, LoadPath, Reference, Setting, path_chart};
@@ -168,8 +168,8 @@ mod tests {
             let error = scene::Scene::from_toml(toml).unwrap_err().to_string();
             texts.push(error.split_once(": ").unwrap().1.to_owned());
         }
-        texts.push(floor_words(3e-8, 1e-8));
-        texts.extend([0.5, 2.0, 1e4].map(rho_words));
+        texts.push(floor_text(3e-8, 1e-8));
+        texts.extend([0.5, 2.0, 1e4].map(rho_text));
         texts.extend(["0,5", "3 qq", "3 kg", "?"].map(|text| units::parse(text, "N").unwrap_err().to_string()));
         for id in ["article", "cantilever", "cook", "bracket"] {
             texts.push(Reference::of(&open(id)).unwrap().to_string());

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use egui::RichText;
 
-use crate::words;
+use crate::format;
 
 mod library;
 
@@ -95,18 +95,18 @@ pub(super) fn filled(english: &str, names: &[&str], values: &[String]) -> String
     text
 }
 
-/// Formats a number of things: translation of [`words::count`].
+/// Formats a number of things: translation of [`format::count`].
 pub(super) fn count(n: impl Into<u64>, what: &str) -> String {
     let n = n.into();
     match CURRENT.get() {
-        Language::English => words::count(n, what),
+        Language::English => format::count(n, what),
         Language::Chinese => filled(&format!("%{{n}} {what}"), &["n"], &[n.to_string()]),
     }
 }
 
-/// Formats a percentage: translation of [`words::percent`].
+/// Formats a percentage: translation of [`format::percent`].
 pub(super) fn percent(value: f64) -> String {
-    tr(&words::percent(value)).to_owned()
+    tr(&format::percent(value)).to_owned()
 }
 
 /// Increases the line spacing of a text of this size, points, in Chinese, whose characters fill the line.

@@ -23,16 +23,16 @@ pub(crate) enum RecorderError {
 }
 
 /// Progress report: the fraction done, and the current phase.
-type Said = (f32, String);
+type Progress = (f32, String);
 
 /// Recording in a background thread. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct Recorder {
-    task: Task<Said, String>,
+    task: Task<Progress, String>,
     /// Fraction that is done, 0 to 1.
     fraction: f32,
     /// Description of the current phase.
-    words: String,
+    text: String,
 }
 
 impl Recorder {
@@ -48,13 +48,13 @@ impl Recorder {
     ) -> Result<Self, RecorderError> {
         let path = free_name("gif")?;
         let task = Task::start("record", move |reporter| work(&source, scene, (theme, language), &path, reporter))?;
-        Ok(Self { task, fraction: 0.0, words: String::new() })
+        Ok(Self { task, fraction: 0.0, text: String::new() })
     }
 
     /// Returns the text that shows the progress.
     pub(crate) fn progress(&self) -> String {
         let percent = format!("{:.0}", 100.0 * self.fraction);
-        fill!("%{doing}: %{percent} % (Shift+V stops it)", doing = self.words, percent = percent)
+        fill!("%{doing}: %{percent} % (Shift+V stops it)", doing = self.text, percent = percent)
     }
 
     /// Ends the recording with the frames drawn so far.
@@ -63,11 +63,11 @@ impl Recorder {
     }
 
     /// Polls the thread; returns the final message once it has ended.
-    pub(crate) fn listen(&mut self) -> Option<String> {
+    pub(crate) fn poll(&mut self) -> Option<String> {
         loop {
             match self.task.poll() {
-                Update::Progress(said) => (self.fraction, self.words) = said,
-                Update::Done(words) => return Some(words),
+                Update::Progress(said) => (self.fraction, self.text) = said,
+                Update::Done(text) => return Some(text),
                 Update::None => return None,
                 Update::Died => return Some(tr("The recording ended unexpectedly").to_owned()),
             }
@@ -80,15 +80,15 @@ fn work(
     scene: Scene,
     (theme, language): (ThemeChoice, Language),
     path: &Path,
-    reporter: &Reporter<Said, String>,
+    reporter: &Reporter<Progress, String>,
 ) -> String {
     language::speak(language);
     let mut observe = |progress: RecordProgress| {
-        let words = match progress.phase {
+        let text = match progress.phase {
             Phase::Looking => tr("Looking ahead").to_owned(),
             Phase::Drawing => fill!("Recording %{file}", file = path.display()),
         };
-        reporter.report((progress.fraction as f32, words))
+        reporter.report((progress.fraction as f32, text))
     };
     let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, overwrite: true, theme, language };
     match record(source, scene, &options, path, &mut observe) {

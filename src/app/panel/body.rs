@@ -9,8 +9,8 @@ use crate::app::panel::{Action, NumberRow, PanelState, number_rows};
 use crate::app::readout::Readout;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
+use crate::format::{engineering, number, three_digits};
 use crate::scene::{Analysis, Beam, Material, Plane, Scene, limits};
-use crate::words::{engineering, number, three_digits};
 
 /// Named material.
 struct Preset {
@@ -145,7 +145,7 @@ pub(super) fn size(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
             scale: SliderScale::Logarithmic(original / SPAN),
             whole: false,
         };
-        let Some(new) = field.show_beside(ui, &mut state.messages, present, Some(original)) else { continue };
+        let Some(new) = field.show_with_original(ui, &mut state.messages, present, Some(original)) else { continue };
         let mut scene = Box::new(input.scene.clone());
         let (length, height) = if axis == 0 { (new, beam.height) } else { (beam.length, new) };
         scene.resize_beam(length, height);
@@ -219,7 +219,7 @@ pub(super) fn mesh(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
         };
         let Some(beam) = &scene.beam else { continue };
         let original = input.original.beam.as_ref().map(|beam| f64::from(beam.cells[axis]));
-        if let Some(new) = field.show_beside(ui, &mut state.messages, f64::from(beam.cells[axis]), original) {
+        if let Some(new) = field.show_with_original(ui, &mut state.messages, f64::from(beam.cells[axis]), original) {
             let mut scene = Box::new(scene.clone());
             if let Some(beam) = &mut scene.beam {
                 beam.cells[axis] = new as u32;

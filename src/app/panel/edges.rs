@@ -11,8 +11,8 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::show_message;
 use crate::assembly::{Edge, System};
+use crate::format::number;
 use crate::scene::{Axis, Load, Place, Scene, Support};
-use crate::words::number;
 
 /// Edges that are tried first for a new load.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];
@@ -23,7 +23,7 @@ fn is_free(system: &System, edge: &Edge) -> bool {
 }
 
 /// Returns `true` if the edge can carry a moment and rotate under it.
-fn can_turn(system: &System, edge: &Edge) -> bool {
+fn can_carry_moment(system: &System, edge: &Edge) -> bool {
     edge.is_straight() && is_free(system, edge)
 }
 
@@ -47,7 +47,7 @@ pub(super) fn edge_for_force(scene: &Scene, system: &System) -> Option<String> {
 
 /// Returns the edge for the first moment; `None` if no edge is straight and can rotate.
 pub(super) fn edge_for_moment(scene: &Scene, system: &System) -> Option<String> {
-    edge_for(scene, system, can_turn)
+    edge_for(scene, system, can_carry_moment)
 }
 
 /// Common points of loads and supports on a beam: the name of each, and its coordinates along and across the beam.
@@ -69,7 +69,7 @@ fn points(scene: &Scene) -> impl Iterator<Item = (&'static str, Place)> {
 }
 
 /// Returns the description of a place.
-pub(super) fn words(scene: &Scene, place: &Place) -> String {
+pub(super) fn text(scene: &Scene, place: &Place) -> String {
     match place {
         Place::Edge(name) => tr(name).to_owned(),
         Place::At([x, y]) => match points(scene).find(|(_, point)| point == place) {
@@ -114,10 +114,10 @@ fn row(
                 change = Some(Change::Remove);
             }
             more(ui);
-            let picker = ComboBox::from_id_salt((label, id)).selected_text(words(scene, present));
+            let picker = ComboBox::from_id_salt((label, id)).selected_text(text(scene, present));
             let combo = picker.width(ui.available_width()).truncate().show_ui(ui, |ui| {
                 for (_, place) in places {
-                    let entry = ui.selectable_label(*present == place, words(scene, &place));
+                    let entry = ui.selectable_label(*present == place, text(scene, &place));
                     if let (true, Place::Edge(name)) = (entry.hovered() || entry.has_focus(), &place) {
                         view.edge = Some(name.clone());
                     }
@@ -159,7 +159,7 @@ pub(super) fn show(
         let Some(present) = place_of(load) else { continue };
         let remove = fill!("Remove load %{n}", n = i + 1);
         let change = if load.is_moment() {
-            row(ui, ("Moment on", i, &remove), (scene, &present), edges(can_turn), view, |_| {})
+            row(ui, ("Moment on", i, &remove), (scene, &present), edges(can_carry_moment), view, |_| {})
         } else {
             row(ui, ("Force on", i, &remove), (scene, &present), edges(is_free).chain(points(scene)), view, |_| {})
         };
@@ -168,7 +168,7 @@ pub(super) fn show(
         match (change, &mut scene.loads[i]) {
             (Change::Remove, _) => {
                 scene.loads.remove(i);
-                state.forget_force(i);
+                state.discard_force(i);
             }
             (Change::Move(to), Load::Force { place, .. }) => *place = to,
             (Change::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
@@ -185,7 +185,8 @@ pub(super) fn show(
             // The layout runs from right to left.
             for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
                 let is_fixed = fix.contains(&axis);
-                let tip = fill!("It holds the body along %{axis}: a clamp holds both ways, a roller one", axis = word);
+                let tip =
+                    fill!("It fixes the body along %{axis}: a clamp fixes both directions, a roller one", axis = word);
                 let button = option_button(is_fixed, word).min_size(vec2(22.0, 0.0));
                 if ui.add(button).on_hover_text(tip).clicked() {
                     match is_fixed {
@@ -238,7 +239,11 @@ type Addition = (&'static str, &'static str, fn(&Readout<'_>) -> Box<Scene>);
 const ADDITIONS: [Addition; 3] = [
     ("Force", "Another force, down, at a place without one", with_another_force),
     ("Moment", "Another moment, on an edge without one", with_another_moment),
-    ("Support", "Another support, at a place without one; x and y say which way it holds", with_another_support),
+    (
+        "Support",
+        "Another support, at a place without one; x and y select the directions that it fixes",
+        with_another_support,
+    ),
 ];
 
 /// Returns the places that can carry a load: free edges, then points of the beam.
@@ -263,7 +268,7 @@ fn with_another_moment(input: &Readout<'_>) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let system = input.simulation.system();
     let is_taken = |name: &str| scene.loads.iter().any(|l| matches!(l, Load::Moment { edge, .. } if edge == name));
-    let mut edges = system.edges().iter().filter(|edge| can_turn(system, edge)).map(Edge::name);
+    let mut edges = system.edges().iter().filter(|edge| can_carry_moment(system, edge)).map(Edge::name);
     let first = edge_for_moment(&scene, system).filter(|name| !is_taken(name));
     if let Some(edge) = first.or_else(|| edges.find(|name| !is_taken(name)).map(str::to_owned)) {
         let [usual, _] = moment_range(OpeningLoads::of(input.original), &scene.material, system);

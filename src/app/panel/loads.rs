@@ -9,8 +9,8 @@ use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::format::engineering;
 use crate::scene::{Load, Place, Scene, limits};
-use crate::words::engineering;
 
 /// Gravitational acceleration on earth, m/s².
 const EARTH: f64 = 9.81;
@@ -71,7 +71,7 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
         scale: SliderScale::Around(usual),
         whole: false,
     };
-    if let Some(new) = field.show_beside(ui, &mut state.messages, magnitude, Some(original)) {
+    if let Some(new) = field.show_with_original(ui, &mut state.messages, magnitude, Some(original)) {
         state.keep_force_direction(direction);
         actions.push(Action::Edit("Force", with_force(input, state, vector(new, direction))));
     }
@@ -84,7 +84,7 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
         whole: false,
     };
     let original = original_direction.map(shown_degrees);
-    if let Some(new) = field.show_beside(ui, &mut state.messages, shown_degrees(direction), original) {
+    if let Some(new) = field.show_with_original(ui, &mut state.messages, shown_degrees(direction), original) {
         state.keep_force_direction(new);
         actions.push(Action::Edit("Direction", with_force(input, state, vector(magnitude, new))));
     }
@@ -105,7 +105,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut P
         scale: SliderScale::Around(usual),
         whole: false,
     };
-    if let Some(new) = field.show_beside(ui, &mut state.messages, magnitude, Some(original)) {
+    if let Some(new) = field.show_with_original(ui, &mut state.messages, magnitude, Some(original)) {
         state.gravity_direction = Some(direction);
         actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
     }
@@ -121,7 +121,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut P
         whole: false,
     };
     let original = moment_of(input.original).unwrap_or(0.0);
-    if let Some(new) = field.show_beside(ui, &mut state.messages, current.unwrap_or(0.0), Some(original)) {
+    if let Some(new) = field.show_with_original(ui, &mut state.messages, current.unwrap_or(0.0), Some(original)) {
         let mut scene = Box::new(input.scene.clone());
         let first = scene.loads.iter_mut().find_map(|l| match l {
             Load::Moment { moment, .. } => Some(moment),
@@ -166,7 +166,7 @@ fn choose(ui: &mut Ui, scene: &Scene, state: &mut PanelState) {
     let Some((present, _)) = chosen_force(scene, state).filter(|_| forces(scene).count() > 1) else { return };
     let name = |i: usize, place: &Place| {
         let number = forces(scene).position(|(j, ..)| j == i).unwrap_or(0) + 1;
-        fill!("Force %{number}: %{place}", number = number, place = edges::words(scene, place))
+        fill!("Force %{number}: %{place}", number = number, place = edges::text(scene, place))
     };
     let place = forces(scene).find(|(i, ..)| *i == present).map(|(_, place, _)| place);
     ui.horizontal(|ui| {

@@ -52,7 +52,7 @@ impl PanelState {
     }
 
     /// Updates the chosen force after the removal of a load: the same force stays chosen if it still exists.
-    fn forget_force(&mut self, load: usize) {
+    fn discard_force(&mut self, load: usize) {
         self.force =
             self.force.filter(|force| *force != load).map(|force| if force > load { force - 1 } else { force });
     }
@@ -148,8 +148,8 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
         let at = egui::pos2(rect.right() - galley.size().x, rect.center().y - 0.5 * galley.size().y);
         ui.painter().galley(at, galley, palette.secondary);
     }
-    let words = format!("{name}: {summary}");
-    response.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, &words));
+    let text = format!("{name}: {summary}");
+    response.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, &text));
     response.on_hover_cursor(egui::CursorIcon::PointingHand);
     state.show_body_unindented(ui, |ui| {
         contents(ui);
@@ -174,7 +174,7 @@ fn number_rows(
 ) {
     for NumberRow { field, get, set } in rows {
         let original = Some(get(input.original));
-        if let Some(new) = field.show_beside(ui, &mut state.messages, get(input.scene), original) {
+        if let Some(new) = field.show_with_original(ui, &mut state.messages, get(input.scene), original) {
             let mut scene = Box::new(input.scene.clone());
             set(&mut scene, new);
             actions.push(Action::Edit(field.label, scene));

@@ -10,8 +10,8 @@ use crate::app::session::clock::{fraction, speed_of_period};
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
 use crate::dynamics::INTEGRATORS;
+use crate::format::{engineering, three_digits};
 use crate::scene::limits;
-use crate::words::{engineering, three_digits};
 
 /// Selectable speeds with their labels.
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
@@ -80,7 +80,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.label(tr("Speed"));
         let mut button = |speed: f64, word: &str, tip: &str| {
-            let chosen = (input.playback.pace.speed() - speed).abs() < 1e-9;
+            let chosen = (input.playback.clock.speed() - speed).abs() < 1e-9;
             if ui.add(option_button(chosen, word)).on_hover_text(tip).clicked() {
                 actions.push(Action::Speed(speed));
             }
@@ -122,7 +122,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
     });
     number_rows(ui, input, state, actions, TIME);
     if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {
-        let words = fill!("The longest stable step about rest is %{step}.", step = engineering(critical, "s"));
+        let text = fill!("The longest stable step about rest is %{step}.", step = engineering(critical, "s"));
         if settings.time_step > critical {
             let set = |step: f64| {
                 let mut scene = Box::new(input.scene.clone());
@@ -130,13 +130,13 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
                 Action::Edit("Time step", scene)
             };
             ui.horizontal_wrapped(|ui| {
-                ui.colored_label(ui.visuals().error_fg_color, words);
+                ui.colored_label(ui.visuals().error_fg_color, text);
                 if ui.button(tr("Use 0.9 of it")).clicked() {
                     actions.push(set(three_digits(0.9 * critical)));
                 }
             });
         } else {
-            ui.small(words);
+            ui.small(text);
         }
     }
 }

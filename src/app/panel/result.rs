@@ -2,17 +2,17 @@
 
 use egui::{Grid, RichText, Ui};
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, rho, stability, truth_words};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, reference_text, rho, stability};
 use crate::app::language::{count, fill, joined, percent, sentence, tr, translated};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
 use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
-use crate::method::rho_words;
+use crate::format::{engineering, engineering_pair, three_digits};
+use crate::method::rho_text;
 use crate::simulation::{Motion, Simulation, Status, energy};
 use crate::study::Reference;
-use crate::words::{engineering, engineering_pair, three_digits};
 
 /// Width of the names of the rows, points.
 const NAME_WIDTH: f32 = 84.0;
@@ -59,26 +59,30 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
         "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
     );
     probe_row(row, simulation);
-    let words = errors.own.zip(input.reference.and_then(Reference::first)).map_or_else(
+    let text = errors.own.zip(input.reference.and_then(Reference::first)).map_or_else(
         || UNKNOWN.to_owned(),
-        |(error, truth)| {
-            let whole = engineering(truth.displacement.norm(), "m");
+        |(error, reference)| {
+            let whole = engineering(reference.displacement.norm(), "m");
             fill!("%{error} of %{whole}", error = percent(error), whole = whole)
         },
     );
-    let truth = truth_words(input.reference);
-    row("Error", words, &fill!("Distance of the first probe from %{truth}, over its displacement", truth = truth));
+    let reference = reference_text(input.reference);
+    row(
+        "Error",
+        text,
+        &fill!("Distance of the first probe from %{reference}, over its displacement", reference = reference),
+    );
     quality_rows(row, input);
     let (factor, steps) = simulation.load_stepping();
     let part = format!("{:.3} %", 100.0 * factor);
-    let words = fill!("%{n}, at %{part} of the load", n = steps, part = part);
-    row("Load steps", words, "Parts in which the load is put on");
+    let text = fill!("%{n}, at %{part} of the load", n = steps, part = part);
+    row("Load steps", text, "Parts in which the load is put on");
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
     row("Equilibrium", tr(word).to_owned(), "Certified: whether the exact tangent A + G is positive definite");
-    let words = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&translated(&rho_words(rho))));
+    let text = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&translated(&rho_text(rho))));
     let tip =
         "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended";
-    row("ρ", words, tip);
+    row("ρ", text, tip);
     // The energy is a sum over all elements, which is too expensive for every frame of a motion.
     if simulation.is_at_rest() {
         let (problem, state) = (simulation.problem(), simulation.state());
@@ -116,19 +120,19 @@ fn quality_rows(row: &mut Row<'_>, input: &Readout<'_>) {
     let known = *input.simulation.status() == Status::Converged;
     let quality = input.quality;
     let error = quality.mesh_error_percent.filter(|_| known);
-    let words = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
+    let text = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
     let tip = "Of the mesh alone, in the energy norm: the elements' stresses against those recovered at the nodes";
-    row("Mesh error", words, tip);
+    row("Mesh error", text, tip);
     let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
     let warning = quality.warning().filter(|_| known);
-    let words = match (known, &warning) {
+    let text = match (known, &warning) {
         (false, _) => UNKNOWN.to_owned(),
         (true, None) => strain,
         (true, Some(_)) => fill!("%{strain}: too large", strain = strain),
     };
     let tip = tr("The largest principal strain");
-    let tip = warning.map_or_else(|| tip.to_owned(), |words| format!("{tip}; {}", translated(&words)));
-    row("Strain", words, &tip);
+    let tip = warning.map_or_else(|| tip.to_owned(), |text| format!("{tip}; {}", translated(&text)));
+    row("Strain", text, &tip);
 }
 
 fn frame_row(row: &mut Row<'_>, input: &Readout<'_>, what: &str) {
@@ -139,9 +143,9 @@ fn frame_row(row: &mut Row<'_>, input: &Readout<'_>, what: &str) {
 /// Shows time, real-time factor, steps and energy of a motion.
 fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
-    let pace = &input.playback.pace;
-    let factor = match pace.factor() {
-        Some(factor) if pace.lags() => fill!("%{factor} of real time: too slow", factor = fraction(factor)),
+    let clock = &input.playback.clock;
+    let factor = match clock.factor() {
+        Some(factor) if clock.lags() => fill!("%{factor} of real time: too slow", factor = fraction(factor)),
         Some(factor) => fill!("%{factor} of real time", factor = fraction(factor)),
         None => UNKNOWN.to_owned(),
     };
@@ -170,7 +174,7 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
     row("Drift", percent(100.0 * ledger.drift_of_input()), DRIFT_TIP);
-    if let Some((_, force)) = input.simulation.hand() {
+    if let Some((_, force)) = input.simulation.mouse_spring() {
         row("Hand", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }
 }

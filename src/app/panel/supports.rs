@@ -6,10 +6,10 @@ use crate::app::language::{fill, joined, tr};
 use crate::app::panel::{Action, PanelState};
 use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::format::{editable, engineering, engineering_pair};
 use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
 use crate::simulation::Simulation;
-use crate::words::{editable, engineering, engineering_pair};
 
 /// Returns the index of the support that the sliders move; `None` for a motion, or if no support of this scene has been
 /// moved.
@@ -31,8 +31,12 @@ pub(super) fn chosen(ui: &Ui, input: &Readout<'_>) -> Option<usize> {
 /// Returns a summary of a support's prescribed displacement and rotation.
 pub(super) fn summary(scene: &Scene, number: usize) -> String {
     scene.supports.get(number).map_or_else(String::new, |support| {
-        let way = engineering_pair(support.displacement, "m");
-        if support.turn == 0.0 { way } else { joined([way, editable(support.turn.to_degrees(), "°")]) }
+        let displacement = engineering_pair(support.displacement, "m");
+        if support.turn == 0.0 {
+            displacement
+        } else {
+            joined([displacement, editable(support.turn.to_degrees(), "°")])
+        }
     })
 }
 
@@ -80,7 +84,8 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut 
             whole: false,
         };
         let original = original.map(|support| support.displacement[component]);
-        if let Some(new) = field.show_beside(ui, &mut state.messages, support.displacement[component], original) {
+        if let Some(new) = field.show_with_original(ui, &mut state.messages, support.displacement[component], original)
+        {
             let edit = |support: &mut Support| support.displacement[component] = new;
             actions.push(Action::Edit(label, edited(scene, number, edit)));
         }
@@ -89,13 +94,13 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut 
         let field = NumberField {
             label: "Turn",
             tooltip: "How far the support turns its edge about its middle, counter-clockwise: in degrees, or 0.5 rad.",
-            limit: Limit { unit: "°", min: limits::TURN.min.to_degrees(), max: limits::TURN.max.to_degrees() },
+            limit: Limit { unit: "°", min: limits::ROTATION.min.to_degrees(), max: limits::ROTATION.max.to_degrees() },
             slider: -180.0..=180.0,
             scale: SliderScale::Linear,
             whole: false,
         };
         let original = original.map(|support| support.turn.to_degrees());
-        if let Some(new) = field.show_beside(ui, &mut state.messages, support.turn.to_degrees(), original) {
+        if let Some(new) = field.show_with_original(ui, &mut state.messages, support.turn.to_degrees(), original) {
             actions.push(Action::Edit("Turn", edited(scene, number, |support| support.turn = new.to_radians())));
         }
     }

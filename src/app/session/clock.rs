@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::words::two_digits;
+use crate::format::two_digits;
 
 /// Displayed frames per second for which the costs of motions are stated.
 pub(crate) const FRAMES: f64 = 60.0;
@@ -143,13 +143,13 @@ mod tests {
 
     /// Returns the number of steps made in four seconds of frames of length `frame`, s.
     fn steps(frame: f64, speed: f64) -> u32 {
-        let mut pace = RealTimeClock::default();
-        pace.set_speed(speed);
+        let mut clock = RealTimeClock::default();
+        clock.set_speed(speed);
         let frames = (4.0 / frame).round() as u32;
         let mut all = 0;
         for i in 0..=frames {
-            let due = pace.begin(f64::from(i) * frame, 1.0 / 60.0);
-            pace.end(due, due, 1.0 / 60.0);
+            let due = clock.begin(f64::from(i) * frame, 1.0 / 60.0);
+            clock.end(due, due, 1.0 / 60.0);
             all += due;
         }
         all
@@ -167,25 +167,25 @@ mod tests {
 
     #[test]
     fn a_machine_that_cannot_keep_up_slows_the_motion_and_says_so() {
-        let mut pace = RealTimeClock::default();
+        let mut clock = RealTimeClock::default();
         let mut made = 0;
         for i in 0..60 {
-            let due = pace.begin(f64::from(i) * 0.05, 0.01);
+            let due = clock.begin(f64::from(i) * 0.05, 0.01);
             assert!(due <= 11, "the debt grows: {due} steps are due");
             let able = due.min(2);
-            pace.end(due, able, 0.01);
+            clock.end(due, able, 0.01);
             made += able;
         }
         assert!(made < 125);
-        assert!(pace.lags() && pace.factor().is_some_and(|f| (0.3..0.5).contains(&f)), "{pace:?}");
+        assert!(clock.lags() && clock.factor().is_some_and(|f| (0.3..0.5).contains(&f)), "{clock:?}");
     }
 
     #[test]
     fn a_frame_after_a_long_absence_makes_up_for_little() {
-        let mut pace = RealTimeClock::default();
-        let due = pace.begin(0.0, 0.01);
-        pace.end(due, due, 0.01);
-        assert!(pace.begin(3600.0, 0.01) <= 10);
+        let mut clock = RealTimeClock::default();
+        let due = clock.begin(0.0, 0.01);
+        clock.end(due, due, 0.01);
+        assert!(clock.begin(3600.0, 0.01) <= 10);
     }
     #[test]
     fn what_vibrates_fast_is_shown_a_period_a_second() {

@@ -95,7 +95,7 @@ fn written(path: &Path) -> Option<SystemTime> {
 /// # Errors
 /// Error of the operating system; the previous content is unchanged.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    write_beside(path, bytes, true)
+    replace_file(path, bytes, true)
 }
 
 /// Writes a file as [`write_whole`] does, but without waiting for the disk: the file survives a crash of the program,
@@ -104,19 +104,19 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 /// # Errors
 /// Error of the operating system; the previous content is unchanged.
 pub(crate) fn write_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    write_beside(path, bytes, false)
+    replace_file(path, bytes, false)
 }
 
-fn write_beside(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
+fn replace_file(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
     // A symbolic link stays; the file that it points to is written.
     let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let name = path.file_name().ok_or(std::io::ErrorKind::InvalidInput)?;
-    let mut beside = std::ffi::OsString::from(".");
-    beside.push(name);
-    beside.push(format!(".{}.part", std::process::id()));
-    let beside = path.with_file_name(beside);
+    let mut temporary = std::ffi::OsString::from(".");
+    temporary.push(name);
+    temporary.push(format!(".{}.part", std::process::id()));
+    let temporary = path.with_file_name(temporary);
     let write = || {
-        let mut file = std::fs::File::create(&beside)?;
+        let mut file = std::fs::File::create(&temporary)?;
         file.write_all(bytes)?;
         if syncs {
             file.sync_all()?;
@@ -125,9 +125,9 @@ fn write_beside(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
             file.set_permissions(before.permissions())?;
         }
         drop(file);
-        std::fs::rename(&beside, &path)
+        std::fs::rename(&temporary, &path)
     };
-    write().inspect_err(|_| drop(std::fs::remove_file(&beside)))
+    write().inspect_err(|_| drop(std::fs::remove_file(&temporary)))
 }
 
 #[cfg(test)]

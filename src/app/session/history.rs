@@ -40,7 +40,7 @@ impl History {
     }
 
     /// Removes the samples after `time`, s.
-    pub(crate) fn forget_after(&mut self, time: f64) {
+    pub(crate) fn truncate_after(&mut self, time: f64) {
         self.samples.truncate(self.samples.partition_point(|sample| sample.time <= time));
     }
 

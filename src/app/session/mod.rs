@@ -472,7 +472,7 @@ impl Session {
 
     /// Stops the clock of a motion until the next [`Self::advance`].
     pub(crate) fn rest(&mut self) {
-        self.playback.pace.rest();
+        self.playback.clock.rest();
     }
 
     /// Makes this number of iterations, or one time step of a motion.
@@ -581,7 +581,7 @@ impl Session {
             self.playback.grab(point);
         }
         if let Some(target) = grab.target
-            && self.simulation.hand().is_some_and(|(hand, _)| hand.target() != target)
+            && self.simulation.mouse_spring().is_some_and(|(spring, _)| spring.target() != target)
         {
             // Pulling fails only for a position that is not finite; the pointer's is.
             let _ = self.simulation.pull_to(target);
@@ -622,7 +622,7 @@ impl Session {
 
     /// Sets the speed of a motion, simulated seconds per second.
     pub(crate) fn set_speed(&mut self, speed: f64) {
-        self.playback.pace.set_speed(speed);
+        self.playback.clock.set_speed(speed);
     }
 
     /// Adds the same motion under another integrator, or removes it.

@@ -50,7 +50,7 @@ impl Past {
     }
 
     /// Removes the moments after `time`, s.
-    pub(crate) fn forget_after(&mut self, time: f64) {
+    pub(crate) fn truncate_after(&mut self, time: f64) {
         self.moments.truncate(self.moments.partition_point(|moment| moment.state().time() <= time));
     }
 
@@ -126,7 +126,7 @@ mod tests {
         assert_eq!((past.neighbour(4.0, false), past.neighbour(4.0, true)), (Some(3.0), Some(5.0)));
         assert_eq!((past.neighbour(0.0, false), past.neighbour(9.0, true)), (None, None));
         assert!(past.at(4.0).is_some() && past.at(4.5).is_none());
-        past.forget_after(4.0);
+        past.truncate_after(4.0);
         assert_eq!(past.nearest(30.0), Some(4.0));
         past.clear();
         assert_eq!((past.nearest(1.0), past.bytes()), (None, 0));

@@ -29,7 +29,7 @@ pub(crate) struct Companion {
 /// Playback of a motion and its companions.
 #[derive(Debug, Default)]
 pub(crate) struct Playback {
-    pub pace: RealTimeClock,
+    pub clock: RealTimeClock,
     pub history: History,
     /// Recorded moments of the last seconds.
     past: Past,
@@ -51,14 +51,14 @@ impl Playback {
     /// Makes the time steps that are due at `now`, s.
     pub(crate) fn advance(&mut self, now: f64, simulation: &mut Simulation) {
         let step = simulation.scene().dynamics.time_step;
-        let mut steps = self.pace.begin_steps(now, step);
+        let mut steps = self.clock.begin_steps(now, step);
         while steps.next() {
             self.make_step(simulation);
             if simulation.is_at_rest() && !self.companions_move() {
                 break;
             }
         }
-        self.pace.end_steps(&steps, step);
+        self.clock.end_steps(&steps, step);
         if self.played - self.kept >= BETWEEN_MOMENTS {
             self.keep_moment(simulation);
         }
@@ -71,14 +71,14 @@ impl Playback {
     }
 
     fn make_step(&mut self, simulation: &mut Simulation) {
-        self.forget_future();
+        self.discard_future();
         if self.history.samples().is_empty() {
             self.history.record(simulation);
             self.keep_moment(simulation);
         }
         let before = simulation.state().time();
         simulation.step();
-        self.played += (simulation.state().time() - before) / self.pace.speed();
+        self.played += (simulation.state().time() - before) / self.clock.speed();
         self.history.record(simulation);
         for companion in &mut self.companions {
             companion.simulation.step();
@@ -160,17 +160,17 @@ impl Playback {
     }
 
     /// Removes the moments after the displayed one. Companions that had not been added at that moment start there.
-    fn forget_future(&mut self) {
+    fn discard_future(&mut self) {
         let shown = self.shown.take();
         let is_whole = self.companions.iter().all(|companion| !companion.is_absent);
         let latest = self.past.moments().back().map(|moment| moment.state().time()).filter(|_| !is_whole);
         let Some(time) = shown.or(latest) else { return };
-        self.past.forget_after(time);
-        self.history.forget_after(time);
+        self.past.truncate_after(time);
+        self.history.truncate_after(time);
         let here = self.past.at(time);
         for companion in &mut self.companions {
-            companion.past.forget_after(time);
-            companion.history.forget_after(time);
+            companion.past.truncate_after(time);
+            companion.history.truncate_after(time);
             if let Some(here) = here.filter(|_| companion.is_absent) {
                 // Cannot fail: the state belongs to the same body.
                 let _ = companion.simulation.restore(here.state());
@@ -179,7 +179,7 @@ impl Playback {
         }
     }
 
-    fn forget_past(&mut self) {
+    fn discard_past(&mut self) {
         self.past.clear();
         self.companions.iter_mut().for_each(|companion| companion.past.clear());
         (self.shown, self.kept) = (None, self.played);
@@ -211,7 +211,7 @@ impl Playback {
                 let _ = body.restore(here);
             }
         }
-        self.start_anew();
+        self.restart();
     }
 
     /// Marks the current state as the one that a reset returns to, or removes the mark.
@@ -224,24 +224,24 @@ impl Playback {
         self.here.is_some()
     }
 
-    fn start_anew(&mut self) {
+    fn restart(&mut self) {
         self.history.clear();
         self.companions.iter_mut().for_each(|c| {
             c.history.clear();
             c.is_absent = false;
         });
-        self.forget_past();
-        self.pace.rest();
+        self.discard_past();
+        self.clock.rest();
     }
 
     /// Adapts to a change of the scene; `is_another` is `true` if the body has changed. Recorded moments belong to the
     /// previous scene and are removed.
     pub(crate) fn follow(&mut self, scene: &Scene, is_another: bool) {
-        self.forget_future();
-        self.forget_past();
+        self.discard_future();
+        self.discard_past();
         if is_another {
             self.here = None;
-            self.start_anew();
+            self.restart();
         }
         let moves = scene.analysis == Analysis::Dynamic;
         self.companions.retain_mut(|c| {

@@ -90,7 +90,7 @@ pub struct Recovery {
     last: Option<Instant>,
     left: Option<Place>,
     /// `true` if the copy of the crashed window is no longer needed.
-    forgets_left: bool,
+    discards_left: bool,
 }
 
 /// Numbered file, locked during the lifetime of this value.
@@ -126,7 +126,7 @@ impl Recovery {
             let Some(place) = Place::lock(folder, number)? else { continue };
             if !place.file.exists() {
                 let (left, edits) = left.unzip();
-                return Ok((Self { place, written: None, last: None, left, forgets_left: false }, edits));
+                return Ok((Self { place, written: None, last: None, left, discards_left: false }, edits));
             }
             if left.is_none() {
                 match Unsaved::read(&place.file) {
@@ -159,7 +159,7 @@ impl Recovery {
             self.last = Some(Instant::now());
             self.written = edits.map(|(document, scene)| Unsaved { document: document.clone(), scene: scene.clone() });
         }
-        if self.forgets_left
+        if self.discards_left
             && let Some(place) = self.left.take()
         {
             remove(&place.file)?;
@@ -168,8 +168,8 @@ impl Recovery {
     }
 
     /// Lets the next [`Self::keep`] remove the copy left by a crashed window, once this window's own edits are written.
-    pub fn forget_left(&mut self) {
-        self.forgets_left = true;
+    pub fn discard_left(&mut self) {
+        self.discards_left = true;
     }
 }
 
@@ -216,7 +216,7 @@ mod tests {
         assert_eq!(left, Some(edits("article", -3.0)));
         let (_, left) = Recovery::open(&folder).unwrap();
         assert_eq!(left, None, "another window offers it");
-        next.forget_left();
+        next.discard_left();
         next.keep(edits("article", -3.0).parts()).unwrap();
         next.keep(None).unwrap();
         drop(next);

@@ -173,13 +173,13 @@ fn a_motion_steps_with_the_clock_and_is_grabbed_and_released() {
     let point = session.simulation().system().mesh().locate(Vector2::new(2.0, 0.25)).unwrap();
     let target = Vector2::new(2.0, 1.5);
     session.grab(Grab { start: Some(point), target: Some(target), release: false });
-    assert!(session.simulation().hand().is_some());
+    assert!(session.simulation().mouse_spring().is_some());
     let before = tip(&session);
     (0..40).for_each(|_| session.iterate(1));
     assert!(tip(&session) > before, "the pull lifts the tip");
-    assert_eq!(session.simulation().hand().map(|(hand, _)| hand.target()), Some(target));
+    assert_eq!(session.simulation().mouse_spring().map(|(spring, _)| spring.target()), Some(target));
     session.grab(Grab { release: true, ..Grab::default() });
-    assert!(session.simulation().hand().is_none());
+    assert!(session.simulation().mouse_spring().is_none());
     session.show_moment(0.05);
     let shown = session.simulation().state().time();
     assert!(!session.is_running() && (shown - 0.05).abs() < 0.02, "{shown} s");

@@ -269,7 +269,7 @@ impl Lab {
 
     /// Returns `true` while a displayed result of the scene is being computed in the background.
     #[must_use]
-    pub fn is_searching(&self) -> bool {
+    pub fn is_computing(&self) -> bool {
         let Desk { session, view, .. } = &self.desk;
         let facts = session.facts();
         let plots = match view.drawer {

@@ -121,12 +121,12 @@ impl Lab {
             Action::Reset => self.reset(),
             Action::Mark => {
                 let is_marked = self.desk.session.toggle_mark();
-                let words = if is_marked { "Reset goes to here" } else { "Reset goes to the start" };
-                self.say(ctx, tr(words).to_owned());
+                let text = if is_marked { "Reset goes to here" } else { "Reset goes to the start" };
+                self.say(ctx, tr(text).to_owned());
             }
             Action::Speed(speed) => {
                 self.desk.session.set_speed(speed);
-                self.desk.motions.pace.set_speed(speed);
+                self.desk.motions.clock.set_speed(speed);
             }
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
             Action::Iterations(iterations) => self.desk.session.set_iterations(iterations.clamp(1, MOST_ITERATIONS)),
@@ -157,11 +157,11 @@ impl Lab {
                 ctx.request_repaint();
             }
             Action::Export(figure, file) => {
-                let words = match figure::save(&figure, file) {
+                let text = match figure::save(&figure, file) {
                     Ok(path) => fill!("Saved %{file}", file = path.display()),
                     Err(reason) => fill!("Not saved: %{reason}", reason = translated(&reason.to_string())),
                 };
-                self.say(ctx, words);
+                self.say(ctx, text);
                 ctx.request_repaint();
             }
             Action::Screenshot => requests.push(Request::Screenshot),

@@ -38,7 +38,7 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .show(ctx, |ui| {
             egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
                 for shortcut in SHORTCUTS {
-                    ui.strong(shortcut.words());
+                    ui.strong(shortcut.text());
                     ui.label(tr(shortcut.does));
                     ui.end_row();
                 }

@@ -26,7 +26,7 @@ pub enum Request {
     /// Close the window.
     Close,
     /// Remove the copy of unsaved edits left by a crashed window.
-    ForgetCopy,
+    DiscardCopy,
     /// Record the window, or end the recording.
     Record,
     /// Record the scene from its start, or end that recording.

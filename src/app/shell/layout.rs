@@ -37,7 +37,7 @@ impl Lab {
         self.desk.session.follow_press(press(ui.ctx()));
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
-        self.desk.budget.listen(ui.ctx());
+        self.desk.budget.poll(ui.ctx());
         self.continue_intro(ui.ctx());
         self.show_notices(ui.ctx());
         self.desk.view.narrow = ui.available_width() < NARROW;
@@ -227,7 +227,7 @@ impl Lab {
             common: Desk::pane_input(session, view, panel, viewport.eases()),
             shown: session.simulation().scene(),
             system: session.simulation().system(),
-            truth: session.facts().reference.get(),
+            reference: session.facts().reference.get(),
             running: session.is_running(),
             chosen: budget.chosen(),
         };
@@ -276,7 +276,7 @@ impl Lab {
         let painter = ui.painter_at(rect);
         let readout = self.readout();
         let errors = diagnosis::errors(&readout);
-        let (words, is_bad) = diagnosis::status_words(readout.simulation, true, readout.shows_converged);
+        let (words, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
         // If there is a status bar, it shows the warning.
         let warning = (is_bad && !self.desk.view.bars).then_some(words.as_str());
         self.desk.viewport.paint(&painter, ui.visuals(), &self.content(), errors, warning);
@@ -322,7 +322,7 @@ impl Lab {
     fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
         const WIDEST: f32 = 460.0;
         /// Width next to a small body.
-        const WIDEST_BESIDE: f32 = 250.0;
+        const WIDEST_NARROW: f32 = 250.0;
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
         let narrow = rect.width() < 640.0;
@@ -338,7 +338,7 @@ impl Lab {
         let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
         let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
         let id = egui::Id::unique("status");
-        let widest = if is_tight { WIDEST_BESIDE } else { WIDEST }.min(rect.width() - 28.0);
+        let widest = if is_tight { WIDEST_NARROW } else { WIDEST }.min(rect.width() - 28.0);
         let (pivot, at, width) = self.desk.viewport.message_place(&self.content(), rect, above, widest);
         let area = egui::Area::new(id).order(egui::Order::Middle).fixed_pos(at).pivot(pivot).constrain_to(rect);
         area.show(ui.ctx(), |ui| {
@@ -353,13 +353,13 @@ impl Lab {
             // The other modes have remedies of their own.
             let remedy = diagnosis::remedy(&input, errors).filter(|_| self.desk.view.mode == Mode::Explore);
             let help = |ui: &mut Ui, remedy: &diagnosis::Remedy| {
-                let pressed = ui.button(&remedy.offer).on_hover_text(&remedy.words).clicked();
+                let pressed = ui.button(&remedy.offer).on_hover_text(&remedy.text).clicked();
                 pressed.then(|| Action::Edit(remedy.edits, remedy.scene.clone()))
             };
             if let Some(remedy) = remedy.as_ref().filter(|_| !is_low) {
                 chip(palette.error_chip).show(ui, |ui| {
                     ui.horizontal_wrapped(|ui| {
-                        ui.colored_label(palette.error, &remedy.words);
+                        ui.colored_label(palette.error, &remedy.text);
                         actions.extend(help(ui, remedy));
                     });
                 });

@@ -10,7 +10,7 @@ use crate::app::shell::lab::Lab;
 use crate::app::shell::toolbar;
 use crate::app::task::thread::POLL;
 use crate::app::widgets::text::boxed_text;
-use crate::words::engineering;
+use crate::format::engineering;
 
 /// Time for which a message is shown.
 const TOAST: Duration = Duration::from_secs(4);
@@ -26,7 +26,7 @@ impl Lab {
         self.follow_session();
         for (integrator, step) in self.desk.session.take_unstable() {
             let integrator = tr(integrator.id());
-            let words = match step {
+            let text = match step {
                 Some(step) => fill!(
                     "%{integrator} is unstable: its longest stable step is %{step}",
                     integrator = integrator,
@@ -34,7 +34,7 @@ impl Lab {
                 ),
                 None => fill!("%{integrator} is unstable: its steps fail", integrator = integrator),
             };
-            self.say(ctx, words);
+            self.say(ctx, text);
         }
         for notice in self.desk.session.take_notices() {
             match notice {

@@ -1,6 +1,6 @@
 //! Status bar along the bottom: the main numbers of the result, a plot of the residual, and the button of the drawer.
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, error_color, rho, rho_number, truth_words};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, error_color, reference_text, rho, rho_number};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -15,15 +15,15 @@ use crate::app::task::solve::Phase;
 use crate::app::view_options::{Drawer, Toggle, ViewOptions};
 use crate::app::widgets::buttons::{Icon, icon_button};
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
+use crate::format::{engineering, grouped, two_digits};
 use crate::scene::Scene;
 use crate::simulation::Motion;
-use crate::words::{engineering, grouped, two_digits};
 
 /// In a bar narrower than this, points, the numbers have no gauges.
 const GAUGES: f32 = 820.0;
 
 /// Number with its name and its gauge.
-struct Headline {
+struct Number {
     name: &'static str,
     value: String,
     /// Remark after the number.
@@ -47,17 +47,17 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
     let wide = ui.available_width() >= GAUGES;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
-        let headlines = match input.simulation.motion() {
+        let entries = match input.simulation.motion() {
             Some(motion) => of_motion(&palette, input, motion).into(),
             None => of_solve(&palette, input, errors),
         };
-        for headline in headlines {
-            number(ui, &palette, headline, wide);
+        for entry in entries {
+            number(ui, &palette, entry, wide);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let drawer = Drawer::of(input.scene);
             let open = view.plots().is_some();
-            let (word, tip) = drawer.words();
+            let (word, tip) = drawer.text();
             let (word, tip) = (tr(word), tr(tip));
             let icon = if open { Icon::Close } else { Icon::Open };
             if icon_button(ui, icon, word, Some(word), open).on_hover_text(tip).clicked() {
@@ -70,17 +70,17 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
     });
 }
 
-fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Headline> {
+fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Number> {
     let simulation = input.simulation;
     let times = simulation.timings();
     let seconds = (times.total() - times.certify).as_secs_f64();
     let rho = rho(input);
-    let truth = truth_words(input.reference);
+    let reference = reference_text(input.reference);
     let level = |decades: f64| decades.floor().clamp(0.0, 4.0) as u32;
     let error = errors.own.map_or(0.0, |error| error.max(1e-9).log10() + 2.0);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
-    let mut headlines = vec![
-        Headline {
+    let mut entries = vec![
+        Number {
             name: "ERROR",
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
             word: match errors.source {
@@ -91,13 +91,13 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Head
                 }),
             },
             tip: fill!(
-                "Distance of the first probe from %{truth}, over its displacement; and where most of it comes from",
-                truth = truth
+                "Distance of the first probe from %{reference}, over its displacement; and where most of it comes from",
+                reference = reference
             ),
             color: error_color(palette, errors.own),
             gauge: Gauge::Blocks(level(error)),
         },
-        Headline {
+        Number {
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
@@ -108,7 +108,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Head
     ];
     // Linear theory does not iterate.
     if !simulation.is_linear() {
-        headlines.push(Headline {
+        entries.push(Number {
             name: "ρ",
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
             word: Cow::default(),
@@ -125,16 +125,16 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Head
             gauge: Gauge::Bar(rho.map_or(0.0, |rho| 0.5 * rho), 0.5),
         });
     }
-    headlines
+    entries
 }
 
-fn of_motion(palette: &Palette, input: &Readout<'_>, motion: &Motion) -> [Headline; 3] {
+fn of_motion(palette: &Palette, input: &Readout<'_>, motion: &Motion) -> [Number; 3] {
     let cost = input.timings.total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
-    let pace = &input.playback.pace;
+    let clock = &input.playback.clock;
     let drift = motion.ledger().drift_of_input();
     [
-        Headline {
+        Number {
             name: "STEP",
             value: if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
@@ -142,15 +142,15 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: &Motion) -> [Headli
             color: if cost > step { palette.error } else { palette.text },
             gauge: Gauge::Bar(0.5 * cost / step, 0.5),
         },
-        Headline {
+        Number {
             name: "PACE",
-            value: pace.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {}", fraction(factor))),
-            word: if pace.lags() { tr("too slow").into() } else { Cow::default() },
+            value: clock.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {}", fraction(factor))),
+            word: if clock.lags() { tr("too slow").into() } else { Cow::default() },
             tip: tr("Simulated seconds a second; a machine that cannot keep up slows the motion down").to_owned(),
-            color: if pace.lags() { palette.error } else { palette.text },
+            color: if clock.lags() { palette.error } else { palette.text },
             gauge: Gauge::None,
         },
-        Headline {
+        Number {
             name: "DRIFT",
             value: percent(100.0 * drift),
             word: Cow::default(),
@@ -162,11 +162,11 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: &Motion) -> [Headli
 }
 
 /// Shows a name, its number and its gauge.
-fn number(ui: &mut Ui, palette: &Palette, headline: Headline, wide: bool) -> Response {
+fn number(ui: &mut Ui, palette: &Palette, entry: Number, wide: bool) -> Response {
     const GAP: f32 = 6.0;
     const BLOCK: egui::Vec2 = vec2(5.0, 13.0);
     const BAR: egui::Vec2 = vec2(56.0, 6.0);
-    let Headline { name, value, word, tip, color, gauge } = headline;
+    let Number { name, value, word, tip, color, gauge } = entry;
     let (name, word) = (tr(name), word.as_ref());
     let painter = ui.painter();
     let small = |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);

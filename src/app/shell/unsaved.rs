@@ -113,13 +113,13 @@ impl Lab {
     pub(crate) fn offer_unsaved(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
         // The edits are restored to the user's own scene, which Learn puts aside.
         let Some(left) = self.left.as_ref().filter(|_| self.lesson.is_none()) else { return };
-        let words = fill!(
+        let text = fill!(
             "Unsaved changes to “%{scene}” were found: warpbeam ended unexpectedly.",
             scene = tr(&left.scene.name)
         );
         let (mut restore, mut discard) = (false, false);
         banner(ctx, "unsaved-changes", |ui| {
-            ui.label(words);
+            ui.label(text);
             restore = ui.button(tr("Restore")).clicked();
             discard = ui.button(tr("Discard")).clicked();
         });
@@ -131,7 +131,7 @@ impl Lab {
             return;
         }
         self.left = None;
-        requests.push(Request::ForgetCopy);
+        requests.push(Request::DiscardCopy);
         ctx.request_repaint();
     }
 }

@@ -7,9 +7,9 @@ use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
+use crate::format::{engineering, round_down, three_digits};
 use crate::mesh::Mesh;
 use crate::scene::{Load, Material, Place, Scene};
-use crate::words::{engineering, round_down, three_digits};
 
 /// Length of the arrow of a zero force, points: long enough to be grabbed.
 const STUB: f64 = 16.0;
@@ -107,7 +107,7 @@ pub(crate) struct Arrow {
     /// Point of application.
     pub from: Pos2,
     /// Vector from the point of application to the tip.
-    pub way: Vec2,
+    pub vector: Vec2,
     scale: LoadScale,
     /// Magnitude of the force, N.
     magnitude: f64,
@@ -142,8 +142,8 @@ impl Forces<'_> {
             let from = projection.point(load_point(mesh, self.positions, place)?);
             let (magnitude, degrees) = polar_form(*force);
             let [x, y] = vector(scale.length(magnitude), degrees.unwrap_or(self.direction));
-            let arrow = Arrow { load, from, way: vec2(x as f32, -y as f32), scale, magnitude, largest };
-            (arrow.from.is_finite() && arrow.way.is_finite()).then_some(arrow)
+            let arrow = Arrow { load, from, vector: vec2(x as f32, -y as f32), scale, magnitude, largest };
+            (arrow.from.is_finite() && arrow.vector.is_finite()).then_some(arrow)
         });
         arrows.collect()
     }
@@ -158,29 +158,29 @@ pub(crate) fn is_seen(load: &Load, time: f64) -> bool {
 
 impl Arrow {
     pub(crate) fn tip(&self) -> Pos2 {
-        self.from + self.way
+        self.from + self.vector
     }
 
     /// Returns the force, N, and its direction, degrees, after the tip has moved by `by`, points. The numbers are
     /// rounded to the pointer's accuracy.
     pub(crate) fn dragged(&self, by: Vec2, snap: bool) -> (f64, f64) {
-        let way = self.way + by;
-        let degrees = f64::from(-way.y).atan2(f64::from(way.x)).to_degrees();
+        let vector = self.vector + by;
+        let degrees = f64::from(-vector.y).atan2(f64::from(vector.x)).to_degrees();
         let step = if snap { SNAP } else { 1.0 };
         // Normalizes −0 to 0 and, below, −180 to 180.
         let degrees = (degrees / step).round() * step + 0.0;
         // Dragging ends at the slider's largest force; a larger force that was typed can only be reduced.
         let most = self.magnitude.max(self.largest);
-        let magnitude = three_digits(self.scale.load(f64::from(way.length()))).min(most);
+        let magnitude = three_digits(self.scale.load(f64::from(vector.length()))).min(most);
         (magnitude, if degrees == -180.0 { 180.0 } else { degrees })
     }
 
     /// Paints the arrow with its force next to it.
     pub(crate) fn paint(&self, painter: &Painter, color: Color32, visuals: &Visuals, is_hot: bool) {
-        let direction = self.way.normalized();
+        let direction = self.vector.normalized();
         let is_stub = self.magnitude == 0.0;
         let faint = if is_stub && !is_hot { color.gamma_multiply(0.55) } else { color };
-        let tip = paint_arrow(painter, self.from, self.way, faint);
+        let tip = paint_arrow(painter, self.from, self.vector, faint);
         // A ring around the tip shows that it can be grabbed.
         let grip = tip - direction * 6.0;
         if is_hot {
@@ -220,11 +220,11 @@ fn label_place(tip: Pos2, direction: Vec2) -> (Align2, Pos2) {
     (Align2([across, down]), tip + vec2(6.0 * direction.x, 11.0 * direction.y.signum()))
 }
 
-/// Paints an arrow with the vector `way` at `from`, and returns its tip.
-pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, way: Vec2, color: Color32) -> Pos2 {
+/// Paints an arrow with the vector `vector` at `from`, and returns its tip.
+pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
     const HEAD: f32 = 12.0;
-    let direction = way.normalized();
-    let tip = from + way;
+    let direction = vector.normalized();
+    let tip = from + vector;
     let side = vec2(-direction.y, direction.x) * (HEAD * 0.42);
     let neck = tip - direction * HEAD;
     painter.line_segment([from, neck], Stroke::new(3.0, color));
@@ -281,19 +281,19 @@ mod tests {
     #[test]
     fn a_dragged_tip_gives_round_numbers_and_shift_snaps() {
         let scale = scale(1e3, LARGE);
-        let way = vec2(0.0, scale.length(1e3) as f32);
-        let arrow = Arrow { load: 0, from: Pos2::ZERO, way, scale, magnitude: 1e3, largest: 1e6 };
+        let vector = vec2(0.0, scale.length(1e3) as f32);
+        let arrow = Arrow { load: 0, from: Pos2::ZERO, vector, scale, magnitude: 1e3, largest: 1e6 };
         assert_eq!(arrow.dragged(Vec2::ZERO, false), (1e3, DOWN));
         // Twice the length is twice the force.
-        assert_eq!(arrow.dragged(way, false), (2e3, DOWN));
+        assert_eq!(arrow.dragged(vector, false), (2e3, DOWN));
         assert_eq!(arrow.dragged(vec2(0.0, 10.0), false), (1140.0, DOWN));
         let (_, direction) = arrow.dragged(vec2(20.0, 0.0), true);
         assert_eq!(direction, -75.0);
-        assert_eq!(arrow.dragged(-arrow.way, false).0, 0.0);
+        assert_eq!(arrow.dragged(-arrow.vector, false).0, 0.0);
         // Dragging ends at the slider's largest force.
         assert!((arrow.dragged(vec2(0.0, 900.0), false).0 / 1e6 - 1.0).abs() < 1e-9);
         // A force exactly to the left has the direction +180, on either side of the axis.
-        let left = arrow.dragged(-arrow.way + vec2(-60.0, 1e-4), false);
+        let left = arrow.dragged(-arrow.vector + vec2(-60.0, 1e-4), false);
         assert_eq!(left.1, 180.0);
     }
 }

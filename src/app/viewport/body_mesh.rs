@@ -215,7 +215,7 @@ impl BodyMesh {
             values: &self.values,
             range: self.range,
             lines: if wireframe { &drawing.lines } else { &[] },
-            beside: &drawing.beside,
+            triangles_of_lines: &drawing.triangles_of_lines,
             pieces: drawing.pieces,
             map: self.map,
             line_color: self.line_color,

@@ -116,30 +116,30 @@ mod tests {
     const REST: Box2 = [Vector2::new(0.0, -0.5), Vector2::new(10.0, 0.5)];
     const VIEW: [f64; 2] = [800.0, 600.0];
 
-    fn fitted(eye: &CameraController) -> Camera {
-        let [low, high] = eye.whole();
+    fn fitted(controller: &CameraController) -> Camera {
+        let [low, high] = controller.whole();
         Camera::fit(low, high, VIEW, Margins::default())
     }
 
     #[test]
     fn the_first_look_is_there_and_later_ones_ease_and_arrive() {
-        let mut eye = CameraController::new(REST);
-        assert!(!eye.aim(fitted(&eye), Some(0.016)));
-        let first = eye.camera();
-        assert_eq!(first, fitted(&eye));
-        eye.follow([Vector2::new(0.0, -8.0), Vector2::new(10.0, 0.5)]);
-        let goal = fitted(&eye);
-        let way = |camera: Camera| (camera.center - goal.center).norm();
-        let mut last = way(first);
+        let mut controller = CameraController::new(REST);
+        assert!(!controller.aim(fitted(&controller), Some(0.016)));
+        let first = controller.camera();
+        assert_eq!(first, fitted(&controller));
+        controller.follow([Vector2::new(0.0, -8.0), Vector2::new(10.0, 0.5)]);
+        let goal = fitted(&controller);
+        let distance = |camera: Camera| (camera.center - goal.center).norm();
+        let mut last = distance(first);
         let mut frames = 0;
-        while eye.aim(goal, Some(0.016)) {
-            assert!(way(eye.camera()) < last, "it does not come nearer");
-            let scale = eye.camera().scale;
+        while controller.aim(goal, Some(0.016)) {
+            assert!(distance(controller.camera()) < last, "it does not come nearer");
+            let scale = controller.camera().scale;
             assert!(scale >= goal.scale.min(first.scale) && scale <= goal.scale.max(first.scale), "it overshoots");
-            last = way(eye.camera());
+            last = distance(controller.camera());
             frames += 1;
         }
-        assert_eq!(eye.camera(), goal);
+        assert_eq!(controller.camera(), goal);
         assert!((10..200).contains(&frames), "{frames} frames");
     }
 
@@ -147,13 +147,13 @@ mod tests {
     #[test]
     fn the_way_depends_on_the_time_and_not_on_the_frames() {
         let after = |frames: u32| {
-            let mut eye = CameraController::new(REST);
-            eye.aim(fitted(&eye), None);
-            eye.follow([Vector2::new(-50.0, -20.0), Vector2::new(60.0, 30.0)]);
+            let mut controller = CameraController::new(REST);
+            controller.aim(fitted(&controller), None);
+            controller.follow([Vector2::new(-50.0, -20.0), Vector2::new(60.0, 30.0)]);
             for _ in 0..frames {
-                eye.aim(fitted(&eye), Some(0.12 / f64::from(frames)));
+                controller.aim(fitted(&controller), Some(0.12 / f64::from(frames)));
             }
-            eye.camera()
+            controller.camera()
         };
         let (one, many) = (after(1), after(40));
         assert!((one.scale / many.scale - 1.0).abs() < 1e-9 && (one.center - many.center).norm() < 1e-9);
@@ -161,32 +161,32 @@ mod tests {
 
     #[test]
     fn without_time_it_is_there_at_once() {
-        let mut eye = CameraController::new(REST);
-        eye.aim(fitted(&eye), None);
-        eye.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
-        assert!(!eye.aim(fitted(&eye), None));
-        assert_eq!(eye.camera(), fitted(&eye));
+        let mut controller = CameraController::new(REST);
+        controller.aim(fitted(&controller), None);
+        controller.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
+        assert!(!controller.aim(fitted(&controller), None));
+        assert_eq!(controller.camera(), fitted(&controller));
     }
 
     #[test]
     fn a_moved_view_stays_until_it_is_fitted_again() {
-        let mut eye = CameraController::new(REST);
-        eye.aim(fitted(&eye), None);
+        let mut controller = CameraController::new(REST);
+        controller.aim(fitted(&controller), None);
         let own = Camera { center: Vector2::new(3.0, 1.0), scale: 200.0 };
-        eye.look(own);
-        eye.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
-        assert!(!eye.aim(fitted(&eye), Some(0.016)));
-        assert_eq!(eye.camera(), own);
-        eye.fit();
-        assert!(eye.aim(fitted(&eye), Some(0.016)));
-        assert_ne!(eye.camera(), own);
+        controller.look(own);
+        controller.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
+        assert!(!controller.aim(fitted(&controller), Some(0.016)));
+        assert_eq!(controller.camera(), own);
+        controller.fit();
+        assert!(controller.aim(fitted(&controller), Some(0.016)));
+        assert_ne!(controller.camera(), own);
     }
 
     #[test]
     fn zoom_is_bounded_by_the_size_of_the_body() {
-        let eye = CameraController::new(REST);
-        let scales = eye.scales(VIEW);
-        let mut camera = fitted(&eye);
+        let controller = CameraController::new(REST);
+        let scales = controller.scales(VIEW);
+        let mut camera = fitted(&controller);
         for _ in 0..1000 {
             camera.zoom(1.5, [10.0, 10.0], scales.clone());
         }
@@ -197,8 +197,8 @@ mod tests {
 
     #[test]
     fn a_state_that_is_not_finite_is_not_followed() {
-        let mut eye = CameraController::new(REST);
-        eye.follow([Vector2::new(f64::NAN, 0.0), Vector2::new(1.0, 1.0)]);
-        assert_eq!(eye.whole(), REST);
+        let mut controller = CameraController::new(REST);
+        controller.follow([Vector2::new(f64::NAN, 0.0), Vector2::new(1.0, 1.0)]);
+        assert_eq!(controller.whole(), REST);
     }
 }

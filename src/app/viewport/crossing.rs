@@ -75,8 +75,8 @@ impl Piece {
 
     /// Returns `true` if the ends of `other` are on different sides of this segment's line.
     fn separates(&self, other: &Self) -> bool {
-        let way = self.ends[1] - self.ends[0];
-        let [a, b] = other.ends.map(|end| way.perp(&(end - self.ends[0])));
+        let vector = self.ends[1] - self.ends[0];
+        let [a, b] = other.ends.map(|end| vector.perp(&(end - self.ends[0])));
         a * b < 0.0
     }
 }

@@ -3,7 +3,7 @@
 use egui::{Color32, Painter, Pos2, Vec2};
 
 use crate::app::viewport::arrow::{Arrow, Forces, NEAR, is_seen, load_point};
-use crate::app::viewport::moment_arrow::{Turn, moment_range};
+use crate::app::viewport::moment_arrow::{MomentArrow, moment_range};
 use crate::app::viewport::projection::Projection;
 use crate::scene::{Load, Place};
 
@@ -11,7 +11,7 @@ use crate::scene::{Load, Place};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Handle {
     Force(Arrow),
-    Moment(Turn),
+    Moment(MomentArrow),
 }
 
 /// New value of a load whose handle is dragged.
@@ -29,7 +29,7 @@ pub(crate) struct Drag {
     /// Displacement, points.
     by: Vec2,
     /// Rotation about the centre of a moment arrow, rad, counter-clockwise.
-    turned: f64,
+    angle: f64,
 }
 
 /// Handle under the pointer, or grabbed by it.
@@ -45,14 +45,14 @@ impl Handle {
     pub(crate) fn load(&self) -> usize {
         match self {
             Self::Force(arrow) => arrow.load,
-            Self::Moment(turn) => turn.load,
+            Self::Moment(arrow) => arrow.load,
         }
     }
 
     pub(crate) fn tip(&self) -> Pos2 {
         match self {
             Self::Force(arrow) => arrow.tip(),
-            Self::Moment(turn) => turn.tip(),
+            Self::Moment(arrow) => arrow.tip(),
         }
     }
 
@@ -60,7 +60,7 @@ impl Handle {
     pub(crate) fn foot(&self) -> Pos2 {
         match self {
             Self::Force(arrow) => arrow.from,
-            Self::Moment(turn) => turn.center,
+            Self::Moment(arrow) => arrow.center,
         }
     }
 
@@ -71,7 +71,7 @@ impl Handle {
                 let (magnitude, degrees) = arrow.dragged(drag.by, snap);
                 Pull::Force(magnitude, degrees)
             }
-            Self::Moment(turn) => Pull::Moment(turn.dragged(drag.turned, snap)),
+            Self::Moment(arrow) => Pull::Moment(arrow.dragged(drag.angle, snap)),
         }
     }
 
@@ -79,7 +79,7 @@ impl Handle {
     pub(crate) fn paint(&self, painter: &Painter, drag: Drag, color: Color32) {
         match self {
             Self::Force(arrow) => arrow.paint_handle(painter, drag.by, color),
-            Self::Moment(turn) => turn.paint_handle(painter, drag.turned, color),
+            Self::Moment(arrow) => arrow.paint_handle(painter, drag.angle, color),
         }
     }
 }
@@ -98,13 +98,13 @@ pub(crate) struct Grip {
     last: Pos2,
     /// Displacement of the handle, points: smaller than the pointer's in slow mode.
     by: Vec2,
-    turned: f64,
+    angle: f64,
 }
 
 impl Grip {
     /// Grabs `handle` with a press at `pressed`.
     pub(crate) fn new(handle: Handle, pressed: Pos2) -> Self {
-        Self { handle, pressed, last: pressed, by: Vec2::ZERO, turned: 0.0 }
+        Self { handle, pressed, last: pressed, by: Vec2::ZERO, angle: 0.0 }
     }
 
     /// Moves the handle with the pointer, which is now at `at`; by a tenth of the distance if `slow`.
@@ -112,8 +112,8 @@ impl Grip {
         const SLOW: f32 = 0.1;
         let part = if slow { SLOW } else { 1.0 };
         self.by += part * (at - self.last);
-        if let Handle::Moment(turn) = self.handle {
-            self.turned += f64::from(part) * turn.angle_between(self.last, at);
+        if let Handle::Moment(arrow) = self.handle {
+            self.angle += f64::from(part) * arrow.angle_between(self.last, at);
         }
         self.last = at;
     }
@@ -122,8 +122,8 @@ impl Grip {
     pub(crate) fn drag(&self) -> Option<Drag> {
         /// Movements of less than this, points, do not count as a drag.
         const STILL: f32 = 2.0;
-        let way = self.last - self.pressed;
-        (way.length() >= STILL).then_some(Drag { by: self.by, turned: self.turned })
+        let vector = self.last - self.pressed;
+        (vector.length() >= STILL).then_some(Drag { by: self.by, angle: self.angle })
     }
 
     /// Returns the new value of the load, if the handle has been dragged.
@@ -134,21 +134,21 @@ impl Grip {
 
 impl Forces<'_> {
     /// Returns the circular arrows of all moments that act at the current time.
-    pub(crate) fn turns(&self, projection: &Projection) -> Vec<Turn> {
+    pub(crate) fn moment_arrows(&self, projection: &Projection) -> Vec<MomentArrow> {
         let mesh = self.system.mesh();
         let [usual, _] = moment_range(self.opening, &self.scene.material, self.system);
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
-        let turns = shown.filter_map(|(load, of)| {
+        let moment_arrows = shown.filter_map(|(load, of)| {
             let Load::Moment { edge, moment, .. } = of else { return None };
             let center = projection.point(load_point(mesh, self.positions, &Place::from(edge.as_str()))?);
-            center.is_finite().then(|| Turn::new(load, center, *moment, usual))
+            center.is_finite().then(|| MomentArrow::new(load, center, *moment, usual))
         });
-        turns.collect()
+        moment_arrows.collect()
     }
 
     /// Returns the handles of all loads that act at the current time.
     pub(crate) fn handles(&self, projection: &Projection) -> Vec<Handle> {
         let arrows = self.arrows(projection).into_iter().map(Handle::Force);
-        arrows.chain(self.turns(projection).into_iter().map(Handle::Moment)).collect()
+        arrows.chain(self.moment_arrows(projection).into_iter().map(Handle::Moment)).collect()
     }
 }

@@ -8,8 +8,8 @@ use crate::app::viewport::arrow::{LEAST_SPAN, NEAR, power_of_ten_above};
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
+use crate::format::{engineering, round_down, three_digits};
 use crate::scene::Material;
-use crate::words::{engineering, round_down, three_digits};
 
 /// Radius at the start of the arrow, points; it grows by the pitch with every revolution, so that revolutions do not
 /// overlap.
@@ -46,7 +46,7 @@ pub(crate) fn moment_range(opening: OpeningLoads, material: &Material, system: &
 
 /// Circular arrow of a moment, in window coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Turn {
+pub(crate) struct MomentArrow {
     /// Index of the moment among the scene's loads.
     pub load: usize,
     pub center: Pos2,
@@ -55,7 +55,7 @@ pub(crate) struct Turn {
     scale: LoadScale,
 }
 
-impl Turn {
+impl MomentArrow {
     /// Creates the arrow of a moment, N m, in a scene that opens with moments up to `usual`, N m.
     pub(crate) fn new(load: usize, center: Pos2, moment: f64, usual: f64) -> Self {
         Self { load, center, moment, scale: LoadScale { usual, stub: STUB, opening: OPENING, decade: DECADE } }
@@ -156,26 +156,26 @@ impl Turn {
 mod tests {
     use super::*;
 
-    fn turn(moment: f64) -> Turn {
-        Turn::new(0, egui::pos2(100.0, 100.0), moment, 1e4)
+    fn arrow(moment: f64) -> MomentArrow {
+        MomentArrow::new(0, egui::pos2(100.0, 100.0), moment, 1e4)
     }
 
     /// The mapping is its own inverse for both senses of rotation; twice the opening angle is twice the moment.
     #[test]
     fn angles_tell_moments() {
         for moment in [0.0, 1e-3, -1.0, 12.0, -500.0, 3e4, 1e5, -1e7] {
-            let back = turn(moment).moment_of(turn(moment).sweep());
+            let back = arrow(moment).moment_of(arrow(moment).sweep());
             assert!((back - moment).abs() <= 1e-9 * (moment.abs() + 1e-3), "{moment} {back}");
         }
-        assert!((turn(2e4).sweep() - 2.0 * turn(1e4).sweep()).abs() < 1e-12);
-        assert!((turn(-1e4).sweep() + turn(1e4).sweep()).abs() < 1e-12);
-        assert_eq!(turn(0.0).moment_of(0.0), 0.0);
+        assert!((arrow(2e4).sweep() - 2.0 * arrow(1e4).sweep()).abs() < 1e-12);
+        assert!((arrow(-1e4).sweep() + arrow(1e4).sweep()).abs() < 1e-12);
+        assert_eq!(arrow(0.0).moment_of(0.0), 0.0);
     }
 
     /// One pixel along the arc of the opening moment is 1 to 2 % of it.
     #[test]
     fn a_pixel_is_one_or_two_percent_of_the_moment() {
-        let arrow = turn(1e4);
+        let arrow = arrow(1e4);
         let radius = RADIUS + PITCH * arrow.sweep() / TAU;
         let rate = (arrow.moment_of(arrow.sweep() + 1.0 / radius) / 1e4) - 1.0;
         assert!((0.01..=0.02).contains(&rate), "{rate}");
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_dragged_end_gives_round_numbers_and_shift_snaps() {
-        let arrow = turn(1e4);
+        let arrow = arrow(1e4);
         assert_eq!(arrow.dragged(0.0, false), 1e4);
         assert_eq!(arrow.dragged(arrow.sweep(), false), 2e4);
         // Dragging back through zero changes the sign.
@@ -201,11 +201,11 @@ mod tests {
     #[test]
     fn a_pointer_turns_about_the_middle() {
         let (right, above) = (egui::pos2(130.0, 100.0), egui::pos2(100.0, 70.0));
-        assert!((turn(1.0).angle_between(right, above) - TAU / 4.0).abs() < 1e-6);
-        assert!((turn(1.0).angle_between(above, right) + TAU / 4.0).abs() < 1e-6);
-        assert_eq!(turn(1.0).angle_between(egui::pos2(101.0, 100.0), above), 0.0);
-        let end = turn(1e4).tip();
-        let by = turn(1e4).angle_between(end, turn(5e4).tip());
-        assert_eq!(turn(1e4).dragged(by, false), 5e4);
+        assert!((arrow(1.0).angle_between(right, above) - TAU / 4.0).abs() < 1e-6);
+        assert!((arrow(1.0).angle_between(above, right) + TAU / 4.0).abs() < 1e-6);
+        assert_eq!(arrow(1.0).angle_between(egui::pos2(101.0, 100.0), above), 0.0);
+        let end = arrow(1e4).tip();
+        let by = arrow(1e4).angle_between(end, arrow(5e4).tip());
+        assert_eq!(arrow(1e4).dragged(by, false), 5e4);
     }
 }

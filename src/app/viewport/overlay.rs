@@ -14,13 +14,13 @@ use crate::app::viewport::handle::HotHandle;
 use crate::app::widgets::legend::Mark;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
-use crate::assembly::{Hand, System};
+use crate::assembly::{MouseSpring, System};
+use crate::format::{engineering, prefix, round_down, three_digits, ticks};
 use crate::render::Camera;
 use crate::render::colormap::ColorMap;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Load, MethodKind, Scene};
 use crate::simulation::SupportReaction;
-use crate::words::{engineering, prefix, round_down, three_digits, ticks};
 
 /// Content of the overlays.
 pub(crate) struct Overlay<'a> {
@@ -48,7 +48,7 @@ pub(crate) struct Overlay<'a> {
     /// Load arrow under the pointer, or grabbed and dragged by it.
     pub hot: Option<HotHandle>,
     /// Grab of the body, and its force, N.
-    pub hand: Option<(&'a Hand, Vector2<f64>)>,
+    pub mouse_spring: Option<(&'a MouseSpring, Vector2<f64>)>,
     /// Recorded past of the motion, and the same motion under other integrators.
     pub playback: &'a Playback,
     /// Reactions of the supports, if one of them moves.
@@ -71,8 +71,8 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     let below = legend.filter(|_| has_legend_on_top(rect.height())).map_or(0.0, |frame| frame.bottom() - rect.top());
     body_below(painter, rect, overlay, visuals, below);
     scale_bar(painter, rect, &overlay.camera, &palette);
-    if let Some((hand, force)) = overlay.hand {
-        pull(painter, &Projection { camera: overlay.camera, rect }, overlay, hand, force, visuals);
+    if let Some((spring, force)) = overlay.mouse_spring {
+        pull(painter, &Projection { camera: overlay.camera, rect }, overlay, spring, force, visuals);
     }
     if let Some(warning) = overlay.warning {
         let at = rect.center_top() + vec2(0.0, 46.0);
@@ -198,7 +198,7 @@ fn pull(
     painter: &Painter,
     projection: &Projection,
     overlay: &Overlay<'_>,
-    hand: &Hand,
+    spring: &MouseSpring,
     force: Vector2<f64>,
     visuals: &Visuals,
 ) {
@@ -207,22 +207,22 @@ fn pull(
     const PITCH: f32 = 7.0;
     let palette = Palette::new(visuals);
     let mesh = overlay.system.mesh();
-    let weights = mesh.weights(hand.point()).unwrap_or_default();
+    let weights = mesh.weights(spring.point()).unwrap_or_default();
     let held: Vector2<f64> = weights.iter().map(|&(n, w)| overlay.positions[n as usize] * w).sum();
-    let [from, to] = [held, hand.target()].map(|p| projection.point(p));
-    painter.circle_filled(from, 4.5, palette.hand);
-    painter.circle_stroke(to, 7.0, Stroke::new(2.0, palette.hand));
-    let way = to - from;
-    let length = way.length();
-    let stroke = Stroke::new(1.8, palette.hand);
+    let [from, to] = [held, spring.target()].map(|p| projection.point(p));
+    painter.circle_filled(from, 4.5, palette.mouse_spring);
+    painter.circle_stroke(to, 7.0, Stroke::new(2.0, palette.mouse_spring));
+    let vector = to - from;
+    let length = vector.length();
+    let stroke = Stroke::new(1.8, palette.mouse_spring);
     if length > 4.0 * PITCH {
         // Straight ends with a zigzag between them.
-        let along = way / length;
+        let along = vector / length;
         let across = vec2(-along.y, along.x) * COIL;
-        let turns = (((length - 2.0 * PITCH) / PITCH).floor()).min(40.0) as u32;
-        let pitch = (length - 2.0 * PITCH) / turns as f32;
+        let moment_arrows = (((length - 2.0 * PITCH) / PITCH).floor()).min(40.0) as u32;
+        let pitch = (length - 2.0 * PITCH) / moment_arrows as f32;
         let mut points = vec![from, from + along * PITCH];
-        points.extend((0..turns).map(|i| {
+        points.extend((0..moment_arrows).map(|i| {
             let side = if i % 2 == 0 { 1.0 } else { -1.0 };
             from + along * (PITCH + pitch * (i as f32 + 0.5)) + across * side
         }));
@@ -232,7 +232,7 @@ fn pull(
         painter.line_segment([from, to], stroke);
     }
     let label = engineering(three_digits(force.norm()), "N");
-    boxed_text(painter, to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, visuals, palette.hand, 200.0);
+    boxed_text(painter, to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, visuals, palette.mouse_spring, 200.0);
 }
 
 /// Paints the supports. Fixed edges are hatched if both directions are fixed, and have rollers if one is. Other fixed
@@ -296,8 +296,8 @@ fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
     for arrow in forces.arrows(projection) {
         arrow.paint(painter, palette.load, visuals, is_hot(arrow.load));
     }
-    for turn in forces.turns(projection) {
-        turn.paint(painter, palette.load, visuals, is_hot(turn.load));
+    for arrow in forces.moment_arrows(projection) {
+        arrow.paint(painter, palette.load, visuals, is_hot(arrow.load));
     }
     if let Some((taken, drag)) = overlay.hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
         taken.paint(painter, drag, palette.load);
@@ -316,9 +316,9 @@ fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, pal
         }
         // An arrow that points up begins where one that points down ends.
         let top = if below > 0.0 { below + 8.0 } else { 30.0 };
-        let way = direction * WEIGHT;
-        let from = rect.right_top() + vec2(-64.0, top + (-way.y).max(0.0));
-        let tip = arrow::paint_arrow(painter, from, way, palette.load);
+        let vector = direction * WEIGHT;
+        let from = rect.right_top() + vec2(-64.0, top + (-vector.y).max(0.0));
+        let tip = arrow::paint_arrow(painter, from, vector, palette.load);
         let label = engineering(x.hypot(*y), "m/s²");
         boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
     }
@@ -416,8 +416,8 @@ fn legend(
     for value in ticks(low, high, MOST_TICKS) {
         let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
         painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
-        let words = engineering(value / 10f64.powi(power), "");
-        painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, words, font.clone(), palette.text);
+        let text = engineering(value / 10f64.powi(power), "");
+        painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, text, font.clone(), palette.text);
     }
     Some(frame)
 }
@@ -452,8 +452,8 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         lines.push((palette.integrator(companion.integrator), Mark::Line, tr(companion.integrator.id()).to_owned()));
     }
     if overlay.ghost.is_some() {
-        let words = with_error(tr(MethodKind::Linear.id()), overlay.errors.linear);
-        lines.push((palette.method(MethodKind::Linear), Mark::Line, words));
+        let text = with_error(tr(MethodKind::Linear.id()), overlay.errors.linear);
+        lines.push((palette.method(MethodKind::Linear), Mark::Line, text));
     }
     if !overlay.exact.is_empty() {
         lines.push((palette.exact, Mark::Dashes, tr("exact").to_owned()));
@@ -467,8 +467,8 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
     let (mut at, mut widest) = (vec2(0.0, 0.0), 0.0_f32);
     let placed: Vec<_> = lines
         .into_iter()
-        .map(|(color, mark, words)| {
-            let galley = painter.layout_no_wrap(words, font.clone(), palette.text);
+        .map(|(color, mark, text)| {
+            let galley = painter.layout_no_wrap(text, font.clone(), palette.text);
             let width = Mark::WIDTH + 6.0 + galley.size().x;
             if at.x > 0.0 && at.x + width > most {
                 at = vec2(0.0, at.y + ROW);

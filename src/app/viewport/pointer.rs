@@ -257,10 +257,10 @@ impl Pointer {
             camera.pan([f64::from(drag.x), f64::from(drag.y)]);
             look = CameraMove::To(camera);
         }
-        let turned = ui.input(|i| {
+        let is_zoom_gesture = ui.input(|i| {
             i.events.iter().any(|event| matches!(event, egui::Event::MouseWheel { .. } | egui::Event::Zoom(_)))
         });
-        if turned {
+        if is_zoom_gesture {
             self.scrolls = response.hover_pos().is_some();
         }
         if let Some(pointer) = response.hover_pos().filter(|_| self.scrolls || fingers.is_some()) {

@@ -5,9 +5,9 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::app::language::{fill, tr};
 use crate::app::widgets::text::boxed_text;
+use crate::format::{engineering, engineering_pair, three_digits};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::simulation::{Field, PointState, PointValues};
-use crate::words::{engineering, engineering_pair, three_digits};
 
 /// Distance from a pinned point to its card, points.
 const AWAY: f32 = 26.0;

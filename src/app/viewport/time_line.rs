@@ -61,9 +61,9 @@ pub(crate) fn show(
     let color = if hot || is_past { palette.text } else { palette.secondary };
     painter.circle_filled(pos2(x, y), if hot || is_past { 6.0 } else { 4.0 }, color);
     if is_past {
-        let words = format!("\u{2212}{:.2} s", last - now);
+        let text = format!("\u{2212}{:.2} s", last - now);
         let font = FontId::proportional(SMALL);
         let at = pos2(x.clamp(line.left() + 20.0, line.right() - 20.0), y - 9.0);
-        painter.text(at, Align2::CENTER_BOTTOM, words, font, palette.text);
+        painter.text(at, Align2::CENTER_BOTTOM, text, font, palette.text);
     }
 }

@@ -27,7 +27,7 @@ const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 /// Margins above a card of Learn, which leaves less of the view.
 const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
 /// Margins to the left of a colour bar at the top.
-const BESIDE_MARGINS: Margins = Margins { sides: 284.0, top: 40.0, bottom: 30.0 };
+const SIDE_MARGINS: Margins = Margins { sides: 284.0, top: 40.0, bottom: 30.0 };
 /// Margins in a low view, with the status over it.
 const LOW_MARGINS: Margins = Margins { bottom: 84.0, ..CARD_MARGINS };
 
@@ -74,8 +74,10 @@ impl<'a> Content<'a> {
     /// Returns the outline of the reference solution, m; empty if it is not known for the displayed state or is hidden.
     fn exact(&self) -> &'a [Vec<Vector2<f64>>] {
         let session = self.session;
-        let is_shown =
-            self.options.exact && !session.is_motion() && !session.iterates() && session.simulation().hand().is_none();
+        let is_shown = self.options.exact
+            && !session.is_motion()
+            && !session.iterates()
+            && session.simulation().mouse_spring().is_none();
         session.facts().reference.get().filter(|_| is_shown).map_or(&[], |reference| &reference.outline)
     }
 
@@ -463,7 +465,7 @@ impl Viewport {
             let tip = arrow.tip();
             // A tip must not cover the colour bar.
             let bar = if tip.x > size.x - overlay::LEGEND_WIDTH { overlay::LEGEND_HEIGHT } else { 0.0 };
-            let above = if on_top && arrow.way.y < 0.0 { bar } else { 0.0 };
+            let above = if on_top && arrow.vector.y < 0.0 { bar } else { 0.0 };
             let below = if on_top { 0.0 } else { bar };
             let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
             Margins {
@@ -503,7 +505,7 @@ impl Viewport {
             direction: content.direction,
             opening: OpeningLoads::of(&session.document().original),
             hot: self.pointer.hot_handle(),
-            hand: simulation.hand(),
+            mouse_spring: simulation.mouse_spring(),
             playback: session.playback(),
             reactions: &reactions,
             color_range: self.body.range,
@@ -573,7 +575,7 @@ fn least_margins(content: &Content<'_>, [low, high]: [Vector2<f64>; 2], view: [f
     if content.card.is_some() && has_legend_on_top {
         // Under the colour bar or to the left of it, whichever shows the body larger.
         let scale = |margins: &Margins| Camera::fit(low, high, view, *margins).scale;
-        return if scale(&BESIDE_MARGINS) > scale(&CARD_MARGINS) { BESIDE_MARGINS } else { CARD_MARGINS };
+        return if scale(&SIDE_MARGINS) > scale(&CARD_MARGINS) { SIDE_MARGINS } else { CARD_MARGINS };
     }
     match (content.card.is_some(), has_legend_on_top) {
         (true, _) => CARD_MARGINS,

@@ -113,6 +113,6 @@ pub(crate) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, a
 }
 
 /// Returns a button for one of several options, or for on and off. It has a frame even if it is not selected.
-pub(crate) fn option_button<'a>(chosen: bool, words: impl IntoAtoms<'a>) -> Button<'a> {
-    Button::selectable(chosen, words).frame_when_inactive(true)
+pub(crate) fn option_button<'a>(chosen: bool, text: impl IntoAtoms<'a>) -> Button<'a> {
+    Button::selectable(chosen, text).frame_when_inactive(true)
 }

@@ -9,10 +9,10 @@ use thiserror::Error;
 
 use crate::app::language::{fill, tr, translated};
 use crate::app::widgets::load_scale::LoadScale;
+use crate::format::{editable, number, three_digits};
 use crate::scene::OutOfRange;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
-use crate::words::{editable, number, three_digits};
 
 /// Messages next to fields, by the field's label, in English.
 pub(crate) type Messages = BTreeMap<&'static str, String>;
@@ -60,12 +60,12 @@ const VALUE_WIDTH: f32 = 104.0;
 impl NumberField {
     /// Shows the row; returns the new value when the user has entered one within the limit.
     pub(crate) fn show(&self, ui: &mut Ui, messages: &mut Messages, value: f64) -> Option<f64> {
-        self.show_beside(ui, messages, value, None)
+        self.show_with_original(ui, messages, value, None)
     }
 
     /// Shows the row as [`Self::show`] does, for a value with an original: a double click, or Delete on the slider,
     /// restores the original.
-    pub(crate) fn show_beside(
+    pub(crate) fn show_with_original(
         &self,
         ui: &mut Ui,
         messages: &mut Messages,

@@ -44,7 +44,7 @@ pub(crate) struct Palette {
     pub rest: Color32,
     pub support: Color32,
     pub load: Color32,
-    pub hand: Color32,
+    pub mouse_spring: Color32,
     /// Colour of bodies without values of the field.
     pub absent: Color32,
     /// Element sides over the colours of the body, with straight (not premultiplied) alpha.
@@ -74,7 +74,7 @@ const DARK: Palette = Palette {
     rest: rgb(0x6E7784),
     support: rgb(0xB4BBC6),
     load: rgb(0xFF6B61),
-    hand: rgb(0x78DC82),
+    mouse_spring: rgb(0x78DC82),
     absent: rgb(0x7C8088),
     wire: [12, 20, 32, 120],
 };
@@ -98,7 +98,7 @@ const LIGHT: Palette = Palette {
     rest: rgb(0x7E8793),
     support: rgb(0x464E5A),
     load: rgb(0xC0242B),
-    hand: rgb(0x0A7828),
+    mouse_spring: rgb(0x0A7828),
     absent: rgb(0x7C8088),
     wire: [255, 255, 255, 110],
 };
@@ -276,7 +276,7 @@ mod tests {
                 ("error", p.error),
                 ("accent", p.accent),
                 ("load", p.load),
-                ("hand", p.hand),
+                ("hand", p.mouse_spring),
             ] {
                 for ground in [p.canvas, p.panel] {
                     assert!(contrast(color, ground) >= 4.5, "{name} on {ground:?}: {}", contrast(color, ground));

@@ -4,8 +4,8 @@ use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, MarkerShape, Plot
 
 use crate::app::widgets::palette::Palette;
 use crate::element::ELEMENTS;
+use crate::format::{engineering, three_digits, ticks};
 use crate::scene::ElementKind;
-use crate::words::{engineering, three_digits, ticks};
 
 /// Space for the tick labels and the title of an axis, points, before egui_plot has measured them.
 pub(crate) const X_AXIS: f32 = 38.0;

@@ -74,12 +74,12 @@ impl Display {
 
 /// Returns `true` if a scene is so large that it is meshed in the background after the window has opened.
 #[must_use]
-pub fn opens_beside(scene: &Scene) -> bool {
+pub fn opens_in_background(scene: &Scene) -> bool {
     scene.unknowns() > MOST_UNKNOWNS
 }
 
 /// Opens the window and returns when it is closed. Without a simulation the scene is meshed in the background while the
-/// window shows another one: see [`opens_beside`].
+/// window shows another one: see [`opens_in_background`].
 ///
 /// # Errors
 /// [`AppError`]: no adapter, or no window.
@@ -126,9 +126,9 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
         error: None,
     };
     display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
-    if let Some(words) = app.recording.as_ref().and_then(LiveRecording::wait) {
+    if let Some(text) = app.recording.as_ref().and_then(LiveRecording::wait) {
         // The window that would show the message is closed.
-        eprintln!("warpbeam: {words}");
+        eprintln!("warpbeam: {text}");
     }
     app.keep_settings();
     app.error.map_or(Ok(()), Err)
@@ -298,12 +298,12 @@ impl App {
         input.events = events;
         let mut requests = Vec::new();
         let now = self.start.elapsed().as_secs_f64();
-        let (mut mark, mut hand) = (Vec::new(), None);
+        let (mut mark, mut cursor) = (Vec::new(), None);
         let mut output = self.ctx.run_ui(input, |ui| {
             requests.extend(self.lab.ui(ui));
             if let Some(recording) = &self.recording {
                 mark = recording.mark(ui.ctx(), self.lab.view_rect(), now);
-                hand = pointer(ui.ctx());
+                cursor = pointer(ui.ctx());
                 ui.ctx().request_repaint_after(POLL);
             }
         });
@@ -327,10 +327,10 @@ impl App {
         let screen = open.screen(output.pixels_per_point);
         let views = self.lab.views(screen.pixels_per_point);
         if let Some(recording) = &mut self.recording {
-            recording.hand_on(&open.gpu);
+            recording.pass_frames(&open.gpu);
             if let Some(number) = recording.due(now) {
                 let own = primitives.len();
-                primitives.extend(over(hand.into_iter().collect()));
+                primitives.extend(over(cursor.into_iter().collect()));
                 let drawn = (views.as_slice(), primitives.as_slice());
                 recording.take(&open.gpu, &mut open.stage, drawn, &screen, (number, now));
                 primitives.truncate(own);
@@ -350,15 +350,15 @@ impl App {
         for request in requests {
             match request {
                 Request::Screenshot => self.screenshot(screen.pixels_per_point),
-                Request::ForgetCopy => self.recovery.iter_mut().for_each(Recovery::forget_left),
+                Request::DiscardCopy => self.recovery.iter_mut().for_each(Recovery::discard_left),
                 Request::Record => self.record(now),
                 Request::RecordScene => self.record_scene(),
                 Request::Close => self.close(event_loop),
             }
         }
-        if let Some(words) = self.recording.as_ref().and_then(LiveRecording::listen) {
+        if let Some(text) = self.recording.as_ref().and_then(LiveRecording::poll) {
             self.recording = None;
-            self.say(words);
+            self.say(text);
         }
         Ok(())
     }
@@ -423,12 +423,12 @@ impl App {
     /// Shows the progress of the scene's recording, or its end.
     fn follow_scene_recording(&mut self) {
         let Some(recorder) = &mut self.scene_recording else { return };
-        let ended = recorder.listen();
+        let ended = recorder.poll();
         let progress = ended.is_none().then(|| recorder.progress());
         self.lab.show_recording(progress);
-        if let Some(words) = ended {
+        if let Some(text) = ended {
             self.scene_recording = None;
-            self.lab.say(&self.ctx, words);
+            self.lab.say(&self.ctx, text);
         }
     }
 

@@ -105,7 +105,7 @@ struct Rival {
     /// Start of the time in which it stays within 1 % of the equilibrium on this mesh.
     own: Option<Moment>,
     /// Start of the time in which it stays within 1 % of the reference.
-    truth: Option<Moment>,
+    reference: Option<Moment>,
     /// Distance from the reference at the end, percent.
     error_percent: f64,
     /// Error of the mesh: distance of its exact equilibrium from the reference, percent.
@@ -116,8 +116,8 @@ struct Rival {
 
 /// Largest distance from the target, as a fraction of the target, that counts as reached.
 const WITHIN: f64 = 0.01;
-/// Values of [`Swing::pace`] that are tried.
-const PACES: [f64; 6] = [0.01, 0.02, 0.05, 0.005, 0.1, 0.0025];
+/// Values of [`Swing::frequency_factor`] that are tried.
+const FREQUENCY_FACTORS: [f64; 6] = [0.01, 0.02, 0.05, 0.005, 0.1, 0.0025];
 /// Values of [`Swing::damping`] that are tried.
 const DAMPINGS: [f64; 2] = [0.5, 1.0];
 /// Iteration numbers of `fem` that are tried: the default, and the manual's value for stiff bodies.
@@ -147,7 +147,7 @@ fn meshes(scene: &Scene, quick: bool) -> Vec<Scene> {
 fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
     let reference = Reference::of(scene)?;
     let reference = reference.first().ok_or(StudyError::NoBound)?;
-    let truth = reference.displacement;
+    let exact = reference.displacement;
     let mut rivals = Vec::new();
     for scene in meshes(scene, quick) {
         let system = Arc::new(System::new(&scene).map_err(SimulationError::from)?);
@@ -164,16 +164,16 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
                 // A combination slower than the best one is not needed.
                 let limit = best.as_ref().and_then(|b| b.own).map_or(MOST_TIME, |own| own.time);
                 let body = Rapier::new(&problem, own, swing).ok_or(Error::NotItsScene)?;
-                let run = swing_in(body, [own, truth], limit);
+                let run = swing_in(body, [own, exact], limit);
                 let rival = Rival {
                     swing,
                     cells: scene.beam.as_ref().map(|b| b.cells),
                     dofs: system.dofs(),
                     step: run.step,
                     own: run.own,
-                    truth: run.truth,
-                    error_percent: reference.percent(run.end, truth),
-                    mesh_error_percent: reference.percent(own, truth),
+                    reference: run.reference,
+                    error_percent: reference.percent(run.end, exact),
+                    mesh_error_percent: reference.percent(own, exact),
                     ours,
                 };
                 let better = best.as_ref().is_none_or(|best| match (rival.own, best.own) {
@@ -195,9 +195,14 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
 fn swings(solver: RapierSolver) -> Vec<Swing> {
     let iterations = if solver == RapierSolver::Fem { &CG_ITERATIONS[..] } else { &CG_ITERATIONS[..1] };
     let mut swings = Vec::new();
-    for pace in PACES {
+    for frequency_factor in FREQUENCY_FACTORS {
         for damping in DAMPINGS {
-            swings.extend(iterations.iter().map(|&cg_iterations| Swing { solver, pace, damping, cg_iterations }));
+            swings.extend(iterations.iter().map(|&cg_iterations| Swing {
+                solver,
+                frequency_factor,
+                damping,
+                cg_iterations,
+            }));
         }
     }
     swings
@@ -207,7 +212,7 @@ fn swings(solver: RapierSolver) -> Vec<Swing> {
 struct Run {
     step: Duration,
     own: Option<Moment>,
-    truth: Option<Moment>,
+    reference: Option<Moment>,
     end: Vector2<f64>,
 }
 
@@ -234,9 +239,9 @@ impl Arrival {
 
 /// Steps until the body is at rest at `own` and, if the mesh is accurate enough, at the reference, or until `limit` is
 /// exceeded.
-fn swing_in(mut body: Rapier<'_>, [own, truth]: [Vector2<f64>; 2], limit: Duration) -> Run {
-    let (mut to_own, mut to_truth) = (Arrival::default(), Arrival::default());
-    let reachable = (own - truth).norm() <= WITHIN * truth.norm();
+fn swing_in(mut body: Rapier<'_>, [own, reference]: [Vector2<f64>; 2], limit: Duration) -> Run {
+    let (mut to_own, mut to_reference) = (Arrival::default(), Arrival::default());
+    let reachable = (own - reference).norm() <= WITHIN * reference.norm();
     let mut times = Vec::new();
     let mut now = Moment::default();
     while now.steps < MOST_STEPS {
@@ -247,8 +252,8 @@ fn swing_in(mut body: Rapier<'_>, [own, truth]: [Vector2<f64>; 2], limit: Durati
         now = Moment { steps: now.steps + 1, time: now.time + time };
         let u = body.displacement();
         to_own.see(now, (u - own).norm() / own.norm());
-        to_truth.see(now, (u - truth).norm() / truth.norm());
-        let done = to_own.rests(now.steps).is_some() && (!reachable || to_truth.rests(now.steps).is_some());
+        to_reference.see(now, (u - reference).norm() / reference.norm());
+        let done = to_own.rests(now.steps).is_some() && (!reachable || to_reference.rests(now.steps).is_some());
         let late = now.time > limit && to_own.since.is_none_or(|since| since.time > limit);
         if done || late || now.time > MOST_TIME {
             break;
@@ -258,7 +263,7 @@ fn swing_in(mut body: Rapier<'_>, [own, truth]: [Vector2<f64>; 2], limit: Durati
     Run {
         step: times.get(times.len() / 2).copied().unwrap_or_default(),
         own: to_own.rests(now.steps),
-        truth: to_truth.rests(now.steps),
+        reference: to_reference.rests(now.steps),
         end: body.displacement(),
     }
 }
@@ -284,11 +289,11 @@ fn table(rivals: &[Rival]) -> String {
             r.dofs,
             milliseconds(r.step),
             until(r.own),
-            until(r.truth),
+            until(r.reference),
             r.error_percent,
             r.mesh_error_percent,
             milliseconds(r.ours),
-            r.swing.pace,
+            r.swing.frequency_factor,
             r.swing.damping,
             r.swing.cg_iterations
         );
@@ -300,7 +305,7 @@ fn table(rivals: &[Rival]) -> String {
 fn summary(rivals: &[Rival]) -> String {
     let mut text = String::from(
         "rapier2d on the same three-node meshes (f32, steps of 1/60 s, the fastest of several masses and dampings), ms:\n\
-         mesh      solver         one step   until its mesh's rest within 1 %   until the truth within 1 %   newton t3\n",
+         mesh      solver         one step   until its mesh's rest within 1 %   until 1 % of the reference   newton t3\n",
     );
     for r in rivals {
         let mesh = r.cells.map_or_else(|| "as meshed".to_owned(), |[along, across]| format!("{along}×{across}"));
@@ -314,7 +319,7 @@ fn summary(rivals: &[Rival]) -> String {
             r.swing.solver.id(),
             milliseconds(r.step),
             until(r.own),
-            until(r.truth),
+            until(r.reference),
             milliseconds(r.ours)
         );
     }

@@ -41,7 +41,7 @@ pub struct Swing {
     /// Solver.
     pub solver: RapierSolver,
     /// Phase angle of the first mode per step, rad; determines the mass.
-    pub pace: f64,
+    pub frequency_factor: f64,
     /// Damping relative to critical damping.
     pub damping: f64,
     /// Largest number of conjugate gradient iterations per substep of `fem`.
@@ -73,7 +73,7 @@ impl<'a> Rapier<'a> {
         let vector = |v: &Vector2<f64>| Vector::new(v.x as f32, v.y as f32);
         // A mass on a spring with the stiffness seen by the load, a quarter of a beam's mass.
         let load: Vector2<f64> = dead_force.iter().sum();
-        let frequency = swing.pace / f64::from(STEP);
+        let frequency = swing.frequency_factor / f64::from(STEP);
         let mass = 4.0 * load.norm() / end.norm() / frequency.powi(2);
         let mut masses = vec![0.0; mesh.nodes().len()];
         let mut cells = Vec::new();

@@ -97,7 +97,7 @@ impl Auto {
     /// Tries linear theory. If the state is at rest or that of linear theory, the solution is also the first Newton
     /// step and is taken in any case; returns `true` if a step was made.
     fn try_linear(&mut self, it: &mut Iteration<'_>) -> Result<bool, IterationError> {
-        if it.problem.hand().is_some() || it.problem.supports().move_the_body() {
+        if it.problem.mouse_spring().is_some() || it.problem.supports().move_the_body() {
             // The expansion supports dead loads and moments only.
             self.linear = false;
             return Ok(false);
@@ -188,7 +188,7 @@ impl Auto {
     }
 
     /// Starts load stepping from rest.
-    fn hand_over(&mut self, state: &mut State) -> Verdict {
+    fn start_load_steps(&mut self, state: &mut State) -> Verdict {
         state.reset();
         self.newton = Some(Newton::default());
         self.tangent = None;
@@ -285,8 +285,8 @@ impl Method for Auto {
         if self.steps == 1 && self.try_linear(it)? {
             return Ok(());
         }
-        if it.supports_must_turn_in_steps() {
-            self.hand_over(it.state);
+        if it.supports_rotate_in_steps() {
+            self.start_load_steps(it.state);
             it.workspace.tangent = None;
             return self.iterate(it);
         }
@@ -332,8 +332,10 @@ impl Method for Auto {
         let done = within || it.residual <= it.tolerances.residual;
         match &self.tangent {
             Some(tangent) if done && tangent.definite => self.accept(it),
-            Some(_) if done => self.hand_over(it.state),
-            _ if self.steps >= MAX_STEPS || farthest(it.system(), it.state) > LONGEST_STEP => self.hand_over(it.state),
+            Some(_) if done => self.start_load_steps(it.state),
+            _ if self.steps >= MAX_STEPS || farthest(it.system(), it.state) > LONGEST_STEP => {
+                self.start_load_steps(it.state)
+            }
             _ => Verdict::Continue,
         }
     }
@@ -347,7 +349,7 @@ impl Method for Auto {
     fn recover(&mut self, it: &mut Iteration<'_>, error: IterationError) -> Verdict {
         match &mut self.newton {
             Some(newton) => newton.recover(it, error),
-            None => self.hand_over(it.state),
+            None => self.start_load_steps(it.state),
         }
     }
 }

@@ -43,9 +43,9 @@ pub(super) fn distorted(scene: &Scene, distortion: f64) -> Option<Mesh> {
     let cell = Vector2::new(beam.length / along, beam.height / across);
     let place = |x: Vector2<f64>| {
         let (i, j) = ((x.x / cell.x).round(), ((x.y + 0.5 * beam.height) / cell.y).round());
-        let way = if (i + j) % 2.0 == 0.0 { distortion } else { -distortion };
+        let displacement = if (i + j) % 2.0 == 0.0 { distortion } else { -distortion };
         let stays = i == 0.0 || i == along;
-        x + Vector2::new(if stays { 0.0 } else { way * cell.x }, 0.0)
+        x + Vector2::new(if stays { 0.0 } else { displacement * cell.x }, 0.0)
     };
     let (entry, mut nodes) = (mesh.element().entry(), mesh.nodes().to_vec());
     for element in mesh.elements() {

@@ -13,11 +13,11 @@ use nalgebra::Vector2;
 use self::body::distorted;
 pub use self::body::{Body, FILES};
 use super::Extent;
+use crate::format::number;
 use crate::method::{METHODS, Reason};
 use crate::rotation::Rotation;
 use crate::scene::{Axis, ElementKind, Material, MethodKind, Plane, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::words::number;
 
 /// Initial state of a solve; fixed nodes stay at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -252,8 +252,8 @@ impl Case {
             .clamp("left")
             .probe("tip", "right");
         let mut scene = if self.moved {
-            let way = length * (self.alpha / 3.0).min(FARTHEST_TIP);
-            scene.support([length, 0.0], &[Axis::Y]).moved([0.0, -way], 0.0)
+            let displacement = length * (self.alpha / 3.0).min(FARTHEST_TIP);
+            scene.support([length, 0.0], &[Axis::Y]).moved([0.0, -displacement], 0.0)
         } else {
             scene.force("right", [0.0, -force])
         };
@@ -398,7 +398,7 @@ pub fn summary(entries: &[Entry]) -> String {
         (|c| c.is_plain() && !c.moved, "of the cases from rest, by load α = P L²/EI"),
         (
             |c| c.is_plain() && c.moved,
-            "of the cases from rest, by way of the tip that is moved, α/3 of the length, at most 0.8",
+            "of the cases from rest, by the displacement of the moved tip, α/3 of the length, at most 0.8",
         ),
         (|c| c.distortion > 0.0, "of the cases with distorted cells, by load α = P L²/EI"),
         (|c| c.body != Body::Beam, "of the mesh files, by their scenes' load times"),

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 
 use super::super::Extent;
 use crate::dynamics::{INTEGRATORS, StopReason};
+use crate::format::number;
 use crate::scene::{ElementKind, IntegratorKind, Material, Scene};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::words::number;
 
 /// Case: a beam of 1 m × 0.1 m, clamped at one end, is released from horizontal and falls under its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,13 +95,13 @@ pub(crate) fn variants() -> impl Iterator<Item = (IntegratorKind, u32)> {
 }
 
 /// Describes an integrator, with its number of solves if that makes a difference.
-pub(crate) fn variant_words(integrator: IntegratorKind, iterations: u32) -> String {
+pub(crate) fn variant_text(integrator: IntegratorKind, iterations: u32) -> String {
     let entry = integrator.entry();
     match iterations {
         _ if entry.is_explicit() || entry.always_iterates => entry.id.to_owned(),
         0 => format!("{}, to tolerance", entry.id),
         1 if entry.stages > 1 => format!("{}, 1 solve a stage", entry.id),
-        n => format!("{}, {}", entry.id, crate::words::count(n, "solve")),
+        n => format!("{}, {}", entry.id, crate::format::count(n, "solve")),
     }
 }
 
@@ -225,7 +225,7 @@ pub fn summary(entries: &[MotionEntry]) -> String {
     let counts = counts(entries);
     for (element, (integrator, iterations)) in ElementKind::all().flat_map(|e| variants().map(move |v| (e, v))) {
         let Some(row) = counts.get(&(element.id(), integrator.id(), iterations)) else { continue };
-        let _ = write!(text, "{:<7} {:<28}", element.id(), variant_words(integrator, iterations));
+        let _ = write!(text, "{:<7} {:<28}", element.id(), variant_text(integrator, iterations));
         for count in row {
             let _ = write!(text, " {count:>14}");
         }

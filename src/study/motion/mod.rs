@@ -16,12 +16,12 @@ use super::pareto;
 use super::progress::{Extent, Observer, Progress, StudyError, all_done, check};
 use super::reference::{first_probe, system_of};
 use super::timing::{Runs, median_time};
-use super::trade::{Setting, mesh_words};
+use super::trade::{Setting, mesh_text};
 use crate::assembly::{Mass, System};
 use crate::dynamics::{Counts, critical_step};
+use crate::format::count;
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::simulation::{Simulation, Status};
-use crate::words::count;
 
 mod plan;
 mod reference;
@@ -75,7 +75,7 @@ impl MotionSetting {
     }
 
     /// Describes the number of solves per step, or per stage of one.
-    fn solves_words(&self) -> String {
+    fn solves_text(&self) -> String {
         let entry = self.integrator.entry();
         match self.iterations {
             _ if entry.is_explicit() => "no solve".to_owned(),
@@ -88,8 +88,8 @@ impl MotionSetting {
 
 impl std::fmt::Display for MotionSetting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mesh = mesh_words(self.element, self.cells);
-        let (step, solves) = (step_words(self.time_step), self.solves_words());
+        let mesh = mesh_text(self.element, self.cells);
+        let (step, solves) = (step_text(self.time_step), self.solves_text());
         let theory = match self.method {
             method if method.moves_linearly() => "linear theory",
             _ if self.integrator.entry().is_explicit() => "corotated",
@@ -100,7 +100,7 @@ impl std::fmt::Display for MotionSetting {
 }
 
 /// Describes a time step: `1/60 s` if it is that fraction.
-fn step_words(step: f64) -> String {
+fn step_text(step: f64) -> String {
     let rate = 1.0 / step;
     if rate >= 1.5 && (rate - rate.round()).abs() < 1e-6 * rate {
         format!("1/{} s", rate.round())
@@ -268,7 +268,7 @@ impl MotionStudy {
             observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress })
         })?;
         let meshes = MeshPlan::all(scene, extent);
-        let own = |mesh: &MeshPlan, called_off: &CalledOff| Meshed::new(studied, mesh, called_off);
+        let own = |mesh: &MeshPlan, cancelled: &CalledOff| Meshed::new(studied, mesh, cancelled);
         let meshed = all_done(parallel::map(&meshes, own, |done| {
             let fraction = REFERENCE_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
             observe(Progress { fraction, now: "the meshes' own motions" })
@@ -312,11 +312,11 @@ impl MotionStudy {
         say: &mut dyn FnMut(f64, &str) -> ControlFlow<()>,
     ) -> Result<(), StudyError> {
         // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-        let first = |job: &Job, called_off: &CalledOff| {
+        let first = |job: &Job, cancelled: &CalledOff| {
             let (setting, steps) = job.setting(mesh, meshed.critical, studied.samples);
-            FirstRun::new(studied, meshed, setting, steps, called_off)
+            FirstRun::new(studied, meshed, setting, steps, cancelled)
         };
-        let now = format!("{}, its settings' paths", mesh_words(mesh.element, mesh.cells));
+        let now = format!("{}, its settings' paths", mesh_text(mesh.element, mesh.cells));
         let first = all_done(parallel::map(&mesh.jobs, first, |done| {
             say(FIRST_RUNS_SHARE * done as f64 / mesh.jobs.len() as f64, &now)
         }))?;
@@ -415,7 +415,7 @@ struct Meshed {
 }
 
 impl Meshed {
-    fn new(studied: Studied<'_>, mesh: &MeshPlan, called_off: &CalledOff) -> Result<Self, StudyError> {
+    fn new(studied: Studied<'_>, mesh: &MeshPlan, cancelled: &CalledOff) -> Result<Self, StudyError> {
         let Studied { scene, samples, plan } = studied;
         let MeshPlan { element, cells, .. } = *mesh;
         let scene = Setting { element, cells, method: MethodKind::Newton, iterations: 0 }.apply(scene);
@@ -423,7 +423,7 @@ impl Meshed {
         let simulation = Simulation::with_system(&scene, system.clone())?;
         let mass = Mass::new(&system, scene.material.area_density());
         let critical = critical_step(simulation.problem(), &mass, scene.dynamics.damping);
-        let own = |method| fine_path(&scene, method, &system, samples, plan.reference_steps(), called_off);
+        let own = |method| fine_path(&scene, method, &system, samples, plan.reference_steps(), cancelled);
         let (exact, linear) = (own(MethodKind::Newton)?, own(MethodKind::Linear)?);
         Ok(Self { system, exact, linear, critical })
     }
@@ -450,7 +450,7 @@ impl FirstRun {
         mesh: &Meshed,
         setting: MotionSetting,
         steps_of_sample: u32,
-        called_off: &CalledOff,
+        cancelled: &CalledOff,
     ) -> Result<Self, StudyError> {
         let Studied { scene, samples, plan } = studied;
         let mut simulation = Simulation::with_system(&setting.apply(scene), mesh.system.clone())?;
@@ -459,7 +459,7 @@ impl FirstRun {
             run(&mut simulation, ENOUGH_STEPS);
             (ENOUGH_STEPS, Vec::new())
         } else {
-            (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, called_off)?)
+            (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, cancelled)?)
         };
         let stopped = matches!(simulation.status(), Status::Stopped(_));
         let ending = match (stopped, cut) {
@@ -503,11 +503,11 @@ fn path(
     simulation: &mut Simulation,
     samples: Samples,
     steps: u32,
-    called_off: &CalledOff,
+    cancelled: &CalledOff,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut path = Vec::with_capacity(samples.count as usize);
     for _ in 0..samples.count {
-        check(called_off.flow())?;
+        check(cancelled.flow())?;
         run(simulation, steps);
         if matches!(simulation.status(), Status::Stopped(_)) {
             break;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::plan::{Plan, Samples, cells};
-use super::{MotionSetting, path, step_words};
+use super::{MotionSetting, path, step_text};
 use crate::assembly::System;
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
@@ -14,7 +14,7 @@ use crate::study::fine::finest_element;
 use crate::study::parallel::{self, CalledOff};
 use crate::study::progress::{Extent, Observer, Progress, StudyError, all_done};
 use crate::study::reference::system_of;
-use crate::study::trade::mesh_words;
+use crate::study::trade::mesh_text;
 
 /// Reference path of the first probe.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,14 +40,14 @@ pub struct MotionReference {
 impl std::fmt::Display for MotionReference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mesh = match self.cells {
-            Some(_) => mesh_words(self.element, self.cells),
+            Some(_) => mesh_text(self.element, self.cells),
             None => format!("{} on the refined mesh", self.element.id()),
         };
         write!(
             f,
             "{} with steps of {} on {mesh} (its own error about {:.1e} %)",
             IntegratorKind::EnergyMomentum.id(),
-            step_words(self.time_step),
+            step_text(self.time_step),
             self.error_percent
         )
     }
@@ -78,8 +78,8 @@ impl MotionReference {
         let [coarse, fine] = meshes(scene, plan)?;
         // Paths on a coarser mesh, with longer steps, and the best one.
         let paths = [(&coarse, steps / 2), (&fine, steps / 2), (&fine, steps)];
-        let follow = |&(mesh, steps): &(&Reference, u32), called_off: &CalledOff| {
-            fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, called_off)
+        let follow = |&(mesh, steps): &(&Reference, u32), cancelled: &CalledOff| {
+            fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, cancelled)
         };
         let paths = all_done(parallel::map(&paths, follow, |done| {
             observe(Progress { fraction: done as f64 / paths.len() as f64, now: "the reference solution" })
@@ -123,7 +123,7 @@ pub(super) fn fine_path(
     system: &Arc<System>,
     samples: Samples,
     steps: u32,
-    called_off: &CalledOff,
+    cancelled: &CalledOff,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
@@ -132,7 +132,7 @@ pub(super) fn fine_path(
     dynamics.time_step = samples.interval / f64::from(steps);
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
     simulation.keep_ledger(false);
-    let path = path(&mut simulation, samples, steps, called_off)?;
+    let path = path(&mut simulation, samples, steps, cancelled)?;
     match simulation.status() {
         Status::Stopped(reason) => Err(StudyError::NoPath(*reason)),
         _ => Ok(path),

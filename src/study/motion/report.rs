@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStudy, REAL_TIME, step_words};
+use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStudy, REAL_TIME, step_text};
 use crate::dynamics::INTEGRATORS;
+use crate::format::{count, number};
 use crate::scene::MethodKind;
-use crate::study::trade::mesh_words;
-use crate::words::{count, number};
+use crate::study::trade::mesh_text;
 
 impl MotionStudy {
     /// Formats the study as CSV. `solves` is the number per step or stage, 0 to iterate to the tolerance; `resolved` is
@@ -72,8 +72,8 @@ impl MotionStudy {
                 text,
                 "{:12.3} {:>12} {:>11} {:11.4} {:12.4} {:11.4} {:14.4} {:11.4}   {}",
                 m.milliseconds,
-                self.percent_words(e.bound()),
-                self.percent_words(e.total),
+                self.percent_text(e.bound()),
+                self.percent_text(e.total),
                 e.rms,
                 e.discretization,
                 e.integration,
@@ -97,11 +97,11 @@ impl MotionStudy {
                 continue;
             }
             let best = self.fastest_within(percent);
-            let words = best.map_or_else(|| "not reached".to_owned(), time_words);
+            let words = best.map_or_else(|| "not reached".to_owned(), time_text);
             let _ = writeln!(text, "an error of {percent} % costs {words}");
             for integrator in INTEGRATORS {
                 let own = self.fastest_of(percent, |m| m.setting.integrator == integrator.kind);
-                let words = own.map_or_else(|| "not reached".to_owned(), time_words);
+                let words = own.map_or_else(|| "not reached".to_owned(), time_text);
                 let _ = writeln!(text, "    {:<16} {words}", integrator.id);
             }
         }
@@ -110,7 +110,7 @@ impl MotionStudy {
             || match self.fastest_within(1.0) {
                 None => "nothing measured is within 1 %".to_owned(),
                 Some(fastest) => {
-                    format!("within 1 %, nothing measured is as fast as real time: {}", time_words(fastest))
+                    format!("within 1 %, nothing measured is as fast as real time: {}", time_text(fastest))
                 }
             },
             |m| {
@@ -126,7 +126,7 @@ impl MotionStudy {
         let _ = writeln!(
             text,
             "by time step, newton on {}: error of the time steps, %; energy, % of the largest kinetic; time of a simulated second, ms",
-            mesh_words(self.reference.element, self.own_mesh)
+            mesh_text(self.reference.element, self.own_mesh)
         );
         let own = |m: &&MotionMeasurement| {
             let MotionSetting { element, cells, method, .. } = m.setting;
@@ -138,8 +138,8 @@ impl MotionStudy {
                 text,
                 "    {:<16} {:<18} {:>10}  {:>12} {:>12.5} {:<6} {:>10.3}",
                 setting.integrator.id(),
-                setting.solves_words(),
-                step_words(setting.time_step),
+                setting.solves_text(),
+                step_text(setting.time_step),
                 m.error.map_or_else(|| m.ending.id().replace('_', " "), |e| format!("{:.4}", e.integration)),
                 m.drift_percent,
                 m.energy().id(),
@@ -199,13 +199,13 @@ impl MotionStudy {
     }
 
     /// Formats an error; errors below the reference's own are shown as an upper bound.
-    fn percent_words(&self, percent: f64) -> String {
+    fn percent_text(&self, percent: f64) -> String {
         let own = self.reference.error_percent;
         if percent <= own { format!("≤ {own:.4}") } else { format!("{percent:.4}") }
     }
 }
 
-fn time_words(m: &MotionMeasurement) -> String {
+fn time_text(m: &MotionMeasurement) -> String {
     format!("{:.3} ms a simulated second, {}", m.milliseconds, m.setting)
 }
 

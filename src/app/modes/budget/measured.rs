@@ -79,7 +79,7 @@ impl Measured {
     }
 
     /// Returns the name of the reference solution.
-    pub(crate) fn reference_words(&self) -> String {
+    pub(crate) fn reference_text(&self) -> String {
         match self {
             Self::Rest(study) => translated(&study.reference.to_string()),
             Self::Motion(study) => {
@@ -120,7 +120,7 @@ impl Choice {
     }
 
     /// Returns the name of the setting.
-    pub(crate) fn words(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         match self {
             Self::Rest(m) => translated(&m.setting.to_string()),
             Self::Motion(m) => joined(m.setting.to_string().split(", ").map(translated)),

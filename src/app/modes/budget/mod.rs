@@ -11,16 +11,16 @@ use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, Pl
 use crate::app::action::Action;
 use crate::app::language::{fill, joined, percent, tr, translated};
 use crate::app::modes::budget::measured::{Choice, Group, Measured};
-use crate::app::modes::budget::study_task::{Background, BackgroundError, News};
+use crate::app::modes::budget::study_task::{Background, BackgroundError, StudyState};
 use crate::app::task::thread::POLL;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
 use crate::app::widgets::palette::Palette;
 use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
+use crate::format::{engineering, number, three_digits};
 use crate::method::METHODS;
 use crate::scene::{Analysis, Scene, limits};
 use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
-use crate::words::{engineering, number, three_digits};
 
 /// Study of the lab's scene, and the limits for its settings.
 #[derive(Debug, Default)]
@@ -72,7 +72,7 @@ impl Budget {
         self.is_partial = true;
         // The measurements of a motion are reported when the study ends.
         if self.of.as_ref().is_some_and(|scene| scene.analysis == Analysis::Dynamic) {
-            background.call_off();
+            background.cancel();
             self.background = Some(background);
         }
     }
@@ -119,11 +119,11 @@ impl Budget {
     }
 
     /// Polls the study in progress.
-    pub(crate) fn listen(&mut self, ctx: &Context) {
+    pub(crate) fn poll(&mut self, ctx: &Context) {
         let Some(background) = &mut self.background else { return };
-        match background.listen(&mut self.study) {
-            News::Running => ctx.request_repaint_after(POLL),
-            News::Ended(result) => {
+        match background.poll(&mut self.study) {
+            StudyState::Running => ctx.request_repaint_after(POLL),
+            StudyState::Ended(result) => {
                 self.error = result.err();
                 self.background = None;
             }
@@ -215,7 +215,7 @@ fn settings(
                     RichText::new(tr("Cancelled: not everything has been measured.")).small().color(color)
                 }
                 (None, Some(study)) => {
-                    RichText::new(fill!("Error against %{truth}.", truth = study.reference_words())).small()
+                    RichText::new(fill!("Error against %{reference}.", reference = study.reference_text())).small()
                 }
             };
             ui.add(egui::Label::new(words).truncate());
@@ -270,7 +270,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error_percent()), m.words());
+            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error_percent()), m.text());
             let label = ui.add(
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(words).font(FontId::monospace(12.0)))
                     .truncate(),
@@ -283,7 +283,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
 }
 
 /// Returns the name of a measured setting.
-pub(crate) fn setting_words(setting: &Setting) -> String {
+pub(crate) fn setting_text(setting: &Setting) -> String {
     translated(&setting.to_string())
 }
 
@@ -298,7 +298,7 @@ fn decades(input: GridInput) -> Vec<GridMark> {
     (low.ceil() as i64..=high.floor() as i64).map(|e| GridMark { value: e as f64, step_size: 1.0 }).collect()
 }
 
-fn decade_words(mark: GridMark) -> String {
+fn decade_text(mark: GridMark) -> String {
     number(10f64.powf(mark.value.round()))
 }
 
@@ -344,7 +344,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
             AxisHints::new_x()
                 .label(tr(time))
                 .min_thickness(X_AXIS)
-                .formatter(|mark, _| decade_words(mark))
+                .formatter(|mark, _| decade_text(mark))
                 // Labels of powers of ten are short, so even a narrow plot has room for them.
                 .label_spacing(egui::Rangef::new(36.0, 60.0)),
         ])
@@ -352,10 +352,10 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .y_axis_min_width(BUDGET_Y_AXIS)
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
-        .y_axis_formatter(|mark, _| decade_words(mark))
+        .y_axis_formatter(|mark, _| decade_text(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", m.words(), milliseconds(m), percent(m.error_percent()))),
+                .map(|m| format!("{}\n{}, {}", m.text(), milliseconds(m), percent(m.error_percent()))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)

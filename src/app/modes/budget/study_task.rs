@@ -20,7 +20,7 @@ pub(crate) enum BackgroundError {
 
 /// Progress report of a study.
 #[derive(Debug)]
-enum Said {
+enum StudyProgress {
     Now(f32, String),
     SoFar(Measured),
 }
@@ -29,7 +29,7 @@ type Done = Result<Measured, StudyError>;
 
 /// State of a study after a poll.
 #[derive(Debug)]
-pub(crate) enum News {
+pub(crate) enum StudyState {
     /// The study is in progress.
     Running,
     /// The study has ended or was cancelled; the error tells why it failed.
@@ -39,7 +39,7 @@ pub(crate) enum News {
 /// Study in a background thread. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct Background {
-    task: Task<Said, Done>,
+    task: Task<StudyProgress, Done>,
     /// Fraction done, and (`now`) the current measurement.
     fraction: f32,
     now: String,
@@ -61,34 +61,34 @@ impl Background {
     }
 
     /// Asks the study to end with the measurements that it has.
-    pub(crate) fn call_off(&self) {
+    pub(crate) fn cancel(&self) {
         self.task.cancel();
     }
 
     /// Processes the updates since the last call; measurements are stored in `study`.
-    pub(crate) fn listen(&mut self, study: &mut Option<Measured>) -> News {
+    pub(crate) fn poll(&mut self, study: &mut Option<Measured>) -> StudyState {
         loop {
             match self.task.poll() {
-                Update::Progress(Said::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
-                Update::Progress(Said::SoFar(so_far)) => *study = Some(so_far),
+                Update::Progress(StudyProgress::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
+                Update::Progress(StudyProgress::SoFar(so_far)) => *study = Some(so_far),
                 Update::Done(Ok(done)) => {
                     *study = Some(done);
-                    return News::Ended(Ok(()));
+                    return StudyState::Ended(Ok(()));
                 }
-                Update::Done(Err(StudyError::Cancelled)) => return News::Ended(Ok(())),
-                Update::Done(Err(error)) => return News::Ended(Err(error.into())),
-                Update::None => return News::Running,
-                Update::Died => return News::Ended(Err(BackgroundError::Died)),
+                Update::Done(Err(StudyError::Cancelled)) => return StudyState::Ended(Ok(())),
+                Update::Done(Err(error)) => return StudyState::Ended(Err(error.into())),
+                Update::None => return StudyState::Running,
+                Update::Died => return StudyState::Ended(Err(BackgroundError::Died)),
             }
         }
     }
 }
 
-fn work(scene: &Scene, extent: Extent, reporter: &Reporter<Said, Done>) -> Done {
+fn work(scene: &Scene, extent: Extent, reporter: &Reporter<StudyProgress, Done>) -> Done {
     let observe = |progress: Progress<'_>, so_far: Option<&Study>| {
         reporter.report(match so_far {
-            Some(study) => Said::SoFar(Measured::Rest(study.clone())),
-            None => Said::Now(progress.fraction as f32, progress.now.to_owned()),
+            Some(study) => StudyProgress::SoFar(Measured::Rest(study.clone())),
+            None => StudyProgress::Now(progress.fraction as f32, progress.now.to_owned()),
         })
     };
     match scene.analysis {

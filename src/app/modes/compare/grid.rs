@@ -19,10 +19,10 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::assembly::System;
+use crate::format::{engineering, prefix, three_digits};
 use crate::render::display_geometry::DisplayGeometry;
 use crate::render::{Camera, View};
 use crate::scene::Scene;
-use crate::words::{engineering, prefix, three_digits};
 
 /// Space between panes, points.
 const GAP: f32 = 6.0;
@@ -82,9 +82,9 @@ pub(super) fn close_button(ui: &mut Ui, number: usize) -> bool {
     let close = |ui: &mut Ui| {
         let button = egui::Button::new(RichText::new("×").size(18.0)).frame(false);
         let button = ui.add(button.min_size(vec2(24.0, 24.0)));
-        let words = fill!("Close pane %{n}", n = number + 1);
-        button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));
-        button.on_hover_text(words).clicked()
+        let text = fill!("Close pane %{n}", n = number + 1);
+        button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &text));
+        button.on_hover_text(text).clicked()
     };
     ui.with_layout(Layout::right_to_left(Align::Center), close).inner
 }
@@ -162,9 +162,14 @@ pub(super) fn common_range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
 }
 
 /// Animates the camera towards the box that it fits.
-pub(super) fn aim(ui: &Ui, eye: &mut CameraController, fit: impl FnOnce([Vector2<f64>; 2]) -> Camera, eases: bool) {
+pub(super) fn aim(
+    ui: &Ui,
+    controller: &mut CameraController,
+    fit: impl FnOnce([Vector2<f64>; 2]) -> Camera,
+    eases: bool,
+) {
     let dt = f64::from(ui.input(|i| i.stable_dt));
-    if eye.aim(fit(eye.whole()), eases.then_some(dt)) {
+    if controller.aim(fit(controller.whole()), eases.then_some(dt)) {
         ui.ctx().request_repaint();
     }
 }
@@ -186,17 +191,17 @@ pub(super) fn follow(
     (number, place): (usize, Rect),
     pointer: &mut Pointer,
     reach: &HitTargets<'_>,
-    eye: &mut CameraController,
+    controller: &mut CameraController,
 ) -> Interaction {
     let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
     let wish = pointer.follow(ui, &response, reach, Target::None);
     match wish.camera {
         CameraMove::None => {}
         CameraMove::To(camera) => {
-            eye.look(camera);
+            controller.look(camera);
             ui.ctx().request_repaint();
         }
-        CameraMove::Fit => eye.fit(),
+        CameraMove::Fit => controller.fit(),
     }
     wish
 }
@@ -232,7 +237,7 @@ impl PaneBody<'_> {
             direction: input.direction,
             opening: input.opening,
             hot: self.hot,
-            hand: None,
+            mouse_spring: None,
             reactions: &[],
             playback: still,
             color_range: self.shape.range,
@@ -253,8 +258,8 @@ pub(super) fn color_key(ui: &Ui, rect: Rect, left: f32, view: &ViewOptions, rang
     let unit = view.field.unit();
     let (power, symbol) = prefix(&range, unit);
     let [low, high] = range.map(|v| engineering(three_digits(v / 10f64.powi(power)), ""));
-    let put = |right: f32, words: String| {
-        painter.text(pos2(right, middle), Align2::RIGHT_CENTER, words, font.clone(), palette.text).left() - 8.0
+    let put = |right: f32, text: String| {
+        painter.text(pos2(right, middle), Align2::RIGHT_CENTER, text, font.clone(), palette.text).left() - 8.0
     };
     let right = put(rect.right() - 12.0, format!("{high} {symbol}{unit}"));
     let bar = Rect::from_center_size(pos2(right - 0.5 * bar, middle), vec2(bar, 10.0));

@@ -10,11 +10,11 @@ use egui::{
 use nalgebra::Vector2;
 
 use self::grid::{Grid, PaneBody, PaneChange, Preset, grow};
-use self::pane::{Doing, Equations, Turn};
+use self::pane::{Doing, Equations, FrameConditions};
 use self::setting::PANES;
 use self::trace::Trace;
 use crate::app::action::Action;
-use crate::app::diagnosis::{error_color, truth_words};
+use crate::app::diagnosis::{error_color, reference_text};
 use crate::app::language::{count, fill, percent, sentence, tr, translated};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::playback::Playback;
@@ -29,11 +29,11 @@ use crate::app::widgets::legend::Mark;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use crate::assembly::System;
+use crate::format::{engineering, two_digits};
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::{Reference, Setting};
-use crate::words::{engineering, two_digits};
 
 mod grid;
 mod motion;
@@ -63,7 +63,7 @@ pub(crate) struct CompareInput<'a> {
     /// Scene that the existing equations belong to.
     pub shown: &'a Scene,
     pub system: &'a Arc<System>,
-    pub truth: Option<&'a Reference>,
+    pub reference: Option<&'a Reference>,
     pub running: bool,
     /// Setting that Budget has chosen.
     pub chosen: Option<Setting>,
@@ -77,7 +77,7 @@ pub(crate) struct Compare {
     /// `true` if the load curve is shown; `None` means if there is room.
     shows_trace: Option<bool>,
     /// Camera of all panes; `None` before the first frame.
-    eye: Option<CameraController>,
+    controller: Option<CameraController>,
     /// Empty playback, because bodies at rest have no past.
     still: Playback,
 }
@@ -88,7 +88,7 @@ impl Default for Compare {
             panes: Vec::new(),
             trace: Trace::default(),
             shows_trace: None,
-            eye: None,
+            controller: None,
             still: Playback::default(),
         };
         compare.set(&METHODS_PRESET.map(PaneSetting::of_method));
@@ -119,12 +119,12 @@ impl Compare {
 
     /// Returns the camera of all panes.
     pub(crate) fn camera(&self) -> Camera {
-        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
+        self.controller.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
     }
 
     /// Fits the camera to all bodies.
     pub(crate) fn fit(&mut self) {
-        self.eye.iter_mut().for_each(CameraController::fit);
+        self.controller.iter_mut().for_each(CameraController::fit);
     }
 
     /// Restarts all panes from rest.
@@ -184,14 +184,14 @@ impl Compare {
         let share = WORK / u32::try_from(self.panes.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes {
             let until = Instant::now() + share;
-            pane.advance(input.common.scene, &equations, Turn { moves, holds, runs: input.running, until });
+            pane.advance(input.common.scene, &equations, FrameConditions { moves, holds, runs: input.running, until });
             is_new |= self.trace.record(input.common.scene, pane);
-            pane.judge(input.truth);
+            pane.judge(input.reference);
         }
         if !holds || !moves {
             self.trace.ask(input.common.scene, ctx);
         }
-        self.trace.record_truth(input.truth);
+        self.trace.record_reference(input.reference);
         let busy = |pane: &Pane| !pane.is_settled() && !pane.is_away() && !pane.waits();
         if is_new || input.running && self.panes.iter().any(busy) {
             ctx.request_repaint();
@@ -341,10 +341,10 @@ impl Compare {
         let rest = [low, high];
         let iterates = self.is_iterating();
         let margins = self.margins(input, size);
-        let eye = self.eye.get_or_insert_with(|| CameraController::new(rest));
+        let controller = self.controller.get_or_insert_with(|| CameraController::new(rest));
         if !self.panes.iter().any(|pane| pane.pointer.holds()) {
-            let truth = input.truth.filter(|_| input.common.view.exact);
-            let mut bounds = truth.into_iter().flat_map(|truth| &truth.outline).flatten().fold(rest, grow);
+            let reference = input.reference.filter(|_| input.common.view.exact);
+            let mut bounds = reference.into_iter().flat_map(|reference| &reference.outline).flatten().fold(rest, grow);
             let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
             let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
                 self.panes.iter().filter(|pane| pane.is_sound()).partition(|pane| is_linear(pane));
@@ -353,16 +353,16 @@ impl Compare {
             const LARGEST: f64 = 1.5;
             let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
             let with = linear.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
-            let known = !others.is_empty() || truth.is_some();
+            let known = !others.is_empty() || reference.is_some();
             if !known || size_of(with) < LARGEST * size_of(bounds) {
                 bounds = with;
             }
-            if !iterates || eye.whole() == rest {
-                eye.set_body(rest);
-                eye.follow(bounds);
+            if !iterates || controller.whole() == rest {
+                controller.set_body(rest);
+                controller.follow(bounds);
             }
         }
-        grid::aim(ui, eye, |[low, high]| Camera::fit(low, high, size, margins), input.common.eases);
+        grid::aim(ui, controller, |[low, high]| Camera::fit(low, high, size, margins), input.common.eases);
     }
 
     /// Returns the margins around the bodies when the camera is fitted, points: room for supports, load arrows and
@@ -372,10 +372,10 @@ impl Compare {
         let forces = self.panes.first().and_then(|pane| pane.forces(input.common.direction, input.common.opening));
         let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
         let longest = |along: fn(egui::Vec2) -> f32| {
-            arrows.iter().flatten().map(|arrow| f64::from(along(arrow.way))).fold(0.0, f64::max)
+            arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector))).fold(0.0, f64::max)
         };
         let (top, bottom) = ((0.08 * height).min(30.0), (0.16 * height).min(44.0));
-        Margins { sides: 40.0, top: top + longest(|way| -way.y), bottom: bottom + longest(|way| way.y) }
+        Margins { sides: 40.0, top: top + longest(|vector| -vector.y), bottom: bottom + longest(|vector| vector.y) }
     }
 
     /// Shows the pickers of a pane, and its result.
@@ -454,19 +454,19 @@ impl Compare {
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
         painter.galley(at.min, galley, ink);
         let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));
-        let spoken = format!("{name}: {}: {error}{words}", setting.words());
+        let spoken = format!("{name}: {}: {error}{words}", setting.text());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
         let tip = fill!(
-            "Error: length of the difference of the displacement vectors of the first probe and of %{truth}, over the length \
+            "Error: length of the difference of the displacement vectors of the first probe and of %{reference}, over the length \
              of the latter. Time and iterations: of a solve from rest.",
-            truth = truth_words(input.truth)
+            reference = reference_text(input.reference)
         );
         response.on_hover_text(format!("{words}\n{tip}"));
     }
 
     /// Shows the overlays of a pane's body.
     fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &CompareInput<'_>) -> Interaction {
-        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Interaction::default() };
+        let (camera, Some(controller)) = (self.camera(), &mut self.controller) else { return Interaction::default() };
         let Some(pane) = self.panes.get_mut(number) else { return Interaction::default() };
         // States that are no result show no values.
         let system = pane.system().filter(|_| pane.is_sound() && !pane.is_outdated()).cloned();
@@ -478,14 +478,15 @@ impl Compare {
             positions: &pane.shape.nodes,
             outline: &pane.drawing.boundary,
             handles: &handles,
-            scales: eye.scales([place.width(), place.height()].map(f64::from)),
+            scales: controller.scales([place.width(), place.height()].map(f64::from)),
         };
-        let wish = grid::follow(ui, (number, place), &mut pane.pointer, &reach, eye);
+        let wish = grid::follow(ui, (number, place), &mut pane.pointer, &reach, controller);
         let Some(pane) = self.panes.get(number) else { return wish };
         let palette = Palette::new(ui.visuals());
         let painter = ui.painter_at(place);
         if let (Some(system), Some(scene)) = (pane.system(), pane.scene()) {
-            let exact: &[_] = input.truth.filter(|_| input.common.view.exact).map_or(&[], |truth| &truth.outline);
+            let exact: &[_] =
+                input.reference.filter(|_| input.common.view.exact).map_or(&[], |reference| &reference.outline);
             let (drawing, shape, hot) = (&pane.drawing, &pane.shape, pane.pointer.hot_handle());
             let body = PaneBody { scene, system, drawing, shape, exact, time: 0.0, hot };
             body.paint(ui, place, camera, &input.common, &self.still);

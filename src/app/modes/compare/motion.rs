@@ -20,11 +20,11 @@ use crate::app::viewport::pointer::{HitTargets, Interaction, Pointer};
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::palette::Palette;
 use crate::dynamics::INTEGRATORS;
+use crate::format::{engineering, three_digits, two_digits};
 use crate::render::display_geometry::DisplayGeometry;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, IntegratorKind, Scene};
 use crate::simulation::{Motion, Simulation, Status, probe_results};
-use crate::words::{engineering, three_digits, two_digits};
 
 /// Settings of a pane; `None` means the setting of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -168,8 +168,8 @@ impl MotionPane {
 #[derive(Debug)]
 pub(crate) struct MotionCompare {
     panes: Vec<MotionPane>,
-    pub pace: RealTimeClock,
-    eye: Option<CameraController>,
+    pub clock: RealTimeClock,
+    controller: Option<CameraController>,
     /// Bounding box of all states of the bodies so far, m.
     swept: Option<[Vector2<f64>; 2]>,
     /// Playing time, s: longer than the simulated time in slow motion.
@@ -181,8 +181,8 @@ impl Default for MotionCompare {
     fn default() -> Self {
         let mut compare = Self {
             panes: Vec::new(),
-            pace: RealTimeClock::default(),
-            eye: None,
+            clock: RealTimeClock::default(),
+            controller: None,
             swept: None,
             played: 0.0,
             still: Playback::default(),
@@ -205,7 +205,7 @@ impl MotionCompare {
     /// Compares these settings, at most four.
     fn set(&mut self, settings: &[MotionPaneSetting]) {
         self.panes = settings.iter().take(*PANES.end()).map(|&setting| MotionPane::new(setting)).collect();
-        (self.eye, self.swept) = (None, None);
+        (self.controller, self.swept) = (None, None);
     }
 
     /// Returns `true` while a body moves.
@@ -217,18 +217,18 @@ impl MotionCompare {
     pub(crate) fn reset(&mut self) {
         self.panes.iter_mut().filter_map(|pane| pane.simulation.as_mut()).for_each(|simulation| simulation.reset());
         self.swept = None;
-        self.pace.rest();
+        self.clock.rest();
     }
 
     /// Fits the camera to all bodies.
     pub(crate) fn fit(&mut self) {
-        self.eye.iter_mut().for_each(CameraController::fit);
+        self.controller.iter_mut().for_each(CameraController::fit);
     }
 
     /// Makes one time step in all panes.
     pub(crate) fn step(&mut self) {
         let time_step = |pane: &MotionPane| pane.scene.as_ref().map(|scene| scene.dynamics.time_step);
-        self.played += self.panes.iter().find_map(time_step).unwrap_or_default() / self.pace.speed();
+        self.played += self.panes.iter().find_map(time_step).unwrap_or_default() / self.clock.speed();
         self.panes.iter_mut().for_each(MotionPane::step);
     }
 
@@ -243,18 +243,18 @@ impl MotionCompare {
             self.reset();
         }
         if !running || !self.moves() {
-            return self.pace.rest();
+            return self.clock.rest();
         }
         let step = scene.dynamics.time_step;
-        let mut steps = self.pace.begin_steps(now, step);
+        let mut steps = self.clock.begin_steps(now, step);
         while self.moves() && steps.next() {
             self.step();
         }
-        self.pace.end_steps(&steps, step);
+        self.clock.end_steps(&steps, step);
     }
 
     pub(crate) fn camera(&self) -> Camera {
-        self.eye.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
+        self.controller.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
     }
 
     /// Returns the bodies of the panes for the render pass.
@@ -350,12 +350,12 @@ impl MotionCompare {
         let sound = self.panes.iter().filter(|pane| pane.is_sound());
         let swept = sound.flat_map(|pane| pane.shape.points()).fold(self.swept.unwrap_or(rest), grow);
         self.swept = Some(swept);
-        let eye = self.eye.get_or_insert_with(|| CameraController::new(rest));
+        let controller = self.controller.get_or_insert_with(|| CameraController::new(rest));
         if !self.panes.iter().any(|pane| pane.pointer.holds()) {
-            eye.follow(swept);
+            controller.follow(swept);
         }
         let margins = Margins { sides: 40.0, top: 40.0, bottom: 44.0 };
-        grid::aim(ui, eye, |[low, high]| Camera::fit(low, high, size, margins), input.eases);
+        grid::aim(ui, controller, |[low, high]| Camera::fit(low, high, size, margins), input.eases);
     }
 
     /// Shows the pickers of a pane, and its result.
@@ -397,10 +397,10 @@ impl MotionCompare {
             Status::Stopped(reason) => Some(translated(&reason.to_string())),
             _ => None,
         });
-        let words = failure.as_deref().map_or_else(|| self.numbers(number, pane), sentence);
+        let text = failure.as_deref().map_or_else(|| self.numbers(number, pane), sentence);
         let color = if failure.is_some() { palette.error } else { palette.text };
-        let response = ui.add(egui::Label::new(RichText::new(&words).color(color)).truncate());
-        let spoken = format!("{name}: {words}");
+        let response = ui.add(egui::Label::new(RichText::new(&text).color(color)).truncate());
+        let spoken = format!("{name}: {text}");
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
         response.on_hover_text(tr(
             "Time of computing what a frame at 60 Hz shows; energy that the integrator has added; distance of the first \
@@ -416,8 +416,8 @@ impl MotionCompare {
         });
         let drift = pane.simulation().and_then(Simulation::motion).map(Motion::ledger).map(|ledger| {
             let drift = 100.0 * ledger.drift_of_input();
-            let words = if drift.abs() < 1e-6 { "0 %".to_owned() } else { percent(drift) };
-            fill!("drift %{drift}", drift = words)
+            let text = if drift.abs() < 1e-6 { "0 %".to_owned() } else { percent(drift) };
+            fill!("drift %{drift}", drift = text)
         });
         let first = self.panes.first().filter(|_| number > 0).and_then(MotionPane::tip);
         let apart = first.zip(pane.tip()).map(|(first, own)| {
@@ -428,7 +428,7 @@ impl MotionCompare {
 
     /// Shows the overlays of a pane's body.
     fn body(&mut self, ui: &Ui, number: usize, place: Rect, input: &PaneInput<'_>) -> Interaction {
-        let (camera, Some(eye)) = (self.camera(), &mut self.eye) else { return Interaction::default() };
+        let (camera, Some(controller)) = (self.camera(), &mut self.controller) else { return Interaction::default() };
         let Some(pane) = self.panes.get_mut(number) else { return Interaction::default() };
         let Some(simulation) = pane.simulation.as_deref() else { return Interaction::default() };
         let forces = Forces {
@@ -446,9 +446,9 @@ impl MotionCompare {
             positions: &pane.shape.nodes,
             outline: &pane.drawing.boundary,
             handles: &handles,
-            scales: eye.scales([place.width(), place.height()].map(f64::from)),
+            scales: controller.scales([place.width(), place.height()].map(f64::from)),
         };
-        let wish = grid::follow(ui, (number, place), &mut pane.pointer, &reach, eye);
+        let wish = grid::follow(ui, (number, place), &mut pane.pointer, &reach, controller);
         let Some(pane) = self.panes.get(number) else { return wish };
         let Some(simulation) = pane.simulation() else { return wish };
         let palette = Palette::new(ui.visuals());

@@ -111,7 +111,7 @@ fn has_ended(simulation: &Simulation, most_iterations: Option<u32>) -> bool {
 
 /// Conditions of a pane in one frame.
 #[derive(Clone, Copy)]
-pub(super) struct Turn {
+pub(super) struct FrameConditions {
     /// `true` while the pointer moves: a dragged load gets one iteration per frame.
     pub moves: bool,
     /// `true` while the pointer is pressed: the solve continues from the current state of a dragged load.
@@ -303,23 +303,23 @@ impl Pane {
     }
 
     /// Applies a changed scene, starting from the current state, and iterates.
-    pub(super) fn advance(&mut self, scene: &Scene, equations: &[Equations], turn: Turn) {
+    pub(super) fn advance(&mut self, scene: &Scene, equations: &[Equations], frame: FrameConditions) {
         let wanted = self.setting.apply(scene);
         if self.wanted.as_ref() != Some(&wanted) {
             self.wanted = Some(wanted);
             self.end = None;
         }
-        if !self.hear() {
+        if !self.take_solved() {
             return;
         }
         if self.given != self.wanted {
             self.take_on(equations);
         }
-        self.iterate(turn);
+        self.iterate(frame);
     }
 
     /// Takes back a simulation that was solved in the background; returns `false` while it is still being solved.
-    fn hear(&mut self) -> bool {
+    fn take_solved(&mut self) -> bool {
         let Body::Away(away) = &mut self.body else { return true };
         if self.given != self.wanted && away.since.elapsed() > LONGEST_OUTDATED {
             away.solve.cancel();
@@ -378,15 +378,15 @@ impl Pane {
         };
     }
 
-    fn iterate(&mut self, turn: Turn) {
+    fn iterate(&mut self, frame: FrameConditions) {
         let most = self.setting.iterations;
         let Body::Here(simulation) = &mut self.body else { return };
-        if self.end.is_some() || !turn.runs {
+        if self.end.is_some() || !frame.runs {
             return;
         }
         while !self.is_large && !has_ended(simulation, most) {
             simulation.step();
-            if turn.moves || Instant::now() >= turn.until {
+            if frame.moves || Instant::now() >= frame.until {
                 break;
             }
         }
@@ -394,7 +394,7 @@ impl Pane {
         if ended && self.from_rest {
             return self.conclude();
         }
-        if ended && turn.holds || !ended && !self.is_large {
+        if ended && frame.holds || !ended && !self.is_large {
             return;
         }
         // The result reports the cost of a solve from rest, so a solve from another state is repeated from rest.
@@ -457,9 +457,9 @@ impl Pane {
     }
 
     /// Computes the error of the result, if the reference solution is known.
-    pub(super) fn judge(&mut self, truth: Option<&Reference>) {
+    pub(super) fn judge(&mut self, reference: Option<&Reference>) {
         let probe = self.answer().filter(|(_, good)| *good);
-        self.error = truth.zip(probe).and_then(|(truth, (probe, _))| truth.first()?.error_percent(&probe));
+        self.error = reference.zip(probe).and_then(|(reference, (probe, _))| reference.first()?.error_percent(&probe));
     }
 }
 

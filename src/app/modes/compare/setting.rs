@@ -7,10 +7,10 @@ use thiserror::Error;
 
 use crate::app::language::{self, tr};
 use crate::element::ELEMENTS;
+use crate::format::count;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::study::Setting;
-use crate::words::count;
 
 /// Smallest and largest number of panes.
 pub(super) const PANES: std::ops::RangeInclusive<usize> = 2..=4;
@@ -104,7 +104,7 @@ impl From<Setting> for PaneSetting {
 
 impl PaneSetting {
     /// Returns the name of the settings in the window.
-    pub(super) fn words(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let method = self.method.map(|method| tr(method.id()).to_owned());
         let element = self.element.map(|element| element.id().to_owned());
         let cells = self.cells.map(|[along, across]| format!("{along}×{across}"));

@@ -9,17 +9,17 @@ use super::setting::PaneSetting;
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
 use crate::app::modes::explore::figure::{self, Parts};
-use crate::app::modes::explore::load_curve::{axes, displacement_words, pair, quantities, usual};
+use crate::app::modes::explore::load_curve::{axes, displacement_text, pair, quantities, usual};
 use crate::app::session::facts::without_settings;
 use crate::app::task::lazy::Lazy;
 use crate::app::task::thread::POLL;
 use crate::app::view_options::CurvePlot;
+use crate::exact_beam::error_percent;
+use crate::format::{engineering, three_digits};
 use crate::scene::limits::{self, Limit};
 use crate::scene::{Load, MethodKind, Place, Scene};
 use crate::study::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
 use crate::study::{LoadCurve, Reference};
-use crate::truth::error_percent;
-use crate::words::{engineering, three_digits};
 
 /// Largest number of dots per setting.
 const MOST_DOTS: usize = 500;
@@ -103,7 +103,7 @@ pub(super) struct Trace {
     line: Vec<Exact>,
     /// Reference solutions for the loads so far; they may differ from the exact beam, because they solve plane
     /// elasticity.
-    truths: Vec<Exact>,
+    references: Vec<Exact>,
     /// Load at the right edge of the plot.
     reach: f64,
     /// Most informative quantities of this curve; `None` until a part of it is known.
@@ -122,7 +122,7 @@ impl Default for Trace {
             series: Vec::new(),
             exact: Lazy::new(|scene, _| exact_line(scene)),
             line: Vec::new(),
-            truths: Vec::new(),
+            references: Vec::new(),
             reach: 0.0,
             usual: None,
         }
@@ -137,7 +137,7 @@ fn exact_line(scene: &Scene) -> Option<Vec<Exact>> {
         return None;
     }
     let curve = LoadCurve::new(scene)?;
-    Some(curve.samples.iter().map(|s| (s.factor * axis.magnitude, s.truth)).collect())
+    Some(curve.samples.iter().map(|s| (s.factor * axis.magnitude, s.exact)).collect())
 }
 
 fn has_several_loads(scene: &Scene) -> bool {
@@ -156,11 +156,11 @@ impl Trace {
         self.axis = Axis::of(scene);
         let family = self.axis.map(|axis| axis.family(scene));
         let direction = self.axis.and_then(|axis| axis.direction);
-        let turned = self.direction.zip(direction).is_some_and(|(a, b)| {
+        let has_rotated = self.direction.zip(direction).is_some_and(|(a, b)| {
             // The curve of the opposite direction is another one, too.
             (a[0] - b[0]).hypot(a[1] - b[1]) > SAME_DIRECTION
         });
-        if family != self.family || turned {
+        if family != self.family || has_rotated {
             *self = Self { axis: self.axis, family, ..Self::default() };
         }
         self.direction = direction.or(self.direction);
@@ -201,22 +201,22 @@ impl Trace {
     }
 
     /// Records the reference solution for the current load.
-    pub(super) fn record_truth(&mut self, truth: Option<&Reference>) {
-        let (Some(axis), Some(truth)) = (self.axis, truth.and_then(Reference::first)) else { return };
-        let dot = (axis.magnitude, truth.displacement);
-        self.truths.retain(|other| (other.0 - dot.0).abs() > SAME_LOAD * dot.0);
-        self.truths.push(dot);
-        if self.truths.len() > MOST_DOTS {
-            self.truths.remove(0);
+    pub(super) fn record_reference(&mut self, reference: Option<&Reference>) {
+        let (Some(axis), Some(reference)) = (self.axis, reference.and_then(Reference::first)) else { return };
+        let dot = (axis.magnitude, reference.displacement);
+        self.references.retain(|other| (other.0 - dot.0).abs() > SAME_LOAD * dot.0);
+        self.references.push(dot);
+        if self.references.len() > MOST_DOTS {
+            self.references.remove(0);
         }
     }
 
     /// Returns the displacement of the reference solution under a load if it is known, else that of the exact beam.
     fn exact_at(&self, load: f64) -> Option<Vector2<f64>> {
-        let truth = self.truths.iter().find(|dot| dot.0 == load).map(|dot| dot.1);
+        let reference = self.references.iter().find(|dot| dot.0 == load).map(|dot| dot.1);
         let piece = || self.line.windows(2).find(|w| (w[0].0..=w[1].0).contains(&load));
         let between = |w: &[Exact]| w[0].1 + (w[1].1 - w[0].1) * ((load - w[0].0) / (w[1].0 - w[0].0));
-        truth.or_else(|| piece().map(between))
+        reference.or_else(|| piece().map(between))
     }
 
     /// Records a pane's result for the current load. Returns `true` if it is new.
@@ -313,7 +313,7 @@ impl Trace {
         };
         let exact_series = [
             series(tr("exact beam"), Ink::Exact, Mark::Line, false, exact(&self.line)),
-            series(tr("exact"), Ink::Exact, Mark::Plus, false, exact(&self.truths)),
+            series(tr("exact"), Ink::Exact, Mark::Plus, false, exact(&self.references)),
         ];
         let mut all: Vec<FigureSeries> = exact_series.into_iter().filter(|s| !s.points.is_empty()).collect();
         let mut rows = Vec::new();
@@ -326,7 +326,7 @@ impl Trace {
         for pane in panes {
             let setting = pane.setting.of(scene);
             let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
-            let (name, ink, is_linear) = (setting.words(), Ink::Method(method), method == MethodKind::Linear);
+            let (name, ink, is_linear) = (setting.text(), Ink::Method(method), method == MethodKind::Linear);
             let dots: Vec<&Dot> = self.dots_of(setting).iter().filter(|dot| dot.load <= reach).collect();
             // The solution of linear theory is proportional to a single load.
             if let Some(dot) = dots.iter().rfind(|dot| dot.good && dot.load > 0.0)
@@ -357,7 +357,7 @@ impl Trace {
             axes: axes(shown),
             bounds,
             series: all,
-            head: [format!("{} {load}", tr(axis.name)), displacement_words(scene), ERROR.to_owned()],
+            head: [format!("{} {load}", tr(axis.name)), displacement_text(scene), ERROR.to_owned()],
             error_name: fill!("error %{measure}", measure = ERROR),
             rows,
         }

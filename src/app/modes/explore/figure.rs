@@ -132,15 +132,15 @@ fn clipped(line: &[[f64; 2]], [low, high]: [[f64; 2]; 2]) -> Option<Vec<[f64; 2]
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for i in 0..2 {
             let d = b[i] - a[i];
-            for (distance, way) in [(a[i] - low[i], -d), (high[i] - a[i], d)] {
-                if way == 0.0 {
+            for (distance, speed) in [(a[i] - low[i], -d), (high[i] - a[i], d)] {
+                if speed == 0.0 {
                     if distance < 0.0 {
                         to = -1.0;
                     }
-                } else if way < 0.0 {
-                    from = from.max(distance / way);
+                } else if speed < 0.0 {
+                    from = from.max(distance / speed);
                 } else {
-                    to = to.min(distance / way);
+                    to = to.min(distance / speed);
                 }
             }
         }
@@ -186,7 +186,7 @@ pub(crate) fn controls(
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
         for &plot in offered {
-            let (word, tip) = plot.words();
+            let (word, tip) = plot.text();
             if ui.add(option_button(plot == shown, tr(word))).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Plot(plot));
             }
@@ -207,7 +207,7 @@ pub(crate) fn table(ui: &mut Ui, figure: &Figure) {
     ScrollArea::vertical().id_salt("table").auto_shrink([false, false]).show(ui, |ui| {
         let errors = figure.rows.iter().any(|row| !row.error.is_empty());
         let columns = Columns::new(ui, errors);
-        if figure.head.iter().any(|words| !words.is_empty()) {
+        if figure.head.iter().any(|text| !text.is_empty()) {
             head(ui, &columns, figure);
         }
         for row in &figure.rows {
@@ -235,8 +235,8 @@ fn head(ui: &mut Ui, columns: &Columns, figure: &Figure) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
     let [name, value, error] = &figure.head;
     let font = FontId::proportional(SMALL);
-    let put = |x: f32, align: Align2, words: &str, color| {
-        ui.painter().text(pos2(x, rect.center().y), align, words, font.clone(), color);
+    let put = |x: f32, align: Align2, text: &str, color| {
+        ui.painter().text(pos2(x, rect.center().y), align, text, font.clone(), color);
     };
     put(rect.left(), Align2::LEFT_CENTER, name, palette.load);
     put(rect.right() - columns.error, Align2::RIGHT_CENTER, value, palette.secondary);
@@ -261,10 +261,10 @@ fn show_row(ui: &mut Ui, columns: &Columns, row: &FigureRow) {
     let painter = ui.painter();
     paint_mark(ui, rect.left_center() + vec2(8.0, 0.0), row.mark, color(&palette, row.ink));
     let ink = if row.is_bad { palette.error } else { palette.text };
-    let small = |words: &str, color| painter.layout_no_wrap(words.to_owned(), FontId::proportional(SMALL), color);
+    let small = |text: &str, color| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), color);
     let mut right = rect.right();
-    let mut put = |words: &str, color, width: f32| {
-        let galley = small(words, color);
+    let mut put = |text: &str, color, width: f32| {
+        let galley = small(text, color);
         let at = Align2::RIGHT_CENTER.anchor_size(pos2(right, rect.center().y), galley.size());
         right -= width.max(galley.size().x);
         painter.galley(at.min, galley, color);
@@ -280,9 +280,9 @@ fn show_row(ui: &mut Ui, columns: &Columns, row: &FigureRow) {
     let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + vec2(columns.mark, 0.0), galley.size());
     painter.galley(at.min, galley, palette.text);
     let mut spoken = row.name.clone();
-    for (separator, words) in [(": ", &row.value), (", ", &row.error)] {
-        if !words.is_empty() {
-            spoken = format!("{spoken}{separator}{words}");
+    for (separator, text) in [(": ", &row.value), (", ", &row.error)] {
+        if !text.is_empty() {
+            spoken = format!("{spoken}{separator}{text}");
         }
     }
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &spoken));

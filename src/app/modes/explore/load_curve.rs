@@ -10,6 +10,7 @@ use crate::app::language::{fill, tr, translated};
 use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::view_options::CurvePlot;
 use crate::app::widgets::text::boxed_text;
+use crate::format::{engineering, engineering_pair, three_digits};
 use crate::scene::{MethodKind, Scene};
 use crate::simulation::Status;
 use crate::study::figure::{
@@ -17,7 +18,6 @@ use crate::study::figure::{
 };
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
-use crate::words::{engineering, engineering_pair, three_digits};
 
 /// Shows the plot, or the previous scene's while a new one is being computed. Without a plot it shows the reason: it is
 /// being computed, or the scene has none.
@@ -50,10 +50,10 @@ pub(crate) fn show(
     });
     ui.advance_cursor_after_rect(whole);
     if !looked_for {
-        let words = "As it was before the last change; the new one comes when the body has come to rest.";
+        let text = "As it was before the last change; the new one comes when the body has come to rest.";
         let at = parts.plot.center_top() + egui::vec2(0.0, 10.0);
         let color = ui.visuals().weak_text_color();
-        boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(words), ui.visuals(), color, parts.plot.width());
+        boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(text), ui.visuals(), color, parts.plot.width());
     }
 }
 
@@ -72,7 +72,7 @@ impl Curve {
     /// back.
     fn usual(&self) -> CurvePlot {
         match self {
-            Self::Beam(of) => usual(of.0.samples.iter().map(|s| s.truth)),
+            Self::Beam(of) => usual(of.0.samples.iter().map(|s| s.exact)),
             Self::Path(of) if of.0.driven.is_some() => CurvePlot::Reaction,
             Self::Path(of) => {
                 let tip = |state: &PathState| state.probes.first().copied();
@@ -106,7 +106,7 @@ pub(crate) fn quantities(load: Quantity, scene: &Scene) -> Vec<Quantity> {
 }
 
 /// Returns the heading of a column of displacements.
-pub(crate) fn displacement_words(scene: &Scene) -> String {
+pub(crate) fn displacement_text(scene: &Scene) -> String {
     let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
     fill!("(u_x, u_y) of %{probe}", probe = tr(probe))
 }
@@ -154,10 +154,10 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     let series = |name: String, ink, mark, may_leave, points| FigureSeries { name, ink, mark, may_leave, points };
     let mut all = vec![
         series(tr("linear theory").to_owned(), linear, Mark::Line, true, line(|s| s.linear)),
-        series(tr("exact beam").to_owned(), Ink::Exact, Mark::Line, false, line(|s| s.truth)),
+        series(tr("exact beam").to_owned(), Ink::Exact, Mark::Line, false, line(|s| s.exact)),
     ];
-    let departures = curve.departures.iter().map(|d| figure::point(d.at.factor * full, d.at.truth)).collect();
-    let departs = departure_words(&curve.departures);
+    let departures = curve.departures.iter().map(|d| figure::point(d.at.factor * full, d.at.exact)).collect();
+    let departs = departure_text(&curve.departures);
     if let Some((name, _)) = &departs {
         all.push(series(name.clone(), linear, Mark::Ring, false, departures));
     }
@@ -173,7 +173,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     let value = |series: &FigureSeries| match series.mark {
         Mark::Ring => departs.as_ref().map(|(_, angles)| angles.clone()),
         Mark::Cross => Some(tr("not converged").to_owned()),
-        Mark::Line => at_load.map(|s| pair(if series.ink == Ink::Exact { s.truth } else { s.linear })),
+        Mark::Line => at_load.map(|s| pair(if series.ink == Ink::Exact { s.exact } else { s.linear })),
         _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| pair(p.tip)),
     };
     let row = |series: &FigureSeries| FigureRow {
@@ -191,7 +191,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         bounds: None,
         rows: all.iter().map(row).collect(),
         series: all,
-        head: [fill!("at %{load}", load = load), displacement_words(scene), String::new()],
+        head: [fill!("at %{load}", load = load), displacement_text(scene), String::new()],
         error_name: String::new(),
         quantities: quantities(quantity, scene),
     }
@@ -199,7 +199,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
 
 /// Returns the name and the position of the loads at which linear theory departs from the exact beam: errors in
 /// percent, and rotations.
-fn departure_words(departures: &[Departure]) -> Option<(String, String)> {
+fn departure_text(departures: &[Departure]) -> Option<(String, String)> {
     let each = |value: &dyn Fn(&Departure) -> String| departures.iter().map(value).collect::<Vec<_>>().join(", ");
     let percent = each(&|departure| departure.percent.to_string());
     let angles = each(&|departure| format!("{:.1}°", departure.at.rotation.to_degrees().abs()));

@@ -11,8 +11,8 @@ use crate::app::session::playback::Playback;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::Palette;
 use crate::app::widgets::plot::still;
+use crate::format::engineering;
 use crate::scene::IntegratorKind;
-use crate::words::engineering;
 
 const PLOTS: [(MotionPlot, &str, &str); 4] = [
     (MotionPlot::Energy, "Energy", "Where the energy is, and where it has gone"),
@@ -131,7 +131,7 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         ("potential of loads", potential, |s| s.ledger.potential),
         ("dissipated", dissipated, |s| s.ledger.dissipated),
         ("lost by the integrator", lost, |s| s.ledger.integrator),
-        ("put in", put_in, |s| s.ledger.pulses + s.ledger.hands + s.ledger.edits),
+        ("put in", put_in, |s| s.ledger.pulses + s.ledger.mouse_spring + s.ledger.edits),
     ];
     over_time(plot(&palette, "energy", (tr("time"), "s"), (tr("energy"), "J")), history).show(ui, |plot| {
         // With several motions only the sums are shown, for comparison.

@@ -26,7 +26,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         let linear = shown.input.linear.map(triangle::area_growth);
         row(ui, &palette, MethodKind::Linear.id(), linear, palette.method(MethodKind::Linear));
     }
-    let outline = shown.input.reference.filter(|_| shown.input.simulation.is_at_rest()).map(|truth| &truth.outline);
+    let outline =
+        shown.input.reference.filter(|_| shown.input.simulation.is_at_rest()).map(|reference| &reference.outline);
     let exact = outline.map(|lines| {
         let rest: f64 = shown.input.simulation.system().nodal_areas().iter().sum();
         100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)
@@ -79,7 +80,7 @@ fn enclosed(line: &[Vector2<f64>]) -> f64 {
 }
 
 /// Formats a growth, percent, with its sign.
-pub(super) fn growth_words(growth: f64) -> String {
+pub(super) fn growth_text(growth: f64) -> String {
     /// Smaller values, percent, are shown as zero.
     const NOTHING: f64 = 5e-3;
     if growth.abs() < NOTHING {
@@ -94,7 +95,7 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
     const NAME: f32 = 84.0;
     const NUMBER: f32 = 78.0;
     let name = fill!("area, %{name}", name = tr(name));
-    let words = growth.map_or_else(|| "\u{2013}".to_owned(), growth_words);
+    let words = growth.map_or_else(|| "\u{2013}".to_owned(), growth_text);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     let painter = ui.painter();
     let put = |x: f32, text: RichText| {

@@ -11,7 +11,7 @@ use crate::simulation::Field;
 pub(crate) struct Card {
     pub title: &'static str,
     /// Text of two or three sentences.
-    pub words: &'static str,
+    pub text: &'static str,
     /// Formulas in the markup of [`super::formula`].
     pub formula: &'static [&'static str],
     /// Definitions of the symbols that appear for the first time.
@@ -76,7 +76,7 @@ fn nothing(_: &Painter, _: &View<'_>, _: &Learn) {}
 pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "Linear theory makes it grow",
-        words: "Linear theory replaces a rotation by its tangent: what rotates by an angle \u{3b8} moves along a straight \
+        text: "Linear theory replaces a rotation by its tangent: what rotates by an angle \u{3b8} moves along a straight \
                 line instead of an arc. So it grows, its area by \u{3b8}\u{b2} (\u{3b8} in radians), whatever the \
                 material. The dashed line is the exact beam, which rotates without growing.",
         formula: &["K u = f", "`det` ( I + \u{3b8} J ) = 1 + \u{3b8}^{2}"],
@@ -99,7 +99,7 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Every triangle rotates",
-        words: "The shape of a triangle at rest and its shape now define a matrix F. Polar decomposition splits F into a \
+        text: "The shape of a triangle at rest and its shape now define a matrix F. Polar decomposition splits F into a \
                 rotation R and a stretch S, in exactly one way; in the plane there is a closed formula. The two arrows in \
                 each triangle are the axes of its frame, the columns of R.",
         formula: &["F = R S", "R^{T} R = I", "S = S^{T}"],
@@ -122,7 +122,7 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Rotate back",
-        words: "Here each triangle is rotated back by the transpose of its own R and laid onto its shape at rest. The \
+        text: "Here each triangle is rotated back by the transpose of its own R and laid onto its shape at rest. The \
                 difference between the two is the strain \u{3b5}, and the stiffness K acts on that alone. The strain does \
                 not depend on the rotation.",
         formula: &["R^{T} F = S = I + \u{3b5}"],
@@ -144,7 +144,7 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Rotate the stiffness instead",
-        words: "K is computed once, at rest. Rotated by R it acts on the bent beam, and the rest shape moves to the \
+        text: "K is computed once, at rest. Rotated by R it acts on the bent beam, and the rest shape moves to the \
                 right-hand side. Each triangle adds nine 2\u{d7}2 blocks, at the rows and columns of its three nodes. The \
                 four unknowns of the two clamped nodes drop out: 24 \u{2212} 4 = 20.",
         formula: &["R K R^{T} x = f + R K X"],
@@ -167,7 +167,7 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "The method in ten lines",
-        words: "This is all of warped stiffness. One pass through lines 3 to 10 is an iteration. The program makes it in \
+        text: "This is all of warped stiffness. One pass through lines 3 to 10 is an iteration. The program makes it in \
                 one go when you reach line 8; the numbers beside a line are of the beam as it is drawn.",
         formula: &["A = \u{3a3} R K_{e} R^{T}", "b = \u{3a3} R K_{e} X"],
         symbols: "A: stiffness matrix of the rotated triangles (N/m). b: forces that stand for the rest shape (N). f with \
@@ -190,7 +190,7 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Iterate",
-        words: "R depends on where the beam is, and the beam on R. So solve with the present R, compute the new R, and \
+        text: "R depends on where the beam is, and the beam on R. So solve with the present R, compute the new R, and \
                 solve again. Near the equilibrium each iteration multiplies the residual by \u{3c1}.",
         formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | \u{2248} \u{3c1} | r_{k} |"],
         symbols: "k: number of the iteration. r: residual. \u{3c1}: convergence factor (spectral radius); below 1 the \
@@ -212,7 +212,7 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Beyond \u{3c1} = 1 it does not converge",
-        words: "Under twice the force, a change of R changes the forces by more than A accounts for: \u{3c1} is above 1, \
+        text: "Under twice the force, a change of R changes the forces by more than A accounts for: \u{3c1} is above 1, \
                 and no number of iterations helps. Newton\u{2019}s method adds the missing part G: how the forces change \
                 as R rotates. An iteration costs the same.",
         formula: &["\u{3c1} = | \u{3bb} |_{`max`} ( A^{\u{2212}1} G )", "( A + G ) \u{394}x = f \u{2212} f_{`int`}"],
@@ -235,7 +235,7 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Locking",
-        words: "The forces balance, and still the beam is far from the exact one (dashed). A three-node triangle has the \
+        text: "The forces balance, and still the beam is far from the exact one (dashed). A three-node triangle has the \
                 same strain everywhere, so it cannot bend without stretching: it is too stiff. On the same five cells \
                 another element cures it.",
         formula: &["`error` = | u \u{2212} u_{`exact`} | / | u_{`exact`} |"],
@@ -257,7 +257,7 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "The trade-off",
-        words: "Element, mesh and method each cost time and leave an error, and which choice is cheapest depends on your \
+        text: "Element, mesh and method each cost time and leave an error, and which choice is cheapest depends on your \
                 machine. The table has the time of the fastest setting that keeps the error you ask for. The mode Budget \
                 shows all settings.",
         formula: &["`error` \u{2264} `mesh` + `iteration` + `theory`"],

@@ -2,16 +2,16 @@
 
 use egui::{Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use super::frames::angle_words;
+use super::frames::angle_text;
 use super::triangle::{Triangle, frames};
 use super::{Learn, Shown, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{count, fill, tr};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::format::{engineering, three_digits};
 use crate::rotation::Rotation;
 use crate::scene::{ElementKind, MethodKind};
 use crate::simulation::{Simulation, Status};
-use crate::words::{engineering, three_digits};
 
 /// Line of the pseudocode.
 struct Line {
@@ -67,7 +67,7 @@ fn gradient(simulation: &Simulation, picked: usize) -> String {
 fn rotation(simulation: &Simulation, _: usize) -> String {
     let size = |rotation: &Rotation| rotation.angle().abs();
     let largest = frames(simulation).into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-    fill!("largest rotation: %{angle}", angle = angle_words(largest.unwrap_or(Rotation::IDENTITY)))
+    fill!("largest rotation: %{angle}", angle = angle_text(largest.unwrap_or(Rotation::IDENTITY)))
 }
 
 fn matrix(simulation: &Simulation, _: usize) -> String {
@@ -81,10 +81,10 @@ fn displacement(simulation: &Simulation, _: usize) -> String {
 }
 
 fn residual(simulation: &Simulation, _: usize) -> String {
-    format!("r = {}", residual_words(simulation.residual()))
+    format!("r = {}", residual_text(simulation.residual()))
 }
 
-fn residual_words(residual: f64) -> String {
+fn residual_text(residual: f64) -> String {
     format!("{residual:.1e}").replace('-', "\u{2212}")
 }
 
@@ -92,7 +92,7 @@ fn verdict(simulation: &Simulation, _: usize) -> String {
     let iterations = count(simulation.iterations(), "iteration");
     match simulation.status() {
         Status::Converged => fill!("yes, after %{iterations}", iterations = iterations),
-        Status::Running => fill!("no: r = %{r}, repeat", r = residual_words(simulation.residual())),
+        Status::Running => fill!("no: r = %{r}, repeat", r = residual_text(simulation.residual())),
         _ => fill!("given up after %{iterations}", iterations = iterations),
     }
 }
@@ -148,10 +148,11 @@ fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
     let galley = painter.layout_job(formula::sized(code, BODY, palette.text));
     let left = GUTTER + INDENT * f32::from(line.indent);
     let small = egui::FontId::proportional(SMALL);
-    let beside = numbers.map(|words| painter.layout_no_wrap(words.to_owned(), small.clone(), palette.accent));
+    let value_galley = numbers.map(|text| painter.layout_no_wrap(text.to_owned(), small.clone(), palette.accent));
     let width = ui.available_width();
     // Numbers that do not fit to the right of the code are placed under it.
-    let is_under = beside.as_ref().is_some_and(|beside| left + galley.size().x + 16.0 + beside.size().x > width);
+    let is_under =
+        value_galley.as_ref().is_some_and(|value_galley| left + galley.size().x + 16.0 + value_galley.size().x > width);
     let height = if is_under { HEIGHT + 16.0 } else { HEIGHT };
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     if numbers.is_some() {
@@ -162,20 +163,20 @@ fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
     let place = pos2(rect.left() + GUTTER - 10.0, middle);
     painter.text(place, egui::Align2::RIGHT_CENTER, format!("{}", number + 1), small, palette.secondary);
     painter.galley(pos2(rect.left() + left, middle - 0.5 * galley.size().y), galley, palette.text);
-    if let Some(beside) = beside {
+    if let Some(value_galley) = value_galley {
         let at = match is_under {
             true => pos2(rect.left() + left, rect.top() + HEIGHT),
-            false => pos2(rect.right() - 6.0 - beside.size().x, middle - 0.5 * beside.size().y),
+            false => pos2(rect.right() - 6.0 - value_galley.size().x, middle - 0.5 * value_galley.size().y),
         };
-        painter.galley(at, beside, palette.accent);
+        painter.galley(at, value_galley, palette.accent);
     }
     let plain = formula::plain(code);
     response.widget_info(|| {
-        let words = match numbers {
+        let text = match numbers {
             Some(numbers) => fill!("line %{n}: %{code}; %{numbers}", n = number + 1, code = plain, numbers = numbers),
             None => format!("{} {plain}", number + 1),
         };
-        WidgetInfo::labeled(Role::Label, true, words)
+        WidgetInfo::labeled(Role::Label, true, text)
     });
     rect
 }

@@ -3,7 +3,7 @@
 use egui::{Painter, RichText, Shape, Slider, Stroke, Ui};
 use nalgebra::Vector2;
 
-use super::frames::{angle_words, paint_picked};
+use super::frames::{angle_text, paint_picked};
 use super::triangle::{Triangle, frames};
 use super::{Learn, NOT_TRIANGLES, Shown, View, not_triangles};
 use crate::app::action::Action;
@@ -15,17 +15,17 @@ use crate::simulation::Simulation;
 /// Distances of the element centres from the body's centre in the exploded view, relative to those at rest.
 const APART: f64 = 1.5;
 
-/// Moves the drawn points of every element towards the exploded view; the fraction `turned` is 0 for the body itself
+/// Moves the drawn points of every element towards the exploded view; the fraction `rotation_part` is 0 for the body itself
 /// and 1 for the exploded view. `rest` are the points at rest.
-pub(super) fn place(simulation: &Simulation, turned: f64, rest: &[Vector2<f64>], points: &mut [Vector2<f64>]) {
+pub(super) fn place(simulation: &Simulation, rotation_part: f64, rest: &[Vector2<f64>], points: &mut [Vector2<f64>]) {
     let count = simulation.system().mesh().element_count().max(1);
     let each = (points.len() / count).max(1);
     let body = mean(rest);
     let rotations = frames(simulation);
     for ((points, rest), rotation) in points.chunks_mut(each).zip(rest.chunks(each)).zip(rotations) {
         let (now, apart) = (mean(points), body + (mean(rest) - body) * APART);
-        let center = now + (apart - now) * turned;
-        let back = Rotation::from_angle(-turned * rotation.angle());
+        let center = now + (apart - now) * rotation_part;
+        let back = Rotation::from_angle(-rotation_part * rotation.angle());
         points.iter_mut().for_each(|p| *p = center + back.apply(*p - now));
     }
 }
@@ -37,7 +37,7 @@ fn mean(points: &[Vector2<f64>]) -> Vector2<f64> {
 /// Paints the rest shape of every element at its position in the exploded view.
 pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
     let mesh = view.simulation.system().mesh();
-    let strength = learn.turned as f32;
+    let strength = learn.rotation_part as f32;
     if strength > 0.0 && !view.is_fine() {
         for (element, nodes) in mesh.elements().enumerate() {
             let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.nodes()[n as usize]).collect();
@@ -60,7 +60,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         ui.label(tr("As it is"));
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).clamp(60.0, 260.0);
         let name = "Rotated back";
-        let slider = ui.add(Slider::new(&mut learn.turned, 0.0..=1.0).show_value(false));
+        let slider = ui.add(Slider::new(&mut learn.rotation_part, 0.0..=1.0).show_value(false));
         let label = ui.label(tr(name));
         slider
             .labelled_by(label.id)
@@ -70,7 +70,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
-    let angle = angle_words(triangle.rotation);
+    let angle = angle_text(triangle.rotation);
     ui.label(fill!("Triangle %{n}: rotated by %{angle},", n = learn.picked + 1, angle = angle));
     let s = triangle.stretch;
     ui.label(fill!(

@@ -50,9 +50,9 @@ fn middle(corners: &[Pos2]) -> Option<Pos2> {
 }
 
 fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
-    let way = to - from;
-    let head = (0.3 * way.length()).min(7.0);
-    let along = way.normalized();
+    let vector = to - from;
+    let head = (0.3 * vector.length()).min(7.0);
+    let along = vector.normalized();
     let across = vec2(-along.y, along.x);
     painter.line_segment([from, to], stroke);
     for side in [-0.6, 0.6] {
@@ -66,7 +66,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let palette = Palette::new(ui.visuals());
-    let angle = angle_words(triangle.rotation);
+    let angle = angle_text(triangle.rotation);
     ui.label(fill!("Triangle %{n}, rotated by %{angle}", n = learn.picked + 1, angle = angle));
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
@@ -87,7 +87,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
 }
 
 /// Formats a rotation angle with its sign.
-pub(super) fn angle_words(rotation: Rotation) -> String {
+pub(super) fn angle_text(rotation: Rotation) -> String {
     format!("{:.1}\u{b0}", rotation.angle().to_degrees()).replace('-', "\u{2212}")
 }
 

@@ -22,7 +22,7 @@ pub(super) struct ElementError {
 
 /// Returns the errors of all elements that the scene's cells can have, each at its own equilibrium.
 pub(super) fn errors(scene: &Scene) -> Option<Vec<ElementError>> {
-    let truth = Reference::of(scene).ok()?.first()?;
+    let reference = Reference::of(scene).ok()?.first()?;
     let error = |element: ElementKind| {
         let mut scene = scene.clone();
         scene.set_element(element);
@@ -32,7 +32,7 @@ pub(super) fn errors(scene: &Scene) -> Option<Vec<ElementError>> {
             return None;
         }
         let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
-        Some(ElementError { element, unknowns: simulation.system().dofs(), percent: truth.error_percent(&probe)? })
+        Some(ElementError { element, unknowns: simulation.system().dofs(), percent: reference.error_percent(&probe)? })
     };
     scene.elements().map(error).collect()
 }
@@ -44,7 +44,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     let known = learn.errors().map(<[ElementError]>::to_vec);
     for element in scene.elements() {
         let error = known.as_ref().and_then(|all| all.iter().find(|e| e.element == element));
-        let words = match error {
+        let text = match error {
             Some(e) => fill!(
                 "%{element}: %{error} off, %{n} unknowns",
                 element = element.id(),
@@ -54,7 +54,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             None => element.id().to_owned(),
         };
         let chosen = scene.element() == element;
-        let button = ui.add(Button::selectable(chosen, RichText::new(&words).size(16.0)));
+        let button = ui.add(Button::selectable(chosen, RichText::new(&text).size(16.0)));
         if button.clicked() && !chosen {
             let mut scene = Box::new(scene.clone());
             scene.set_element(element);
@@ -64,11 +64,11 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         ui.add_space(2.0);
     }
     if known.is_none() {
-        let words = if learn.is_looking() {
+        let text = if learn.is_looking() {
             "Looking for the errors."
         } else {
             "No reference solution of this scene is known."
         };
-        ui.label(RichText::new(tr(words)).size(SMALL).color(palette.secondary));
+        ui.label(RichText::new(tr(text)).size(SMALL).color(palette.secondary));
     }
 }

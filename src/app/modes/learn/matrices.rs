@@ -8,9 +8,9 @@ use super::{Learn, NOT_TRIANGLES, Shown, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::widgets::palette::{Palette, SMALL};
+use crate::format::{engineering, three_digits};
 use crate::render::colormap;
 use crate::simulation::Field;
-use crate::words::{engineering, three_digits};
 
 /// Sides of a small matrix and of the large one, points.
 const SMALL_SIDE: f32 = 120.0;
@@ -29,18 +29,18 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     };
     let palette = Palette::new(ui.visuals());
     let rotation = frames(simulation).get(learn.picked).copied().unwrap_or(triangle.rotation);
-    let turned = stiffness.rkrt(rotation);
-    let largest = stiffness.ke.amax().max(turned.amax());
+    let rotated = stiffness.rkrt(rotation);
+    let largest = stiffness.ke.amax().max(rotated.amax());
     let local = |i: usize| name_of(triangle.unknowns()[i]);
     let room = ui.available_width() - 2.0 * GAP;
     let scale = (room / (2.0 * SMALL_SIDE + LARGE_SIDE)).clamp(0.5, 1.0);
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
-        for (markup, plain, matrix) in [("K_{e}", "Ke", &stiffness.ke), ("R K_{e} R^{T}", "R Ke RT", &turned)] {
+        for (markup, plain, matrix) in [("K_{e}", "Ke", &stiffness.ke), ("R K_{e} R^{T}", "R Ke RT", &rotated)] {
             ui.vertical(|ui| {
                 ui.label(formula::set(markup, palette.text));
-                let words = fill!("%{matrix} of triangle %{n}, 6 by 6", matrix = plain, n = learn.picked + 1);
-                cells(ui, &palette, (scale * SMALL_SIDE, largest, &words), matrix, &local, &|_, _| true);
+                let text = fill!("%{matrix} of triangle %{n}, 6 by 6", matrix = plain, n = learn.picked + 1);
+                cells(ui, &palette, (scale * SMALL_SIDE, largest, &text), matrix, &local, &|_, _| true);
             });
         }
         ui.vertical(|ui| whole(ui, shown, &palette, scale * LARGE_SIDE, &triangle));
@@ -77,9 +77,9 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle:
         }
     }
     let stored = |i: usize, j: usize| coupled[(i / 2) * nodes + j / 2];
-    let words =
+    let text =
         fill!("the body's matrix, %{all} by %{all}, of which %{free} by %{free} are left", all = all, free = free);
-    let (rect, _) = cells(ui, palette, (side, matrix.amax(), &words), &matrix, &name_of, &stored);
+    let (rect, _) = cells(ui, palette, (side, matrix.amax(), &text), &matrix, &name_of, &stored);
     let cell = rect.width() / all as f32;
     let block = |i: usize, j: usize, size: f32| {
         Rect::from_min_size(rect.min + vec2(j as f32, i as f32) * cell, vec2(size, size) * cell)
@@ -109,7 +109,7 @@ fn name_of(unknown: usize) -> String {
 fn cells(
     ui: &mut Ui,
     palette: &Palette,
-    (side, largest, words): (f32, f64, &str),
+    (side, largest, text): (f32, f64, &str),
     matrix: &DMatrix<f64>,
     name: &dyn Fn(usize) -> String,
     stored: &dyn Fn(usize, usize) -> bool,
@@ -130,7 +130,7 @@ fn cells(
         }
     }
     ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, palette.secondary), StrokeKind::Outside);
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, words));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, text));
     let under = response.hover_pos().and_then(|at| index(rect, cell, count, at));
     let response = match under {
         Some((i, j)) => {

@@ -92,7 +92,7 @@ pub(crate) struct Learn {
     /// Index of the element that was selected last.
     picked: usize,
     /// Fraction of the exploded view: 0 for the body itself, 1 for separate, rotated-back elements.
-    turned: f64,
+    rotation_part: f64,
     /// Largest error in the table of the trade-off, percent.
     asked: f64,
     rho: Known<f64>,
@@ -166,7 +166,7 @@ impl Learn {
         Self {
             card: card.min(CARDS.len() - 1),
             picked: 6,
-            turned: 1.0,
+            rotation_part: 1.0,
             asked: 1.0,
             rho: Known::new(
                 |scene, _| fixed_point_rho(scene),
@@ -200,7 +200,7 @@ impl Learn {
 
     /// Returns `true` if the elements are drawn apart from each other.
     pub(crate) fn is_apart(&self) -> bool {
-        self.card().apart && self.turned > 0.0
+        self.card().apart && self.rotation_part > 0.0
     }
 
     /// Returns the line of the pseudocode that a step goes to; `None` on other cards.
@@ -259,7 +259,7 @@ impl Learn {
         let mesh = simulation.system().mesh();
         let mut rest = Vec::new();
         drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
-        exploded::place(simulation, self.turned, &rest, points);
+        exploded::place(simulation, self.rotation_part, &rest, points);
     }
 
     /// Selects the element that is drawn at a position in the window.
@@ -438,7 +438,7 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
 fn text(ui: &mut Ui, card: &Card) {
     let palette = Palette::new(ui.visuals());
     let is_low = is_low(ui.ctx());
-    let words = spaced(RichText::new(tr(card.words)), BODY).color(palette.text);
+    let words = spaced(RichText::new(tr(card.text)), BODY).color(palette.text);
     ui.add(egui::Label::new(words).wrap());
     ui.add_space(4.0);
     let chip = egui::Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(egui::Margin::symmetric(12, 5));
@@ -526,7 +526,7 @@ mod tests {
     fn the_fonts_have_every_letter_of_the_cards() {
         let ctx = Context::default();
         ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
-        let mut all: String = CARDS.iter().flat_map(|c| [c.title, c.words, c.symbols, c.task]).collect();
+        let mut all: String = CARDS.iter().flat_map(|c| [c.title, c.text, c.symbols, c.task]).collect();
         all.extend(CARDS.iter().flat_map(|card| card.formula).map(|part| formula::plain(part)));
         all.push_str("\u{2039}\u{203a}\u{2212}\u{3a3}\u{3b5}\u{b7}\u{d7}\u{2013}\u{b0}\u{201c}\u{201d}");
         for size in [crate::app::widgets::palette::BODY, formula::SIZE] {
@@ -547,7 +547,7 @@ mod tests {
             let (_, mut scene) = article().unwrap();
             (card.setup.edit)(&mut scene);
             assert!(scene.validate().is_ok(), "{}", card.title);
-            let sentences = card.words.split_inclusive(['.', '?']).filter(|s| s.trim().len() > 3).count();
+            let sentences = card.text.split_inclusive(['.', '?']).filter(|s| s.trim().len() > 3).count();
             assert!((2..=4).contains(&sentences), "{}: {sentences} sentences", card.title);
             assert!(!card.formula.is_empty() && !card.symbols.is_empty() && !card.task.is_empty());
         }
@@ -558,7 +558,7 @@ mod tests {
         let mut defined = String::new();
         for card in CARDS {
             defined.push_str(card.symbols);
-            defined.push_str(card.words);
+            defined.push_str(card.text);
             for letter in card.formula.iter().flat_map(|markup| formula::variables(markup)) {
                 let is_defined = [":", ",", "x:"].iter().any(|end| defined.contains(&format!("{letter}{end}")))
                     || ["angle", "strain", "by"].iter().any(|before| defined.contains(&format!("{before} {letter}")));

@@ -27,8 +27,8 @@ pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: 
             }
         }
         if let Some(ratio) = last_ratio(shown.input.residuals) {
-            let words = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
-            ui.add(egui::Label::new(words).extend());
+            let text = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
+            ui.add(egui::Label::new(text).extend());
         }
     });
     plot(ui, shown, learn);
@@ -39,8 +39,8 @@ pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions
     ui.horizontal_wrapped(|ui| {
         for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
             let chosen = shown.input.scene.solver.method == method.kind;
-            let words = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
-            if ui.add(option_button(chosen, tr(words))).on_hover_text(tr(method.about)).clicked() && !chosen {
+            let text = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
+            if ui.add(option_button(chosen, tr(text))).on_hover_text(tr(method.about)).clicked() && !chosen {
                 let mut scene = Box::new(shown.input.scene.clone());
                 scene.solver.method = method.kind;
                 actions.push(Action::Edit("Method", scene));
@@ -48,12 +48,12 @@ pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions
         }
         let simulation = shown.input.simulation;
         let iterations = count(simulation.iterations(), "iteration");
-        let words = match simulation.status() {
+        let text = match simulation.status() {
             Status::Converged => fill!("converged after %{iterations}", iterations = iterations),
             Status::Running => iterations,
             _ => fill!("given up after %{iterations}", iterations = iterations),
         };
-        ui.add(egui::Label::new(words).extend());
+        ui.add(egui::Label::new(text).extend());
     });
     plot(ui, shown, learn);
 }
@@ -105,11 +105,11 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     inside.line(points, Stroke::new(1.6, color));
     let small = FontId::proportional(SMALL);
     if let Some(rho) = rho {
-        let words = fill!("\u{3c1} = %{rho}: the line's slope", rho = rho_number(rho));
-        painter.text(rect.right_top() + vec2(-2.0, 22.0), Align2::RIGHT_TOP, words, small, palette.exact);
+        let text = fill!("\u{3c1} = %{rho}: the line's slope", rho = rho_number(rho));
+        painter.text(rect.right_top() + vec2(-2.0, 22.0), Align2::RIGHT_TOP, text, small, palette.exact);
     }
     let iterations = count(residuals.len() as u64, "iteration");
-    let words = match (residuals.last(), rho) {
+    let text = match (residuals.last(), rho) {
         (Some(last), Some(rho)) => fill!(
             "Residual %{residual} after %{iterations}; rho = %{rho}",
             residual = format!("{last:.1e}"),
@@ -118,7 +118,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
         ),
         _ => fill!("%{iterations} so far", iterations = iterations),
     };
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &words));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &text));
     response.on_hover_text(tr(
         "Force out of balance over all forces, after each iteration; grey dashes: what is asked for",
     ));
@@ -140,10 +140,10 @@ fn axes(
     for exponent in ((bottom.ceil() as i32)..=(top.floor() as i32)).rev().filter(|e| e % 2 == 0) {
         let at = place(0.0, f64::from(exponent));
         painter.line_segment([at, pos2(rect.right(), at.y)], grid);
-        let words = if exponent == 0 { "1".to_owned() } else { format!("1e{exponent}").replace('-', "\u{2212}") };
-        painter.text(at - vec2(5.0, 0.0), Align2::RIGHT_CENTER, words, font.clone(), palette.secondary);
+        let text = if exponent == 0 { "1".to_owned() } else { format!("1e{exponent}").replace('-', "\u{2212}") };
+        painter.text(at - vec2(5.0, 0.0), Align2::RIGHT_CENTER, text, font.clone(), palette.secondary);
     }
-    for k in crate::words::ticks(0.0, most, 7) {
+    for k in crate::format::ticks(0.0, most, 7) {
         let at = pos2(place(k, top).x, rect.bottom());
         painter.line_segment([at, at + vec2(0.0, 3.0)], grid);
         painter.text(at + vec2(0.0, 3.0), Align2::CENTER_TOP, format!("{k}"), font.clone(), palette.secondary);

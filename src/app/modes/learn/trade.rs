@@ -5,13 +5,13 @@ use egui::{Button, Grid, ProgressBar, RichText, Ui};
 use super::{Learn, Shown};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr, translated};
-use crate::app::modes::budget::setting_words;
+use crate::app::modes::budget::setting_text;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
+use crate::format::{engineering, two_digits};
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::{Measurement, Study};
-use crate::words::{engineering, two_digits};
 
 /// Selectable errors, percent.
 pub(super) const ASKED: [f64; 3] = [10.0, 1.0, 0.1];
@@ -69,14 +69,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             ui.end_row();
         }
     });
-    let words = match shown.study {
+    let text = match shown.study {
         Some(study) => fill!(
-            "Error against %{truth}. Grey: the closest it gets.",
-            truth = translated(&study.reference.to_string())
+            "Error against %{reference}. Grey: the closest it gets.",
+            reference = translated(&study.reference.to_string())
         ),
         None => tr("Nothing measured yet: it takes some seconds.").to_owned(),
     };
-    ui.label(RichText::new(words).size(SMALL).color(palette.secondary));
+    ui.label(RichText::new(text).size(SMALL).color(palette.secondary));
 }
 
 fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, bool)>) {
@@ -85,13 +85,13 @@ fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, bool)>) {
         return;
     };
     let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
-    let words = if *good { time.clone() } else { fill!("at most %{error}", error = percent(m.error.bound())) };
+    let text = if *good { time.clone() } else { fill!("at most %{error}", error = percent(m.error.bound())) };
     let color = if *good { palette.text } else { palette.secondary };
     let tip = fill!(
         "%{setting}: %{time}, error at most %{error}",
-        setting = setting_words(&m.setting),
+        setting = setting_text(&m.setting),
         time = time,
         error = percent(m.error.bound())
     );
-    ui.label(RichText::new(words).color(color)).on_hover_text(tip);
+    ui.label(RichText::new(text).color(color)).on_hover_text(tip);
 }

@@ -60,11 +60,11 @@ pub(super) fn assembled(simulation: &Simulation) -> Option<DMatrix<f64>> {
     let mut sum = DMatrix::zeros(count, count);
     for (element, rotation) in frames(simulation).into_iter().enumerate() {
         let triangle = Triangle::of(simulation, element)?;
-        let turned = triangle.stiffness(simulation)?.rkrt(rotation);
+        let rotated = triangle.stiffness(simulation)?.rkrt(rotation);
         let unknowns = triangle.unknowns();
         for (row, &i) in unknowns.iter().enumerate() {
             for (column, &j) in unknowns.iter().enumerate() {
-                sum[(i, j)] += turned[(row, column)];
+                sum[(i, j)] += rotated[(row, column)];
             }
         }
     }

@@ -151,7 +151,7 @@ impl LiveRecording {
     }
 
     /// Passes the frames that have arrived from the graphics device to the encoder, without waiting.
-    pub(crate) fn hand_on(&mut self, gpu: &Gpu) {
+    pub(crate) fn pass_frames(&mut self, gpu: &Gpu) {
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         while let Some(first) = self.pending.first() {
             match first.mapped.try_recv() {
@@ -182,7 +182,7 @@ impl LiveRecording {
         Ok(Picture { size: self.size, rgba })
     }
 
-    /// Ends the recording with the frames taken so far; the file is complete once [`Self::listen`] or [`Self::wait`]
+    /// Ends the recording with the frames taken so far; the file is complete once [`Self::poll`] or [`Self::wait`]
     /// returns a message.
     pub(crate) fn stop(&mut self, gpu: &Gpu, now: f64) {
         if !self.is_running() {
@@ -190,7 +190,7 @@ impl LiveRecording {
         }
         // Waits for the frames that the device is still copying.
         let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        self.hand_on(gpu);
+        self.pass_frames(gpu);
         self.end.store((self.seconds(now) * f64::from(RATE)).max(0.0) as u64, Ordering::Relaxed);
         self.sender = None;
     }
@@ -201,7 +201,7 @@ impl LiveRecording {
     }
 
     /// Returns a message once the recording has ended or failed.
-    pub(crate) fn listen(&self) -> Option<String> {
+    pub(crate) fn poll(&self) -> Option<String> {
         match self.task.poll() {
             Update::Done(words) => Some(words),
             Update::Died => Some(tr("The recording ended unexpectedly").to_owned()),
@@ -379,7 +379,7 @@ mod tests {
             assert_eq!(mark.len(), 3);
             let primitives = ctx.tessellate(output.shapes, 1.0);
             stage.set_textures(&gpu, &mut output.textures_delta);
-            recording.hand_on(&gpu);
+            recording.pass_frames(&gpu);
             if let Some(number) = recording.due(now) {
                 recording.take(
                     &gpu,

@@ -352,7 +352,7 @@ impl Preview {
         let largest = LARGEST_VIEW * (high - low).norm();
         let mut preview = Self { pictures: 0, low, high, range: [0.0, 1.0], samples: Vec::new() };
         let (mut values, mut extremes) = (Vec::new(), Vec::new());
-        let mut way = Vec::new();
+        let mut range = Vec::new();
         let mut stride = 1;
         loop {
             let told = |time| RecordProgress {
@@ -377,7 +377,7 @@ impl Preview {
                     extremes = vec![finite.clone().reduce(f64::min), finite.reduce(f64::max)];
                 }
             } else {
-                way.push((low, high));
+                range.push((low, high));
             }
             if preview.pictures.is_multiple_of(stride) {
                 preview.samples.push(simulation.state().clone());
@@ -395,7 +395,7 @@ impl Preview {
             let (low, high) = bounds(&simulation);
             preview.include(low, high, f64::INFINITY);
             let largest = LARGEST_WAY * (preview.high - preview.low).norm();
-            for (low, high) in way {
+            for (low, high) in range {
                 preview.include(low, high, largest);
             }
             smooth_values(&simulation, &mut values);
@@ -492,11 +492,11 @@ mod tests {
             });
             assert_eq!(seen, preview.pictures, "{id}");
         }
-        let called_off =
+        let cancelled =
             Preview::new(&Reel { between: 0.04, duration: 1.0 }, simulation("swing", &[]), &mut |progress| {
                 if progress.time > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
-        assert!(called_off.is_none());
+        assert!(cancelled.is_none());
     }
 
     /// An unstable motion does not make the view infinitely large.

@@ -11,7 +11,7 @@ use egui::{
 };
 
 use self::thumbnail::Thumbnail;
-use self::workshop::Workshop;
+use self::thumbnail_task::ThumbnailTask;
 use crate::app::action::Action;
 use crate::app::language::tr;
 use crate::app::readout::Readout;
@@ -20,7 +20,7 @@ use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::scene::{Analysis, Scene, registry};
 
 mod thumbnail;
-mod workshop;
+mod thumbnail_task;
 
 /// Size of a thumbnail, and height of its entry, points.
 const THUMBNAIL: egui::Vec2 = vec2(112.0, 68.0);
@@ -61,19 +61,19 @@ pub(crate) struct Gallery {
 enum Work {
     #[default]
     NotBegun,
-    Goes(Workshop),
+    Running(ThumbnailTask),
     Ended,
 }
 
 impl Gallery {
     /// Receives the thumbnails that are ready; starts the work on the first call.
-    fn listen(&mut self, ctx: &Context) {
+    fn poll(&mut self, ctx: &Context) {
         if matches!(self.work, Work::NotBegun) {
             // If the thread cannot be started, the gallery shows names and descriptions only.
-            self.work = Workshop::start().map_or(Work::Ended, Work::Goes);
+            self.work = ThumbnailTask::start().map_or(Work::Ended, Work::Running);
         }
-        while let Work::Goes(workshop) = &self.work {
-            match workshop.hear() {
+        while let Work::Running(task) = &self.work {
+            match task.poll() {
                 Ok((id, thumbnail)) => _ = self.thumbnails.insert(id, thumbnail),
                 Err(TryRecvError::Empty) => return ctx.request_repaint_after(POLL),
                 Err(TryRecvError::Disconnected) => self.work = Work::Ended,
@@ -100,7 +100,7 @@ impl Gallery {
         /// Width of the margins and the scroll bar, points.
         const BESIDE: f32 = 36.0;
         const GAP: f32 = 6.0;
-        self.listen(ui.ctx());
+        self.poll(ui.ctx());
         let palette = Palette::new(ui.visuals());
         let room = (window - BESIDE).max(160.0);
         let columns = if room >= 2.0 * NARROWEST + GAP { 2 } else { 1 };
@@ -203,7 +203,7 @@ mod tests {
         let mut gallery = Gallery::default();
         assert!(matches!(gallery.work, Work::NotBegun), "nothing is made before it is opened");
         while !matches!(gallery.work, Work::Ended) {
-            gallery.listen(&ctx);
+            gallery.poll(&ctx);
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         assert_eq!(gallery.thumbnails.len(), ENTRIES.len());

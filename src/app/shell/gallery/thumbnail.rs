@@ -40,15 +40,15 @@ pub(super) struct Thumbnail {
 }
 
 impl Thumbnail {
-    /// Computes the state that the thumbnail shows, or an earlier one if `is_called_off` returns `true`; `None` if the
+    /// Computes the state that the thumbnail shows, or an earlier one if `is_cancelled` returns `true`; `None` if the
     /// scene cannot be set up.
-    pub(super) fn of(scene: &Scene, is_called_off: impl Fn() -> bool) -> Option<Self> {
+    pub(super) fn of(scene: &Scene, is_cancelled: impl Fn() -> bool) -> Option<Self> {
         let mut simulation = Simulation::new(scene).ok()?;
         simulation.keep_ledger(false);
         let most = (WORK / simulation.system().dofs().max(1)).clamp(FEWEST_STEPS, MOST_STEPS);
         for _ in 0..most {
             let goes_on = *simulation.status() == Status::Running && simulation.state().time() < MOMENT;
-            if !goes_on || is_called_off() {
+            if !goes_on || is_cancelled() {
                 break;
             }
             simulation.step();
@@ -144,15 +144,19 @@ mod tests {
                     .fold((thumbnail.rest[0], thumbnail.rest[0]), |(l, h), p| (l.inf(p), h.sup(p)));
                 (high - low).norm()
             };
-            let way = thumbnail.rest.iter().zip(&thumbnail.moved).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max);
-            assert!(way > 0.01 * size && way < 3.0 * size, "{}: moved by {way} of {size} m", built_in.id);
+            let distance = thumbnail.rest.iter().zip(&thumbnail.moved).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max);
+            assert!(
+                distance > 0.01 * size && distance < 3.0 * size,
+                "{}: moved by {distance} of {size} m",
+                built_in.id
+            );
             assert!(thumbnail.range[0] < thumbnail.range[1] && !thumbnail.outline.is_empty(), "{}", built_in.id);
             assert_eq!(thumbnail.triangles.len(), thumbnail.values.len());
             if thumbnail.scene.analysis == Analysis::Static {
                 let mut solved = Simulation::new(&thumbnail.scene).unwrap();
                 solved.solve();
                 let furthest = solved.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
-                assert!((way / furthest - 1.0).abs() < 1e-3, "{}: {way} is not {furthest}", built_in.id);
+                assert!((distance / furthest - 1.0).abs() < 1e-3, "{}: {distance} is not {furthest}", built_in.id);
             }
         }
     }

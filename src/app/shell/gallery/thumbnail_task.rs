@@ -9,12 +9,12 @@ use crate::scene::{self, Source, registry};
 
 /// Background work on all thumbnails. Dropping it cancels it.
 #[derive(Debug)]
-pub(super) struct Workshop {
+pub(super) struct ThumbnailTask {
     receiver: Receiver<(&'static str, Thumbnail)>,
     cancel: Arc<AtomicBool>,
 }
 
-impl Workshop {
+impl ThumbnailTask {
     /// Starts the thread.
     ///
     /// # Errors
@@ -29,23 +29,23 @@ impl Workshop {
 
     /// Returns the next thumbnail that is ready, with its scene's name; the error tells whether none is ready yet or no
     /// more will follow.
-    pub(super) fn hear(&self) -> Result<(&'static str, Thumbnail), TryRecvError> {
+    pub(super) fn poll(&self) -> Result<(&'static str, Thumbnail), TryRecvError> {
         self.receiver.try_recv()
     }
 }
 
-impl Drop for Workshop {
+impl Drop for ThumbnailTask {
     fn drop(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
     }
 }
 
 fn work(sender: &Sender<(&'static str, Thumbnail)>, cancelled: &AtomicBool) {
-    let is_called_off = || cancelled.load(Ordering::Relaxed);
+    let is_cancelled = || cancelled.load(Ordering::Relaxed);
     for built_in in registry::BUILT_IN {
         let scene = scene::open(&Source { name: built_in.id.into(), assignments: Vec::new() });
-        let thumbnail = scene.ok().and_then(|scene| Thumbnail::of(&scene, is_called_off));
-        if is_called_off() {
+        let thumbnail = scene.ok().and_then(|scene| Thumbnail::of(&scene, is_cancelled));
+        if is_cancelled() {
             return;
         }
         if let Some(thumbnail) = thumbnail

@@ -306,14 +306,14 @@ impl ClampedBeam {
 /// Returns the distance of a displacement from the reference, relative to the reference's length, percent; `None` if
 /// the reference is zero.
 #[must_use]
-pub fn error_percent(u: Vector2<f64>, truth: Vector2<f64>) -> Option<f64> {
-    let length = truth.norm();
-    (length > 0.0).then(|| 100.0 * (u - truth).norm() / length)
+pub fn error_percent(u: Vector2<f64>, reference: Vector2<f64>) -> Option<f64> {
+    let length = reference.norm();
+    (length > 0.0).then(|| 100.0 * (u - reference).norm() / length)
 }
 
 /// Reference solution for scenes whose right edge has a known displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BeamTruth {
+pub enum ExactBeam {
     /// Clamped left, loaded on the right edge or by its weight: the geometrically exact beam.
     Cantilever(ClampedBeam),
     /// Bar pulled along its axis, free to contract laterally: P L / (E A).
@@ -323,7 +323,7 @@ pub enum BeamTruth {
     },
 }
 
-impl BeamTruth {
+impl ExactBeam {
     /// Returns the reference solution of a scene, `None` if it has none.
     ///
     /// It exists for a rectangle clamped on its left edge whose loads are gravity and forces and moments on the right
@@ -390,9 +390,9 @@ impl BeamTruth {
     pub fn outline(&self, height: f64) -> Option<Vec<Vector2<f64>>> {
         let Self::Cantilever(beam) = self else { return None };
         let axis = beam.axis()?;
-        let beside = |tip: &Tip, side: f64| tip.x + Vector2::new(-tip.angle.sin(), tip.angle.cos()) * (side * height);
-        let below = axis.iter().map(|tip| beside(tip, -0.5));
-        let above = axis.iter().rev().map(|tip| beside(tip, 0.5));
-        Some(below.chain(above).chain(axis.first().map(|tip| beside(tip, -0.5))).collect())
+        let offset = |tip: &Tip, side: f64| tip.x + Vector2::new(-tip.angle.sin(), tip.angle.cos()) * (side * height);
+        let below = axis.iter().map(|tip| offset(tip, -0.5));
+        let above = axis.iter().rev().map(|tip| offset(tip, 0.5));
+        Some(below.chain(above).chain(axis.first().map(|tip| offset(tip, -0.5))).collect())
     }
 }

@@ -4,7 +4,7 @@
 /// with an exponent.
 ///
 /// ```
-/// use warpbeam::words::number;
+/// use warpbeam::format::number;
 /// assert_eq!((number(0.25), number(1e9)), ("0.25".to_owned(), "1e9".to_owned()));
 /// ```
 #[must_use]
@@ -27,7 +27,7 @@ pub fn count(n: impl Into<u64>, what: &str) -> String {
 /// Formats a whole number with thousands separators: `500,000`.
 ///
 /// ```
-/// use warpbeam::words::grouped;
+/// use warpbeam::format::grouped;
 /// assert_eq!([0, 999, 1000, 1234567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
 /// ```
 #[must_use]
@@ -59,7 +59,7 @@ fn takes_no_prefix(unit: &str) -> bool {
 /// 1000. Units that have a prefix already, such as kg m/s, and °, % and 1/s take none.
 ///
 /// ```
-/// use warpbeam::words::prefix;
+/// use warpbeam::format::prefix;
 /// assert_eq!((prefix(&[0.5, -0.002], "m"), prefix(&[5e4], "kg m/s")), ((-3, "m"), (0, "")));
 /// ```
 #[must_use]
@@ -78,7 +78,7 @@ pub fn prefix(values: &[f64], unit: &str) -> (i32, &'static str) {
 /// Formats a measured value in engineering units, to four significant digits: `-5.12 µm`, `30 kN`, `0 m`.
 ///
 /// ```
-/// use warpbeam::words::engineering;
+/// use warpbeam::format::engineering;
 /// assert_eq!((engineering(-5.12e-6, "m"), engineering(3e4, "N")), ("-5.12 µm".to_owned(), "30 kN".to_owned()));
 /// ```
 #[must_use]
@@ -101,7 +101,7 @@ fn with_unit(number: &str, symbol: &str, unit: &str) -> String {
 /// with four.
 ///
 /// ```
-/// use warpbeam::words::editable;
+/// use warpbeam::format::editable;
 /// assert_eq!(
 ///     [editable(2.1e11, "Pa"), editable(1.23456, "N"), editable(1.0 / 60.0, "s")],
 ///     ["210 GPa", "1.23456 N", "16.67 ms"]
@@ -119,7 +119,7 @@ pub fn editable(value: f64, unit: &str) -> String {
 /// Formats a percentage with two digits; differences at rounding level are `exact`.
 ///
 /// ```
-/// use warpbeam::words::percent;
+/// use warpbeam::format::percent;
 /// assert_eq!(
 ///     [43.96, 0.0512, 4e-11].map(percent),
 ///     ["44 %".to_owned(), "0.051 %".to_owned(), "exact".to_owned()]
@@ -169,7 +169,7 @@ pub fn round_down(length: f64) -> f64 {
 /// `most`.
 ///
 /// ```
-/// use warpbeam::words::ticks;
+/// use warpbeam::format::ticks;
 /// assert_eq!(ticks(-0.3, 4.1, 5), [0.0, 1.0, 2.0, 3.0, 4.0]);
 /// ```
 #[must_use]
@@ -194,7 +194,7 @@ pub fn ticks(low: f64, high: f64, most: u32) -> Vec<f64> {
 /// is 0.
 ///
 /// ```
-/// use warpbeam::words::engineering_pair;
+/// use warpbeam::format::engineering_pair;
 /// assert_eq!(engineering_pair([1e-19, -0.0025], "m"), "(0, -2.5) mm");
 /// ```
 #[must_use]

@@ -11,7 +11,7 @@ const REACH: f64 = 0.25;
 /// Mouse spring at a material point. Its force k (p − x + τ (ṗ − ẋ)) is capped smoothly (Huber 1964), so that its
 /// tangent is never negative and no pointer motion exerts more force than a time step can handle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Hand {
+pub struct MouseSpring {
     point: MaterialPoint,
     weights: NodeWeights,
     /// Indices of its tangent's blocks in the stiffness matrix.
@@ -32,7 +32,7 @@ struct Path {
     times: [f64; 2],
 }
 
-impl Hand {
+impl MouseSpring {
     /// Returns a spring at a point of a body, whose target is the point's rest position until [`Self::lead`] is called;
     /// `None` if there is no such point. `stiffness` is k, N/m; `delay` is τ, s: damper over spring constant.
     pub(crate) fn new(system: &System, point: MaterialPoint, stiffness: f64, delay: f64) -> Option<Self> {
