@@ -52,7 +52,7 @@ fn key(harness: &mut Harness<'_, Lab>, key: Key) {
 /// Returns the position on the time line at a fraction of its length.
 fn on_line(harness: &Harness<'_, Lab>, part: f32) -> Pos2 {
     // The control also accepts the pointer beyond the ends of the line.
-    let line = harness.get_by_role_and_label(Role::Slider, "Time line").rect().shrink2(vec2(8.0, 0.0));
+    let line = harness.get_by_role_and_label(Role::Slider, "Timeline").rect().shrink2(vec2(8.0, 0.0));
     egui::pos2(egui::lerp(line.x_range(), part), line.center().y)
 }
 
@@ -188,7 +188,7 @@ fn the_past_ends_at_the_present_and_begins_with_the_scene() {
     key(&mut harness, Key::Comma);
     assert!((time(&harness) - paused).abs() < 1e-9, "what was before is another scene's");
     key(&mut harness, Key::R);
-    assert!(harness.query_by_role_and_label(Role::Slider, "Time line").is_none());
+    assert!(harness.query_by_role_and_label(Role::Slider, "Timeline").is_none());
     key(&mut harness, Key::Comma);
     assert_eq!(time(&harness), 0.0);
 }

@@ -181,7 +181,7 @@ fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     assert!(harness.state().view_rect().contains(harness.state().arrow_feet()[0]));
     harness.drop_at(to + vec2(0.0, 200.0));
     harness.run();
-    assert!(harness.query_all_by_label_contains("Shown is the last equilibrium").next().is_some());
+    assert!(harness.query_all_by_label_contains("Showing the last equilibrium").next().is_some());
     // No error is shown for the hidden state.
     let mut frames = 0;
     while harness.state().is_computing() {
@@ -995,7 +995,7 @@ fn loads_and_supports_are_added_and_removed() {
             .collect()
     };
     let first = forces(harness.state())[0];
-    harness.get_by_role_and_label(Role::ComboBox, "Sliders set").click();
+    harness.get_by_role_and_label(Role::ComboBox, "Selected force").click();
     harness.run();
     harness.get_by_label_contains("Force 2:").click();
     harness.run();
@@ -1081,7 +1081,7 @@ fn the_card_of_a_point_is_of_one_deformation() {
         harness.get_by_label_contains("View: ").click();
         harness.run_steps(8);
         for (kind, values) in
-            [("recovered at the nodes", PointValues::Recovered), ("raw, of the element", PointValues::Raw)]
+            [("recovered at the nodes", PointValues::Recovered), ("raw, of this element", PointValues::Raw)]
         {
             assert!(harness.query_by_label(kind).is_some(), "{id}: {kind}");
             let card = card(&harness);

@@ -98,8 +98,8 @@ pub(crate) enum FigureFile {
 impl FigureFile {
     pub(crate) const ALL: [(Self, &'static str); 3] = [
         (Self::Csv, "Every point as a table, with units"),
-        (Self::Png, "The plot and its table as a picture"),
-        (Self::Svg, "The plot and its table as a drawing that scales"),
+        (Self::Png, "The plot and its table as a bitmap"),
+        (Self::Svg, "The plot and its table as a vector drawing"),
     ];
 
     pub(crate) fn extension(self) -> &'static str {

@@ -10,7 +10,7 @@ use crate::simulation::{Simulation, Status, probe_results};
 use crate::study::Reference;
 
 /// Definition of the energy drift, as shown in the user interface.
-pub(crate) const DRIFT_TIP: &str = "Energy that the integrator has added, or with a minus lost, over the energy that was put in: by the \
+pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \
                                     initial state, loads and grabs";
 
 /// Main source of an error.
@@ -100,17 +100,17 @@ pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converge
         Status::Converged => (tr("Converged").to_owned(), false),
         Status::Accepted => (tr("Accepted").to_owned(), false),
         Status::NotConverged(reason) if shows_converged => {
-            (fill!("Not converged: %{reason}. Shown is the last equilibrium.", reason = said(reason)), true)
+            (fill!("Not converged: %{reason}. Showing the last equilibrium.", reason = said(reason)), true)
         }
         Status::NotConverged(reason) => (fill!("Not converged: %{reason}.", reason = said(reason)), true),
         Status::Diverged(reason) if shows_converged => {
-            (fill!("Diverged: %{reason}. Shown is the last equilibrium.", reason = said(reason)), true)
+            (fill!("Diverged: %{reason}. Showing the last equilibrium.", reason = said(reason)), true)
         }
         Status::Diverged(reason) => {
-            (fill!("Diverged: %{reason}. Shown is the last finite state.", reason = said(reason)), true)
+            (fill!("Diverged: %{reason}. Showing the last finite state.", reason = said(reason)), true)
         }
         Status::Stopped(reason) => {
-            (fill!("Stopped: %{reason}. Shown is the last finite state.", reason = said(reason)), true)
+            (fill!("Stopped: %{reason}. Showing the last finite state.", reason = said(reason)), true)
         }
     }
 }
@@ -123,7 +123,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
         return (text, true);
     }
     if is_stale(input) {
-        return (tr("Paused: the picture is older than the load").to_owned(), false);
+        return (tr("Paused: not solved for the present load yet").to_owned(), false);
     }
     let mut add = |part: String| {
         text.push_str(" · ");
@@ -131,7 +131,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     };
     let inside_out = input.quality.is_inside_out(simulation);
     if inside_out {
-        add(tr("turned inside out").to_owned());
+        add(tr("inverted elements").to_owned());
     }
     if simulation.motion().is_some() {
         add(format!("{:.2} s", simulation.state().time()));
@@ -164,15 +164,15 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
     if input.quality.is_inside_out(simulation) {
-        let text = "Turned inside out: the area of an element is negative. The equations are solved, but no body can do \
-                     that: pull less, or make the cells smaller.";
+        let text = "Inverted elements: an element has negative area, which no real body can have, although the \
+                    equations are solved. Reduce the load, or refine the mesh.";
         lines.push(tr(text).to_owned());
     }
     if let Some(motion) = simulation.motion() {
         let counts = motion.counts();
         let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "solve"));
         lines.push(fill!("%{steps} so far, with %{solves}.", steps = steps, solves = solves));
-        let halved = "A step that does not converge is halved; what its integrator adds to the energy is the drift.";
+        let halved = "A time step that does not converge is halved. The drift is the energy that the integrator adds.";
         lines.push(tr(halved).into());
         return lines;
     }
@@ -180,17 +180,17 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let asked = number(input.scene.solver.tolerance);
     lines.push(match simulation.status() {
         Status::Converged if simulation.residual_floor().is_some() => {
-            fill!("The forces balance to working precision: what is left is %{residual} of them.", residual = residual)
+            fill!("The forces balance to machine precision: the relative residual is %{residual}.", residual = residual)
         }
         Status::Converged => {
             fill!(
-                "The forces balance: what is left is %{residual} of them, and %{asked} is asked for.",
+                "The forces balance: the relative residual is %{residual}, the tolerance is %{asked}.",
                 residual = residual,
                 asked = asked
             )
         }
         _ => fill!(
-            "The forces are out of balance by %{residual} of them; %{asked} is asked for.",
+            "The forces do not balance: the relative residual is %{residual}, the tolerance is %{asked}.",
             residual = residual,
             asked = asked
         ),
@@ -199,8 +199,10 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         lines.push(sentence(&translated(&floor_text(floor, input.scene.solver.tolerance))));
     }
     let stable = stability(simulation).map(|stable| match stable {
-        true => "Stable: pushed a little, the body comes back (the exact tangent is positive definite).",
-        false => "Unstable: pushed a little, the body leaves (the exact tangent is not positive definite).",
+        true => "Stable: after a small push the body returns (the exact tangent stiffness is positive definite).",
+        false => {
+            "Unstable: after a small push the body moves away (the exact tangent stiffness is not positive definite)."
+        }
     });
     lines.extend(stable.map(|text| tr(text).to_owned()));
     if let Some(rho) = rho(input) {
@@ -209,12 +211,12 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         if rho > 1.0 && converged {
             lines.push(match input.scene.solver.method {
                 MethodKind::Warped => tr(
-                    "It did converge, because this load never pushes the body in the direction that would grow: a bar \
-                     pulled along its axis stays straight. A small push aside would not be undone by the iteration.",
+                    "It still converged, because this load has no part in the direction that diverges: a bar pulled \
+                     along its axis stays straight. The iteration would not remove a small sideways deflection.",
                 )
                 .to_owned(),
                 other => {
-                    fill!("That does not touch this result: it comes from %{method}.", method = tr(other.id()))
+                    fill!("This result is not affected: it comes from %{method}.", method = tr(other.id()))
                 }
             });
         }
@@ -257,7 +259,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     let off = errors.own.filter(|&error| error > LARGE)?;
     let off = percent(off);
     if errors.source == Some(ErrorSource::Theory) {
-        return Some(with_newton(fill!("%{error} error: linear theory does not rotate with the body.", error = off)));
+        return Some(with_newton(fill!("%{error} error: linear theory holds for small rotations only.", error = off)));
     }
     if scene.element() == ElementKind::T3 {
         let better = [ElementKind::T6, ElementKind::Q4].into_iter().find(|e| scene.elements().any(|own| own == *e))?;
@@ -278,7 +280,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     beam.cells = beam.cells.map(|n| n.saturating_mul(2));
     let fits = f64::from(beam.cells[0]) * f64::from(beam.cells[1]) <= limits::TOTAL_CELLS.max;
     let text = fill!("%{error} error: the mesh is coarse.", error = off);
-    fits.then_some(Remedy { text, offer: tr("Halve its cells").to_owned(), edits: "Cells along", scene })
+    fits.then_some(Remedy { text, offer: tr("Refine the mesh").to_owned(), edits: "Cells along", scene })
 }
 
 /// Formats ρ with two significant digits.
@@ -289,7 +291,7 @@ pub(crate) fn rho_number(rho: f64) -> String {
 /// Returns the name of the reference solution, or a text for the case that it is not known yet.
 pub(crate) fn reference_text(reference: Option<&Reference>) -> String {
     reference.map_or_else(
-        || tr("the reference, once that is known").to_owned(),
+        || tr("the reference solution (not known yet)").to_owned(),
         |reference| translated(&reference.to_string()),
     )
 }

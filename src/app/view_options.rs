@@ -81,10 +81,10 @@ impl CurvePlot {
 
     pub(crate) fn text(self) -> (&'static str, &'static str) {
         match self {
-            Self::Reaction => ("Reaction", "The reaction of the support over its displacement"),
-            Self::Path => ("Path", "The path of the point where errors are measured: u_y against u_x, in one scale"),
-            Self::X => ("u_x", "u_x against load, where errors are measured"),
-            Self::Y => ("u_y", "u_y against load, where errors are measured"),
+            Self::Reaction => ("Reaction", "Reaction of the support against its displacement"),
+            Self::Path => ("Path", "Path of the first probe: u_y against u_x, in equal scales"),
+            Self::X => ("u_x", "u_x of the first probe against load"),
+            Self::Y => ("u_y", "u_y of the first probe against load"),
         }
     }
 }

@@ -85,7 +85,7 @@ fn work(
     language::speak(language);
     let mut observe = |progress: RecordProgress| {
         let text = match progress.phase {
-            Phase::Looking => tr("Looking ahead").to_owned(),
+            Phase::Looking => tr("Preparing the recording").to_owned(),
             Phase::Drawing => fill!("Recording %{file}", file = path.display()),
         };
         reporter.report((progress.fraction as f32, text))

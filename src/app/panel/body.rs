@@ -36,7 +36,7 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
         NumberRow {
             field: NumberField {
                 label: "Young E",
-                tooltip: "Young's modulus, Pa: the stiffness. Rubber 1e6, wood 1e10, steel 2e11.",
+                tooltip: "Young's modulus, Pa: stiffness of the material. Rubber 1e6, wood 1e10, steel 2e11.",
                 limit: limits::YOUNG,
                 slider: 1e3..=1e12,
                 scale: SliderScale::Logarithmic(1e3),
@@ -48,7 +48,8 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
         NumberRow {
             field: NumberField {
                 label: "Poisson ν",
-                tooltip: "Poisson ratio: how much it thins when pulled. 0.5 keeps the volume; plane strain stops before it.",
+                tooltip: "Poisson's ratio: lateral contraction over extension. 0.5 keeps the volume; plane strain \
+                          needs less than 0.5.",
                 limit: plane.poisson_limit(),
                 slider: -0.5..=0.499,
                 scale: SliderScale::Linear,
@@ -60,7 +61,7 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
         NumberRow {
             field: NumberField {
                 label: "Density ρ",
-                tooltip: "Density, kg/m³: weight, and inertia in motion.",
+                tooltip: "Density, kg/m³: sets the weight, and the inertia in motion.",
                 limit: limits::DENSITY,
                 slider: 0.0..=20_000.0,
                 scale: SliderScale::Logarithmic(1.0),
@@ -124,13 +125,13 @@ pub(super) fn size(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
     let sides = [
         (
             "Length",
-            "Length of the beam, m. Cells along it follow; points with loads or supports move with it.",
+            "Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it.",
             limits::LENGTH,
             [beam.length, original.length],
         ),
         (
             "Height",
-            "Height of the beam, m. Cells across it follow; points with loads or supports move with it.",
+            "Height of the beam, m. The number of cells across it adapts; points with loads or supports move with it.",
             limits::HEIGHT,
             [beam.height, original.height],
         ),
@@ -190,8 +191,8 @@ pub(super) fn material(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState,
     ui.horizontal(|ui| {
         ui.label(tr("Plane"));
         for (plane, word, tip) in [
-            (Plane::Stress, "stress", "No stress out of the plane: a thin plate."),
-            (Plane::Strain, "strain", "No strain out of the plane: a slice of something long."),
+            (Plane::Stress, "stress", "Plane stress: no stress out of the plane, as in a thin plate."),
+            (Plane::Strain, "strain", "Plane strain: no strain out of the plane, as in a slice of a long body."),
         ] {
             if ui.radio(m.plane == plane, tr(word)).on_hover_text(tr(tip)).clicked() && m.plane != plane {
                 let mut scene = Box::new(scene.clone());
@@ -231,8 +232,9 @@ pub(super) fn mesh(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
         return;
     }
     let field = NumberField {
-        label: "Per frame",
-        tooltip: "Iterations a displayed frame: more converge in fewer frames, which take longer.",
+        label: "Iterations/frame",
+        tooltip: "Iterations per displayed frame: with more, the solve takes fewer frames, but each frame takes \
+                  longer.",
         limit: limits::Limit { unit: "", min: 1.0, max: f64::from(MOST_ITERATIONS) },
         slider: 1.0..=20.0,
         scale: SliderScale::Linear,

@@ -126,7 +126,7 @@ fn row(
                     }
                 }
             });
-            let tip = tr("Edge or point it is at; the list has others");
+            let tip = tr("Edge or point where it acts; choose another from the list");
             let button = combo.response.labelled_by(name.id).on_hover_text(tip);
             if let (true, Place::Edge(name), None) = (button.hovered(), present, &view.edge) {
                 view.edge = Some(name.clone());
@@ -185,8 +185,10 @@ pub(super) fn show(
             // The layout runs from right to left.
             for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
                 let is_fixed = fix.contains(&axis);
-                let tip =
-                    fill!("It fixes the body along %{axis}: a clamp fixes both directions, a roller one", axis = word);
+                let tip = fill!(
+                    "Fixes the displacement along %{axis}: a clamp fixes both directions, a roller one",
+                    axis = word
+                );
                 let button = option_button(is_fixed, word).min_size(vec2(22.0, 0.0));
                 if ui.add(button).on_hover_text(tip).clicked() {
                     match is_fixed {
@@ -237,11 +239,11 @@ fn refixed(before: &Support, fix: &[Axis]) -> Support {
 /// Button that adds a load or support: its name, its tooltip, and the function that returns the extended scene.
 type Addition = (&'static str, &'static str, fn(&Readout<'_>) -> Box<Scene>);
 const ADDITIONS: [Addition; 3] = [
-    ("Force", "Another force, down, at a place without one", with_another_force),
-    ("Moment", "Another moment, on an edge without one", with_another_moment),
+    ("Force", "Add a downward force at a place without one", with_another_force),
+    ("Moment", "Add a moment on an edge without one", with_another_moment),
     (
         "Support",
-        "Another support, at a place without one; x and y select the directions that it fixes",
+        "Add a support at a place without one; x and y select the directions that it fixes",
         with_another_support,
     ),
 ];

@@ -65,7 +65,7 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
     let [usual, largest] = force_range(opening, &scene.material, input.simulation.system());
     let field = NumberField {
         label: "Force",
-        tooltip: "Magnitude of the force, N. Type a number for values the slider has not, such as 12 kN.",
+        tooltip: "Magnitude of the force, N. Larger or smaller values can be typed, such as 12 kN.",
         limit: limits::FORCE,
         slider: 0.0..=largest,
         scale: SliderScale::Around(usual),
@@ -99,7 +99,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut P
     let usual = if original > 0.0 { original } else { EARTH };
     let field = NumberField {
         label: "Gravity",
-        tooltip: "Acceleration that gives the body its weight, m/s²; 9.81 on earth, 0 for none.",
+        tooltip: "Gravitational acceleration, m/s²; 9.81 on Earth, 0 for none.",
         limit: limits::ACCELERATION,
         slider: 0.0..=1000.0,
         scale: SliderScale::Around(usual),
@@ -114,7 +114,8 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut P
     let [usual, largest] = moment_range(opening, &scene.material, input.simulation.system());
     let field = NumberField {
         label: "Moment",
-        tooltip: "Moment on an edge, N m, counter-clockwise; it turns with the edge. 2πEI/L rolls a beam up once.",
+        tooltip: "Moment on an edge, N m, counter-clockwise; it rotates with the edge. 2πEI/L bends a beam into a \
+                  circle.",
         limit: limits::MOMENT,
         slider: -largest..=largest,
         scale: SliderScale::Around(usual),
@@ -132,7 +133,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut P
             None => match edges::edge_for_moment(&scene, input.simulation.system()) {
                 Some(edge) => scene.loads.push(Load::moment(&edge, new)),
                 None => {
-                    let message = "expected a straight edge that is not held, there is none";
+                    let message = "expected a straight edge without support; the body has none";
                     state.messages.insert("Moment", message.to_owned());
                     return;
                 }
@@ -170,7 +171,7 @@ fn choose(ui: &mut Ui, scene: &Scene, state: &mut PanelState) {
     };
     let place = forces(scene).find(|(i, ..)| *i == present).map(|(_, place, _)| place);
     ui.horizontal(|ui| {
-        let label = ui.label(tr("Sliders set"));
+        let label = ui.label(tr("Selected force"));
         let text = place.map_or_else(String::new, |place| name(present, place));
         ComboBox::from_id_salt("chosen force")
             .selected_text(text)
@@ -185,7 +186,7 @@ fn choose(ui: &mut Ui, scene: &Scene, state: &mut PanelState) {
             })
             .response
             .labelled_by(label.id)
-            .on_hover_text(tr("The force that the sliders set; dragging an arrow chooses its force"));
+            .on_hover_text(tr("The force that the sliders change; dragging an arrow selects its force"));
     });
 }
 

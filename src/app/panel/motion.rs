@@ -21,7 +21,8 @@ const TIME: [NumberRow; 4] = [
     NumberRow {
         field: NumberField {
             label: "Time step",
-            tooltip: "Length of a step, s. Half of it: twice the work, a quarter of the error at second order.",
+            tooltip: "Length of a time step, s. Half the step takes twice the work and, at second order, has a \
+                      quarter of the error.",
             limit: limits::TIME_STEP,
             slider: 1e-4..=0.1,
             scale: SliderScale::Logarithmic(1e-4),
@@ -33,7 +34,7 @@ const TIME: [NumberRow; 4] = [
     NumberRow {
         field: NumberField {
             label: "Solves",
-            tooltip: "Solves a stage; 0: as many as the tolerance needs.",
+            tooltip: "Linear solves per stage of a time step; 0: as many as the tolerance needs.",
             limit: limits::Limit { unit: "", min: 0.0, max: 20.0 },
             slider: 0.0..=4.0,
             scale: SliderScale::Linear,
@@ -45,7 +46,8 @@ const TIME: [NumberRow; 4] = [
     NumberRow {
         field: NumberField {
             label: "Mass damping α",
-            tooltip: "Mass-proportional (Rayleigh) damping α, 1/s: slows everything down. Velocities fall by a factor e in 2/α seconds.",
+            tooltip: "Mass-proportional (Rayleigh) damping α, 1/s: damps every motion, also of a rigid body. \
+                      Amplitudes of vibrations fall by a factor e in 2/α seconds.",
             limit: limits::MASS_DAMPING,
             slider: 0.0..=10.0,
             scale: SliderScale::Logarithmic(1e-3),
@@ -57,7 +59,8 @@ const TIME: [NumberRow; 4] = [
     NumberRow {
         field: NumberField {
             label: "Stiffness damping β",
-            tooltip: "Stiffness-proportional (Rayleigh) damping β, s: damps vibrations, the fast ones first; a rigid rotation is not damped.",
+            tooltip: "Stiffness-proportional (Rayleigh) damping β, s: damps vibrations, high frequencies most; a \
+                      rigid rotation is not damped.",
             limit: limits::STIFFNESS_DAMPING,
             slider: 0.0..=1.0,
             scale: SliderScale::Logarithmic(1e-5),
@@ -86,18 +89,19 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
             }
         };
         for (speed, word) in SPEEDS {
-            button(speed, word, tr("Simulated seconds a second: 1 is real time, less is slow motion"));
+            button(speed, word, tr("Simulated seconds per second: 1 is real time, less is slow motion"));
         }
         if let Some((frequency, speed)) = input.frequency.and_then(|f| Some((f, speed_of_period(f)?))) {
             let frequency = engineering(three_digits(frequency), "Hz");
-            let tip = fill!("One period a second: the lowest natural frequency is %{frequency}", frequency = frequency);
+            let tip =
+                fill!("One period of the lowest natural frequency, %{frequency}, per second", frequency = frequency);
             button(speed, &fraction(speed), &tip);
         }
     });
     ui.horizontal(|ui| {
         let marked = input.playback.is_marked();
-        let tip = "Reset goes to where the body is now, in place of the start; again: to the start (H)";
-        if ui.add(option_button(marked, tr("Reset to here"))).on_hover_text(tr(tip)).clicked() {
+        let tip = "Reset returns to the present state instead of the start; again: to the start (H)";
+        if ui.add(option_button(marked, tr("Set reset point"))).on_hover_text(tr(tip)).clicked() {
             actions.push(Action::Mark);
         }
     });
@@ -112,7 +116,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
     show_message(ui, &state.messages, "Integrator");
     ui.horizontal_wrapped(|ui| {
         ui.label(tr("Compare integrators"))
-            .on_hover_text(tr("The same motion under other integrators, as outlines and lines in the plots"));
+            .on_hover_text(tr("The same motion with other integrators: outlines in the view, lines in the plots"));
         for entry in INTEGRATORS.iter().filter(|entry| entry.kind != settings.integrator) {
             let is_shown = input.playback.companions().iter().any(|c| c.integrator == entry.kind);
             if ui.add(option_button(is_shown, tr(entry.id))).on_hover_text(tr(entry.about)).clicked() {

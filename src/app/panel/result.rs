@@ -20,7 +20,7 @@ const NAME_WIDTH: f32 = 84.0;
 /// Returns a summary of the section's content.
 pub(super) fn summary(input: &Readout<'_>) -> String {
     let moves = input.simulation.motion().is_some();
-    tr(if moves { "energy, steps, times" } else { "certificate, reactions, times" }).to_owned()
+    tr(if moves { "energy, steps, times" } else { "stability, reactions, times" }).to_owned()
 }
 
 pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
     if let Some(motion) = simulation.motion() {
         motion_rows(&mut row, input, motion);
         probe_row(&mut row, simulation);
-        frame_row(&mut row, input, "Time of a time step");
+        frame_row(&mut row, input, "Computing time of a time step");
     } else {
         search_rows(&mut row, input, errors);
     }
@@ -56,7 +56,8 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
             n = simulation.iterations(),
             residual = format!("{:.2e}", simulation.residual())
         ),
-        "Solves since the last change; out-of-balance force over the sum of the elements' absolute forces",
+        "Iterations since the last change; residual: out-of-balance force over the sum of the elements' absolute \
+         forces",
     );
     probe_row(row, simulation);
     let text = errors.own.zip(input.reference.and_then(Reference::first)).map_or_else(
@@ -70,23 +71,22 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
     row(
         "Error",
         text,
-        &fill!("Distance of the first probe from %{reference}, over its displacement", reference = reference),
+        &fill!("Relative error of the first probe's displacement, compared with %{reference}", reference = reference),
     );
     quality_rows(row, input);
     let (factor, steps) = simulation.load_stepping();
     let part = format!("{:.3} %", 100.0 * factor);
     let text = fill!("%{n}, at %{part} of the load", n = steps, part = part);
-    row("Load steps", text, "Parts in which the load is put on");
+    row("Load steps", text, "Number of steps in which the load is applied");
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
-    row("Equilibrium", tr(word).to_owned(), "Certified: whether the exact tangent A + G is positive definite");
+    row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
     let text = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&translated(&rho_text(rho))));
-    let tip =
-        "ρ: the largest |λ| with G v = λ A v, the error factor of the warped iteration where an iteration has ended";
+    let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
     row("ρ", text, tip);
     // The energy is a sum over all elements, which is too expensive for every frame of a motion.
     if simulation.is_at_rest() {
         let (problem, state) = (simulation.problem(), simulation.state());
-        row("Energy", engineering(energy(problem, state, factor).elastic, "J"), "Stored in the body");
+        row("Energy", engineering(energy(problem, state, factor).elastic, "J"), "Elastic energy stored in the body");
         supports::reaction_rows(row, simulation);
     }
     if let Some(auto) = simulation.auto_report() {
@@ -98,7 +98,7 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
         let tip = joined(error.into_iter().chain([solves, factors]));
         row("Auto", sentence(&translated(&auto.decision.to_string())), &tip);
     }
-    frame_row(row, input, "Time of the iterations of one displayed frame");
+    frame_row(row, input, "Computing time of the iterations of one displayed frame");
 }
 
 /// Function that shows a row of the result: name, value, and tooltip.
@@ -121,7 +121,8 @@ fn quality_rows(row: &mut Row<'_>, input: &Readout<'_>) {
     let quality = input.quality;
     let error = quality.mesh_error_percent.filter(|_| known);
     let text = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
-    let tip = "Of the mesh alone, in the energy norm: the elements' stresses against those recovered at the nodes";
+    let tip = "Error of the mesh alone, in the energy norm: the elements' stresses compared with those recovered at \
+               the nodes";
     row("Mesh error", text, tip);
     let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
     let warning = quality.warning().filter(|_| known);
@@ -149,8 +150,8 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
         Some(factor) => fill!("%{factor} of real time", factor = fraction(factor)),
         None => UNKNOWN.to_owned(),
     };
-    let tip = "Simulated seconds a second; a machine that cannot keep up slows the motion down";
-    row("Pace", factor, tip);
+    let tip = "Simulated seconds per second; fewer than requested if the machine cannot keep up";
+    row("Speed", factor, tip);
     let counts = motion.counts();
     let halvings = (counts.halvings > 0).then(|| count(counts.halvings, "halving"));
     row(
@@ -175,7 +176,7 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
     row("Drift", percent(100.0 * ledger.drift_of_input()), DRIFT_TIP);
     if let Some((_, force)) = input.simulation.mouse_spring() {
-        row("Hand", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
+        row("Grab", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }
 }
 
@@ -184,9 +185,13 @@ fn stages(ui: &mut Ui, input: &Readout<'_>) {
     let times = input.timings;
     let secondary = Palette::new(ui.visuals()).secondary;
     let stages = [
-        ("rotate", times.rotate, "Rotations found apart, at the end of time steps"),
-        ("assemble", times.assemble, "One sweep: rotations, stiffness of the turned elements, forces and the residual"),
-        ("factorize", times.factorize, "Sparse Cholesky"),
+        ("rotate", times.rotate, "Rotations computed separately, at the end of time steps"),
+        (
+            "assemble",
+            times.assemble,
+            "One sweep: rotations, stiffness of the rotated elements, forces and the residual",
+        ),
+        ("factorize", times.factorize, "Sparse Cholesky factorization"),
         ("solve", times.solve, "Forward and back substitution"),
     ];
     // The columns fit next to a scroll bar, too.

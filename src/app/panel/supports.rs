@@ -67,9 +67,13 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut 
         (
             Axis::X,
             "Move x",
-            "Where the support takes its place, m, to the right. Type a number with a unit, such as 3 mm.",
+            "Prescribed displacement of the support to the right, m. Numbers with a unit can be typed, such as 3 mm.",
         ),
-        (Axis::Y, "Move y", "Where the support takes its place, m, up. Type a number with a unit, such as -3 mm."),
+        (
+            Axis::Y,
+            "Move y",
+            "Prescribed displacement of the support upwards, m. Numbers with a unit can be typed, such as -3 mm.",
+        ),
     ] {
         if !support.fix.contains(&axis) {
             continue;
@@ -92,8 +96,9 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut 
     }
     if matches!(support.place, Place::Edge(_)) && support.fix.contains(&Axis::X) && support.fix.contains(&Axis::Y) {
         let field = NumberField {
-            label: "Turn",
-            tooltip: "How far the support turns its edge about its middle, counter-clockwise: in degrees, or 0.5 rad.",
+            label: "Rotation",
+            tooltip: "Prescribed rotation of the support's edge about its middle, counter-clockwise: in degrees, or \
+                      with a unit, such as 0.5 rad.",
             limit: Limit { unit: "°", min: limits::ROTATION.min.to_degrees(), max: limits::ROTATION.max.to_degrees() },
             slider: -180.0..=180.0,
             scale: SliderScale::Linear,
@@ -101,7 +106,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut 
         };
         let original = original.map(|support| support.turn.to_degrees());
         if let Some(new) = field.show_with_original(ui, &mut state.messages, support.turn.to_degrees(), original) {
-            actions.push(Action::Edit("Turn", edited(scene, number, |support| support.turn = new.to_radians())));
+            actions.push(Action::Edit("Rotation", edited(scene, number, |support| support.turn = new.to_radians())));
         }
     }
 }
@@ -126,14 +131,14 @@ pub(super) fn reaction_rows(row: &mut dyn FnMut(&str, String, &str), simulation:
         let force = engineering_pair(reaction.force.into(), "N");
         let (name, tip) = match &reaction.place {
             Place::Edge(edge) => (
-                fill!("From %{edge}", edge = tr(edge)),
+                fill!("Support %{edge}", edge = tr(edge)),
                 fill!(
-                    "Force of this support on the body; its moment about the edge's middle is %{moment}",
+                    "Reaction of this support; its moment about the edge's middle is %{moment}",
                     moment = engineering(reaction.moment, "N m")
                 ),
             ),
             place @ Place::At(_) => {
-                (fill!("Support %{n}", n = i), fill!("Force of the support at %{place} on the body", place = place))
+                (fill!("Support %{n}", n = i + 1), fill!("Reaction of the support at %{place}", place = place))
             }
         };
         row(&name, force, &tip);

@@ -36,7 +36,7 @@ pub(super) fn options(
     let mut fixed = view.fixed_range.is_some();
     if ui
         .checkbox(&mut fixed, tr("Fixed colour range"))
-        .on_hover_text(tr("Keep the ends of the colour map; else they follow the values"))
+        .on_hover_text(tr("Keep the ends of the colour map fixed; otherwise they follow the values"))
         .changed()
     {
         view.fixed_range = fixed.then(|| value_range(input.simulation, view.field, view.raw));
@@ -69,12 +69,12 @@ pub(super) fn options(
         }
     }
     ui.horizontal_wrapped(|ui| {
-        let tip = "Values as each element has them, not recovered at the nodes: they jump where the mesh is coarse";
+        let tip = "Each element's own values, not smoothed at the nodes: they jump where the mesh is coarse";
         ui.checkbox(&mut view.raw, tr("Raw")).on_hover_text(tr(tip));
         ui.checkbox(&mut view.wireframe, tr("Wireframe")).on_hover_text(tr("Element edges (W)"));
         ui.checkbox(&mut view.rest_outline, tr("Rest")).on_hover_text(tr("Outline of the body at rest (O)"));
         if input.scene.analysis == Analysis::Dynamic {
-            ui.checkbox(&mut view.trail, tr("Trail")).on_hover_text(tr("Where the tip has been (Y)"));
+            ui.checkbox(&mut view.trail, tr("Trail")).on_hover_text(tr("Path of the tip (Y)"));
         } else {
             let tip = "Outline of the exact solution, where it is known (X)";
             ui.checkbox(&mut view.exact, tr("Exact")).on_hover_text(tr(tip));
@@ -109,11 +109,11 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             ("Open…", "Open a scene file; dropping one on the window does too (Ctrl+O)", Action::OpenFile),
             ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
             ("Save as…", "Save the scene to another file (Ctrl+Shift+S)", Action::SaveAs),
-            ("Screenshot", "Save this picture as a PNG file here (S)", Action::Screenshot),
-            ("Record", "Record the window from now on as a GIF here; again: stop (V)", Action::Record),
+            ("Screenshot", "Save a screenshot as a PNG file in the current folder (S)", Action::Screenshot),
+            ("Record", "Record the window as a GIF in the current folder; again: stop (V)", Action::Record),
             (
                 "Record scene",
-                "Record the scene from its start as a GIF here; again: stop (Shift+V)",
+                "Record the scene from its start as a GIF in the current folder; again: stop (Shift+V)",
                 Action::RecordScene,
             ),
             ("Copy as TOML", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),

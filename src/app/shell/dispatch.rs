@@ -121,7 +121,7 @@ impl Lab {
             Action::Reset => self.reset(),
             Action::Mark => {
                 let is_marked = self.desk.session.toggle_mark();
-                let text = if is_marked { "Reset goes to here" } else { "Reset goes to the start" };
+                let text = if is_marked { "Reset now returns to this state" } else { "Reset now returns to the start" };
                 self.say(ctx, tr(text).to_owned());
             }
             Action::Speed(speed) => {

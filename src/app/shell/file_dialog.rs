@@ -104,7 +104,7 @@ impl FileDialog {
                 path.set_extension("toml");
             }
             if path.exists() && self.replaced.as_ref() != Some(&path) {
-                self.message = Some(fill!("%{file} exists: Replace writes over it", file = path.display()));
+                self.message = Some(fill!("%{file} exists: Replace overwrites it", file = path.display()));
                 self.replaced = Some(path);
                 return None;
             }
@@ -160,7 +160,7 @@ impl FileDialog {
                 }
                 if self.purpose == Purpose::Open && !recent.is_empty() {
                     ui.separator();
-                    ui.label(RichText::new(tr("Used last")).weak());
+                    ui.label(RichText::new(tr("Recent files")).weak());
                     for path in recent {
                         if ui.selectable_label(false, path.display().to_string()).clicked() {
                             chosen = Some(path.clone());

@@ -7,17 +7,17 @@ use crate::app::shell::shortcuts::SHORTCUTS;
 
 /// Keys that belong to a mode or to the control with the focus.
 const HERE: &[(&str, &str)] = &[
-    ("Left, Right", "On a slider: a little less or more; on the cards of Learn: the card before or after"),
-    ("Delete", "On a slider: the scene's own value"),
+    ("Left, Right", "On a slider: decrease or increase; in Learn: the previous or next card"),
+    ("Delete", "On a slider: reset to the scene's value"),
 ];
 
 const MOUSE: &[(&str, &str)] = &[
-    ("Drag an arrow's tip", "Set a force or a moment; Shift: in steps of 15°, or to a round moment"),
+    ("Drag an arrow's tip", "Set a force or a moment; Shift: snap to 15°, or to a round moment"),
     ("Drag the body", "Pull it with a spring; let go and it springs back"),
-    ("Drag beside it, two fingers", "Move the view"),
-    ("Rest over the body", "Its values under the pointer; a click keeps them"),
-    ("Scroll, pinch", "Zoom to the pointer"),
-    ("Double click", "Fit the view; on an arrow's tip, a slider or a number: the scene's own"),
+    ("Drag the background, two fingers", "Move the view"),
+    ("Hover over the body", "Values under the pointer; click to pin them"),
+    ("Scroll, pinch", "Zoom at the pointer"),
+    ("Double click", "Fit the view; on an arrow's tip, a slider or a number: reset its value"),
     ("Drop a file", "Open it"),
 ];
 

@@ -397,7 +397,7 @@ impl Lab {
                 ui.horizontal(|ui| {
                     let text = format!("{}\u{2026} {seconds} s", status_bar::phase_text(scene, phase));
                     ui.colored_label(palette.text, text);
-                    if ui.button(tr("Cancel")).on_hover_text(tr("Back to how it was (Esc)")).clicked() {
+                    if ui.button(tr("Cancel")).on_hover_text(tr("Return to the previous state (Esc)")).clicked() {
                         actions.push(Action::Cancel);
                     }
                 });

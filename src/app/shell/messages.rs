@@ -43,7 +43,7 @@ impl Lab {
                 }
                 Notice::Rejected { label: None, message } => self.say(ctx, translated(&message)),
                 Notice::SolveDied => self.say(ctx, tr("The solve ended unexpectedly").to_owned()),
-                Notice::NoThread(error) => self.say(ctx, fill!("No thread for the solve: %{error}", error = error)),
+                Notice::NoThread(error) => self.say(ctx, fill!("Could not start the solve: %{error}", error = error)),
             }
         }
     }

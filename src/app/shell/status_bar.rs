@@ -91,7 +91,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
                 }),
             },
             tip: fill!(
-                "Distance of the first probe from %{reference}, over its displacement; and where most of it comes from",
+                "Relative error of the first probe's displacement, compared with %{reference}; and its main source",
                 reference = reference
             ),
             color: error_color(palette, errors.own),
@@ -101,7 +101,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
-            tip: tr("Time of the solve since the last change, without the time for display").to_owned(),
+            tip: tr("Computing time of the solve since the last change, without the check of stability").to_owned(),
             color: palette.text,
             gauge: Gauge::Blocks(level((1e6 * seconds).max(1.0).log10())),
         },
@@ -113,8 +113,8 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
             word: Cow::default(),
             tip: tr(
-                "The factor by which each iteration of the warped method shrinks its error here; above 1 it grows, and \
-                 the iteration diverges",
+                "Spectral radius of the warped iteration: each iteration multiplies the error by about ρ; above 1 it \
+                 diverges",
             )
             .to_owned(),
             color: match rho {
@@ -138,15 +138,15 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: &Motion) -> [Number
             name: "STEP",
             value: if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
-            tip: fill!("What a time step costs; it simulates %{step}", step = engineering(step, "s")),
+            tip: fill!("Computing time of a time step, which simulates %{step}", step = engineering(step, "s")),
             color: if cost > step { palette.error } else { palette.text },
             gauge: Gauge::Bar(0.5 * cost / step, 0.5),
         },
         Number {
-            name: "PACE",
+            name: "SPEED",
             value: clock.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {}", fraction(factor))),
             word: if clock.lags() { tr("too slow").into() } else { Cow::default() },
-            tip: tr("Simulated seconds a second; a machine that cannot keep up slows the motion down").to_owned(),
+            tip: tr("Simulated seconds per second; fewer than requested if the machine cannot keep up").to_owned(),
             color: if clock.lags() { palette.error } else { palette.text },
             gauge: Gauge::None,
         },
@@ -273,7 +273,7 @@ pub(crate) fn phase_text(scene: &Scene, phase: Phase) -> String {
         Phase::LinearSolve => fill!("Factorizing %{body}", body = body),
         Phase::Iterating(0) => fill!("Solving %{body}", body = body),
         Phase::Iterating(n) => fill!("Solving %{body}, iteration %{n}", body = body, n = n),
-        Phase::Certifying => fill!("Certifying %{body}", body = body),
+        Phase::Certifying => fill!("Checking stability of %{body}", body = body),
     }
 }
 

@@ -100,13 +100,13 @@ fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) 
         }
     };
     match (input.running, ended) {
-        (true, false) => button(Icon::Pause, "Pause", "Stop here (Space)", true, Action::ToggleRun),
-        (false, _) => button(Icon::Play, "Run", "Go on (Space)", true, Action::ToggleRun),
-        (true, true) => button(Icon::Play, "Run", "Nothing to run: it has come to its end", false, Action::ToggleRun),
+        (true, false) => button(Icon::Pause, "Pause", "Pause here (Space)", true, Action::ToggleRun),
+        (false, _) => button(Icon::Play, "Run", "Continue (Space)", true, Action::ToggleRun),
+        (true, true) => button(Icon::Play, "Run", "Nothing to run: already at the end", false, Action::ToggleRun),
     }
     let tip = match (moves, ended) {
         (true, _) => "One time step (N)",
-        (false, true) => "Again from rest, one iteration at a time (N)",
+        (false, true) => "Start again from rest, one iteration at a time (N)",
         (false, false) => "One iteration (N)",
     };
     button(Icon::Step, "Step", tip, !(moves && ended), Action::Step);
@@ -116,7 +116,7 @@ fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) 
 fn history(ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
     for (icon, name, tip, enabled, action) in [
         (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.can_undo, Action::Undo),
-        (Icon::Redo, "Redo", "Redo it (Ctrl+Shift+Z)", input.can_redo, Action::Redo),
+        (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", input.can_redo, Action::Redo),
     ] {
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), None, false));
         let tip = tr(tip);

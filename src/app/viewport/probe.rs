@@ -68,9 +68,9 @@ pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field:
             let (kind, tip) = match point.values {
                 PointValues::Recovered => (
                     "recovered at the nodes",
-                    "Smooth values: strain and rotation of the elements around, fitted at the nodes",
+                    "Smoothed values: strain and rotation of the surrounding elements, fitted at the nodes",
                 ),
-                PointValues::Raw => ("raw, of the element", "Strain and rotation as the element has them"),
+                PointValues::Raw => ("raw, of this element", "Strain and rotation of the element itself, not smoothed"),
             };
             ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
             Grid::new("probe values").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
@@ -85,15 +85,15 @@ pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field:
                 if !point.is_linear {
                     row("θ", number(Field::RotationAngle), "Angle of the rotation R");
                 }
-                row("σ", number(Field::VonMises), "Von Mises stress of the Cauchy stress, which follows from ε");
+                row("σ", number(Field::VonMises), "Von Mises stress, from the Cauchy stress, which follows from ε");
                 let strain = point.field(Field::LargestStrain).unwrap_or_default();
                 row(
                     "ε",
                     engineering(three_digits(100.0 * strain), "%"),
                     if point.is_linear {
-                        "The principal value of largest magnitude of ε = sym F − I, the strain of linear theory"
+                        "Principal strain of largest magnitude, of ε = sym F − I, the strain of linear theory"
                     } else {
-                        "The principal value of largest magnitude of ε = S − I"
+                        "Principal strain of largest magnitude, of ε = S − I"
                     },
                 );
                 if field == Field::EnergyDensity {
@@ -101,8 +101,8 @@ pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field:
                 }
                 let matrices = [
                     ("F", &point.gradient, "Deformation gradient ∂x/∂X"),
-                    ("R", &point.rotation.matrix(), "Rotation of F = R S"),
-                    ("S", &point.stretch, "Stretch of F = R S"),
+                    ("R", &point.rotation.matrix(), "Rotation of the polar decomposition F = R S"),
+                    ("S", &point.stretch, "Stretch of the polar decomposition F = R S"),
                 ];
                 // Linear theory has neither R nor S.
                 let count = if point.is_linear { 1 } else { matrices.len() };

@@ -35,7 +35,7 @@ pub(crate) fn show(
     let last = last.max(now);
     let id = egui::Id::unique("time line");
     let response = ui.interact(line.expand2(vec2(8.0, REACH)), id, Sense::click_and_drag());
-    let hint = "The last seconds: drag back to see them again; Run goes on from there (keys: comma and full stop)";
+    let hint = "The last seconds: drag back to see them again; Run continues from there (keys: comma and full stop)";
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal).on_hover_text(tr(hint));
     if let (true, Some(at)) = (response.is_pointer_button_down_on(), response.interact_pointer_pos()) {
         let part = f64::from((at.x - line.left()) / line.width()).clamp(0.0, 1.0);
@@ -48,7 +48,7 @@ pub(crate) fn show(
         actions.extend(pressed(Key::ArrowLeft).then_some(Action::Back));
         actions.extend(pressed(Key::ArrowRight).then_some(Action::Forward));
     }
-    response.widget_info(|| WidgetInfo::slider(true, now, tr("Time line")));
+    response.widget_info(|| WidgetInfo::slider(true, now, tr("Timeline")));
 
     let palette = Palette::new(ui.visuals());
     let painter = ui.painter_at(view);

@@ -223,7 +223,8 @@ fn settings(
     });
     let time = NumberField {
         label: "Time ≤",
-        tooltip: "At most so many milliseconds a solve from rest, or a frame of a motion at 60 Hz, which has 16.",
+        tooltip: "Longest computing time, ms: of a solve from rest, or of a frame of a motion at 60 Hz (one frame \
+                  lasts 16 ms).",
         limit: limits::BUDGET_MS,
         slider: 1e-3..=1e3,
         scale: SliderScale::Logarithmic(1e-3),
@@ -231,7 +232,7 @@ fn settings(
     };
     let error = NumberField {
         label: "Error ≤",
-        tooltip: "At most so many percent of the true displacement.",
+        tooltip: "Largest error, percent of the reference displacement.",
         limit: limits::MAX_ERROR_PERCENT,
         slider: 1e-3..=100.0,
         scale: SliderScale::Logarithmic(1e-3),
@@ -320,7 +321,7 @@ fn legend(ui: &mut Ui, moves: bool) {
             ui.label(RichText::new(tr(id)).small().strong().color(color));
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
-        let words = RichText::new(fill!("%{shapes}; nothing beats the line", shapes = shapes)).small();
+        let words = RichText::new(fill!("%{shapes}; line: Pareto front", shapes = shapes)).small();
         ui.add(egui::Label::new(words).truncate());
     });
 }

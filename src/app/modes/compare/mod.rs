@@ -251,16 +251,16 @@ impl Compare {
                     .map(|&element| PaneSetting { method, ..PaneSetting::of_element(element) })
                     .collect(),
                 enabled: elements.len() > 1,
-                tip: "The elements that the mesh can have, by the panel's method; by newton in the place of warped, which cannot \
-                      follow all of them",
+                tip: "All elements that the mesh can have, with the panel's method; newton in place of warped, which \
+                      may diverge",
                 unless: "The mesh of this file can have one element only",
             },
             Preset {
-                name: tr("present | budget").to_owned(),
+                name: tr("current | budget").to_owned(),
                 settings: chosen.to_vec(),
                 enabled: input.chosen.is_some(),
-                tip: "The present setting beside the fastest that meets the limits of Budget",
-                unless: "Measure in Budget first: what it marks is compared with the present setting",
+                tip: "The current setting next to the fastest that meets the limits of Budget",
+                unless: "Measure in Budget first: its fastest setting is compared with the current one",
             },
         ];
         ui.horizontal_wrapped(|ui| {
@@ -276,7 +276,7 @@ impl Compare {
             }
             let icon = if shows_trace { Icon::Close } else { Icon::Open };
             let button = icon_button(ui, icon, tr("Load curve"), Some(tr("Load curve")), shows_trace);
-            if button.on_hover_text(tr("The load curve, traced while the load is dragged")).clicked() {
+            if button.on_hover_text(tr("The load curve, drawn while the load is dragged")).clicked() {
                 self.shows_trace = Some(!shows_trace);
             }
         });
@@ -457,8 +457,8 @@ impl Compare {
         let spoken = format!("{name}: {}: {error}{words}", setting.text());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
         let tip = fill!(
-            "Error: length of the difference of the displacement vectors of the first probe and of %{reference}, over the length \
-             of the latter. Time and iterations: of a solve from rest.",
+            "Error: relative error of the first probe's displacement vector, compared with %{reference}. Time and \
+             iterations: of a solve from rest.",
             reference = reference_text(input.reference)
         );
         response.on_hover_text(format!("{words}\n{tip}"));
@@ -551,7 +551,7 @@ fn pick<T: Copy + PartialEq>(
                 *value = Some(kind);
             }
         }
-        let about = fill!("%{setting} at present; follows the panel", setting = tr(panels));
+        let about = fill!("Follows the panel, now %{setting}", setting = tr(panels));
         if choice(ui, palette, value.is_none(), of_panel, &about).clicked() {
             *value = None;
         }
@@ -584,7 +584,7 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
     let text = words(cells.unwrap_or(own));
     combo(ui, pane, "mesh", &text, width, &mut |ui| {
         ui.set_width(200.0);
-        let about = fill!("%{setting} at present; follows the panel", setting = words(own));
+        let about = fill!("Follows the panel, now %{setting}", setting = words(own));
         if choice(ui, palette, cells.is_none(), "the panel's", &about).clicked() {
             *cells = None;
         }
@@ -595,7 +595,7 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
         let other = cells.filter(|own| !small.clone().any(|offered| offered == *own));
         for offered in small.chain(other) {
             let about = match offered {
-                _ if offered == own => "as the panel has it now, whatever it has then",
+                _ if offered == own => "as in the panel now; does not follow it later",
                 _ if offered[0] < own[0] => "coarser",
                 _ => "finer",
             };

@@ -284,7 +284,7 @@ impl MotionCompare {
                 name: elements.iter().map(|element| element.id()).collect::<Vec<_>>().join(" | "),
                 settings: elements.iter().map(|&element| MotionPaneSetting::of_element(element)).collect(),
                 enabled: elements.len() > 1,
-                tip: "The elements that the mesh can have, by the panel's integrator",
+                tip: "All elements that the mesh can have, with the panel's integrator",
                 unless: "The mesh of this file can have one element only",
             },
         ];
@@ -403,8 +403,8 @@ impl MotionCompare {
         let spoken = format!("{name}: {text}");
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
         response.on_hover_text(tr(
-            "Time of computing what a frame at 60 Hz shows; energy that the integrator has added; distance of the first \
-             probe from that of the first pane, at the same time",
+            "Computing time of a frame at 60 Hz; energy that the integrator has added; distance of the first probe \
+             from the first pane's at the same time",
         ));
     }
 

@@ -262,7 +262,7 @@ impl Trace {
     ) {
         const OFFERED: [CurvePlot; 3] = [CurvePlot::Path, CurvePlot::X, CurvePlot::Y];
         let Some(axis) = self.axis else {
-            ui.centered_and_justified(|ui| ui.weak(tr("The scene has no load whose curve could be traced.")));
+            ui.centered_and_justified(|ui| ui.weak(tr("The scene has no load to draw a curve for.")));
             return;
         };
         // The axis does not change during a press: the load under the pointer would otherwise run away.
@@ -334,7 +334,7 @@ impl Trace {
                 && !has_several_loads(scene)
             {
                 let ends = [0.0, reach].map(|load| figure::point(load, dot.u * (load / dot.load)));
-                let name = fill!("%{setting}, in proportion", setting = name);
+                let name = fill!("%{setting}, scaled", setting = name);
                 all.push(series(&name, ink, Mark::Line, true, ends.to_vec()));
             }
             let points = dots.iter().map(|dot| self.point(dot, axis.magnitude)).collect();
@@ -343,7 +343,7 @@ impl Trace {
                 (_, Doing::Refused(_)) => (tr("no solution").to_owned(), true),
                 (Some((probe, true)), _) => (pair(probe.u), false),
                 (Some((_, false)), _) => (tr("does not converge").to_owned(), true),
-                (None, _) => (tr("iterates").to_owned(), false),
+                (None, _) => (tr("iterating").to_owned(), false),
             };
             let error = pane.error.filter(|_| !is_bad).map(percent).unwrap_or_default();
             rows.push(FigureRow { name, ink, mark: Mark::Element(element), value, error, is_bad });

@@ -249,10 +249,10 @@ fn head(ui: &mut Ui, columns: &Columns, figure: &Figure) {
         return;
     }
     let measure = fill!(
-        "%{error}: length of the difference of the displacement vectors, over the length of the exact one",
+        "%{error}: relative error of the displacement vector, compared with the exact one",
         error = figure.error_name
     );
-    response.on_hover_text(format!("{}\n{measure}", tr("Press in the plot to set it")));
+    response.on_hover_text(format!("{}\n{measure}", tr("Click in the plot to set the load")));
 }
 
 fn show_row(ui: &mut Ui, columns: &Columns, row: &FigureRow) {

@@ -32,9 +32,9 @@ pub(crate) fn show(
     let Some(curve) = curve else {
         ui.centered_and_justified(|ui| {
             ui.weak(tr(if looked_for {
-                "No load curve: linear theory knows one straight line only."
+                "No load curve: in linear theory it is a straight line."
             } else {
-                "The load curve comes when the body has come to rest."
+                "The load curve is computed after the solve."
             }));
         });
         return;
@@ -50,7 +50,7 @@ pub(crate) fn show(
     });
     ui.advance_cursor_after_rect(whole);
     if !looked_for {
-        let text = "As it was before the last change; the new one comes when the body has come to rest.";
+        let text = "Curve before the last change; the new one is computed after the solve.";
         let at = parts.plot.center_top() + egui::vec2(0.0, 10.0);
         let color = ui.visuals().weak_text_color();
         boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(text), ui.visuals(), color, parts.plot.width());

@@ -15,7 +15,7 @@ use crate::format::engineering;
 use crate::scene::IntegratorKind;
 
 const PLOTS: [(MotionPlot, &str, &str); 4] = [
-    (MotionPlot::Energy, "Energy", "Where the energy is, and where it has gone"),
+    (MotionPlot::Energy, "Energy", "Energy over time, by kind"),
     (MotionPlot::Tip, "Tip", "Displacement of the first probe over time"),
     (MotionPlot::Phase, "Phase", "Velocity of the first probe against its displacement"),
     (MotionPlot::Spectrum, "Spectrum", "Amplitudes of the frequencies in the motion of the first probe"),
@@ -48,7 +48,7 @@ pub(crate) fn show(
         }
     });
     if playback.history.samples().is_empty() {
-        ui.centered_and_justified(|ui| ui.weak(tr("Nothing has moved yet: run it, or take one step.")));
+        ui.centered_and_justified(|ui| ui.weak(tr("No time step yet: press Run or Step.")));
         return;
     }
     let palette = Palette::new(ui.visuals());

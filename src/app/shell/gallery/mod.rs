@@ -46,7 +46,7 @@ static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| {
 });
 
 /// Groups of entries with their headings.
-const GROUPS: [(Analysis, &str); 2] = [(Analysis::Dynamic, "In motion"), (Analysis::Static, "At rest")];
+const GROUPS: [(Analysis, &str); 2] = [(Analysis::Dynamic, "Dynamic"), (Analysis::Static, "Static")];
 
 /// Gallery with its thumbnails, which are made when it is opened for the first time.
 #[derive(Debug, Default)]
@@ -108,10 +108,7 @@ impl Gallery {
         ui.set_width(width * columns as f32 + GAP * (columns - 1) as f32);
         ui.spacing_mut().item_spacing = vec2(GAP, GAP);
         ui.horizontal(|ui| {
-            if ui
-                .button(tr("Open a file…"))
-                .on_hover_text(tr("A scene file, or one that was used last (Ctrl+O)"))
-                .clicked()
+            if ui.button(tr("Open a file…")).on_hover_text(tr("Open a scene file, or a recent one (Ctrl+O)")).clicked()
             {
                 actions.push(Action::OpenFile);
             }
