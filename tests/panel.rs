@@ -948,7 +948,7 @@ fn an_unstable_integrator_leaves_the_comparison() {
     let mut harness = harness_of("swing");
     harness.state_mut().compare_with(IntegratorKind::SymplecticEuler);
     harness.state_mut().compare_with(IntegratorKind::EnergyMomentum);
-    let words = "symplectic-euler is unstable: its longest stable step is";
+    let words = "symplectic-euler is unstable: its critical time step is";
     let mut steps = 0;
     while harness.query_all_by_label_contains(words).next().is_none() {
         harness.step();

@@ -73,7 +73,7 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
         NumberRow {
             field: NumberField {
                 label: "Thickness t",
-                tooltip: "Thickness out of the plane, m: stiffness and weight grow with it.",
+                tooltip: "Thickness out of the plane, m: stiffness and weight are proportional to it.",
                 limit: limits::THICKNESS,
                 slider: 1e-3..=10.0,
                 scale: SliderScale::Logarithmic(1e-3),

@@ -33,7 +33,7 @@ const TIME: [NumberRow; 4] = [
     },
     NumberRow {
         field: NumberField {
-            label: "Solves",
+            label: "Solves per stage",
             tooltip: "Linear solves per stage of a time step; 0: as many as the tolerance needs.",
             limit: limits::Limit { unit: "", min: 0.0, max: 20.0 },
             slider: 0.0..=4.0,
@@ -126,7 +126,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
     });
     number_rows(ui, input, state, actions, TIME);
     if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {
-        let text = fill!("The longest stable step about rest is %{step}.", step = engineering(critical, "s"));
+        let text = fill!("The critical time step near rest is %{step}.", step = engineering(critical, "s"));
         if settings.time_step > critical {
             let set = |step: f64| {
                 let mut scene = Box::new(input.scene.clone());

@@ -51,7 +51,7 @@ pub(super) fn options(
         for (end, label) in ["Lowest", "Highest"].into_iter().enumerate() {
             let field = NumberField {
                 label,
-                tooltip: "An end of the colour map",
+                tooltip: "Limit of the colour map",
                 limit: span,
                 slider: slider.clone(),
                 scale: SliderScale::Linear,
@@ -106,7 +106,7 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
 pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for (name, tip, action) in [
-            ("Open…", "Open a scene file; dropping one on the window does too (Ctrl+O)", Action::OpenFile),
+            ("Open…", "Open a scene file; one can also be dropped on the window (Ctrl+O)", Action::OpenFile),
             ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
             ("Save as…", "Save the scene to another file (Ctrl+Shift+S)", Action::SaveAs),
             ("Screenshot", "Save a screenshot as a PNG file in the current folder (S)", Action::Screenshot),

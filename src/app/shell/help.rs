@@ -13,7 +13,7 @@ const HERE: &[(&str, &str)] = &[
 
 const MOUSE: &[(&str, &str)] = &[
     ("Drag an arrow's tip", "Set a force or a moment; Shift: snap to 15°, or to a round moment"),
-    ("Drag the body", "Pull it with a spring; let go and it springs back"),
+    ("Drag the body", "Pull it with a mouse spring; release it and it springs back"),
     ("Drag the background, two fingers", "Move the view"),
     ("Hover over the body", "Values under the pointer; click to pin them"),
     ("Scroll, pinch", "Zoom at the pointer"),

@@ -28,11 +28,11 @@ impl Lab {
             let integrator = tr(integrator.id());
             let text = match step {
                 Some(step) => fill!(
-                    "%{integrator} is unstable: its longest stable step is %{step}",
+                    "%{integrator} is unstable: its critical time step is %{step}",
                     integrator = integrator,
                     step = engineering(step, "s")
                 ),
-                None => fill!("%{integrator} is unstable: its steps fail", integrator = integrator),
+                None => fill!("%{integrator} is unstable: its time steps fail", integrator = integrator),
             };
             self.say(ctx, text);
         }

@@ -85,7 +85,7 @@ impl Lab {
             ui.set_width(ui.available_width().min(360.0));
             ui.heading(title);
             ui.add_space(6.0);
-            ui.label(tr("They are lost if you discard them."));
+            ui.label(tr("Discarded changes are lost."));
             ui.add_space(10.0);
             ui.horizontal(|ui| {
                 save = ui.button(RichText::new(tr("Save")).strong()).on_hover_text("Enter").clicked();

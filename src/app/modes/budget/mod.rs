@@ -251,8 +251,8 @@ fn settings(
         let best = meeting.first().copied();
         let apply = ui.add_enabled(best.is_some(), Button::new(tr("Apply the fastest")));
         let apply = apply
-            .on_hover_text(tr("Use the fastest setting that meets both"))
-            .on_disabled_hover_text(tr("No setting that has been measured meets both limits"));
+            .on_hover_text(tr("Use the fastest setting that meets both limits"))
+            .on_disabled_hover_text(tr("No measured setting meets both limits"));
         if let (true, Some(best)) = (apply.clicked(), best) {
             actions.push(best.action(budget.scene));
         }

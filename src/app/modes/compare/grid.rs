@@ -74,7 +74,7 @@ pub(super) fn preset_buttons<S: PartialEq>(
 /// Shows the button that adds a pane to `panes` existing ones; returns `true` if it was pressed.
 pub(super) fn add_button(ui: &mut Ui, panes: usize) -> bool {
     let button = ui.add_enabled(panes < *PANES.end(), egui::Button::new(tr("+ Pane")));
-    button.on_hover_text(tr("Another pane")).on_disabled_hover_text(tr("At most four panes")).clicked()
+    button.on_hover_text(tr("Add a pane")).on_disabled_hover_text(tr("At most four panes")).clicked()
 }
 
 /// Shows the button that closes a pane, at the right end of its row; returns `true` if it was pressed.

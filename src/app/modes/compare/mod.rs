@@ -394,10 +394,10 @@ impl Compare {
             let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
             let widths = [0.38, 0.25, 0.37].map(|share| (share * room).clamp(30.0, 120.0));
             let method = METHODS.iter().map(|entry| (entry.kind, entry.id, entry.about));
-            let panels = (input.common.scene.solver.method.id(), "the panel's");
+            let panels = (input.common.scene.solver.method.id(), "as in the panel");
             pick(ui, &palette, (&name, "method"), widths[0], (&mut setting.method, panels), method);
             let elements = input.common.scene.elements().map(|e| (e, e.id(), e.entry().about));
-            let panels = (input.common.scene.element().id(), "the panel's");
+            let panels = (input.common.scene.element().id(), "as in the panel");
             pick(ui, &palette, (&name, "element"), widths[1], (&mut setting.element, panels), elements);
             mesh_picker(ui, &palette, &name, widths[2], &mut setting.cells, input.common.scene);
             if setting != pane.setting {
@@ -585,7 +585,7 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
     combo(ui, pane, "mesh", &text, width, &mut |ui| {
         ui.set_width(200.0);
         let about = fill!("Follows the panel, now %{setting}", setting = words(own));
-        if choice(ui, palette, cells.is_none(), "the panel's", &about).clicked() {
+        if choice(ui, palette, cells.is_none(), "as in the panel", &about).clicked() {
             *cells = None;
         }
         let coarser = own.map(|n| n.div_ceil(2));

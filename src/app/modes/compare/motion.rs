@@ -372,11 +372,11 @@ impl MotionCompare {
             let close = self.panes.len() > *PANES.start() && input.view.bars;
             let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
             let widths = [0.4, 0.18, 0.26].map(|share| (share * room).clamp(30.0, 150.0));
-            let panels = (input.scene.dynamics.integrator.id(), "the panel's");
+            let panels = (input.scene.dynamics.integrator.id(), "as in the panel");
             let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));
             pick(ui, &palette, (&name, "integrator"), widths[0], (&mut setting.integrator, panels), entries);
             let elements = input.scene.elements().map(|e| (e, e.id(), e.entry().about));
-            let panels = (input.scene.element().id(), "the panel's");
+            let panels = (input.scene.element().id(), "as in the panel");
             pick(ui, &palette, (&name, "element"), widths[1], (&mut setting.element, panels), elements);
             mesh_picker(ui, &palette, &name, widths[2], &mut setting.cells, input.scene);
             if setting != pane.setting {

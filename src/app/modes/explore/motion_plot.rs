@@ -131,7 +131,7 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         ("potential of loads", potential, |s| s.ledger.potential),
         ("dissipated", dissipated, |s| s.ledger.dissipated),
         ("lost by the integrator", lost, |s| s.ledger.integrator),
-        ("put in", put_in, |s| s.ledger.pulses + s.ledger.mouse_spring + s.ledger.edits),
+        ("energy input", put_in, |s| s.ledger.pulses + s.ledger.mouse_spring + s.ledger.edits),
     ];
     over_time(plot(&palette, "energy", (tr("time"), "s"), (tr("energy"), "J")), history).show(ui, |plot| {
         // With several motions only the sums are shown, for comparison.
