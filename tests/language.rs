@@ -292,7 +292,7 @@ fn every_text_of_the_sources_is_in_the_catalogue() {
             );
         }
     }
-    assert!(found.contains("Linear theory makes it grow") && found.contains("Cancel"), "the scan is blind");
+    assert!(found.contains("Linear theory makes the area grow") && found.contains("Cancel"), "the scan is blind");
     for not_shown in NOT_SHOWN {
         assert!(found.contains(*not_shown), "{not_shown:?} is no longer in the sources");
     }
@@ -366,7 +366,7 @@ fn the_switch_changes_the_language_and_the_settings_keep_it() {
     // The same on a card of Learn, and after it.
     press(&mut harness, "Learn");
     press(&mut harness, "Language");
-    assert!(harness.query_by_label("Linear theory makes it grow").is_some());
+    assert!(harness.query_by_label("Linear theory makes the area grow").is_some());
     harness.get_by_label("Leave").click();
     harness.run();
     assert!(harness.query_by_label("Run").is_some());

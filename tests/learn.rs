@@ -275,7 +275,7 @@ fn cell(harness: &mut Harness<'_, Lab>, matrix: &str, count: usize, row: usize, 
     let at = |i: usize| (i as f32 + 0.5) * rect.width() / count as f32;
     harness.hover_at(rect.min + vec2(at(column), at(row)));
     harness.run_steps(30);
-    let found = text_containing(harness, "moved: ");
+    let found = text_containing(harness, "displacement: ");
     harness.hover_at(egui::pos2(1270.0, 790.0));
     harness.run_steps(8);
     found
@@ -317,7 +317,7 @@ fn the_matrices_are_the_solvers() {
         let (i, j) = (free[row] as usize, free[column] as usize);
         let shown = cell(&mut harness, "the body's matrix", 24, i, j);
         let name = |unknown: usize| format!("node {} {}", unknown / 2 + 1, ["x", "y"][unknown % 2]);
-        let expected = format!("{}force: {}, moved: {}", words(product[row]), name(i), name(j));
+        let expected = format!("{}force: {}, displacement: {}", words(product[row]), name(i), name(j));
         assert_eq!(shown, expected);
     }
     // These nodes share no triangle.
@@ -376,7 +376,7 @@ fn locking_has_each_elements_error() {
         let set = format!("beam.element={element}");
         let json = solve_json(&["article", "--set", "solver.method=newton", "--set", &set]);
         let error = json["probes"][0]["error_percent"].as_f64().unwrap();
-        let words = format!("{element}: {} off, {} unknowns", percent(error), json["dofs"]);
+        let words = format!("{element}: error {}, {} unknowns", percent(error), json["dofs"]);
         assert!(harness.query_by_label(&words).is_some(), "{words}: {:?}", texts(&harness));
         if element == "t6" {
             assert!(error < 3.0);

@@ -113,5 +113,5 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
         painter.rect_filled(bar.with_max_x(bar.left() + part * bar.width()), 2.0, color);
     }
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}: {words}")));
-    response.on_hover_text(tr("Growth of the area of the beam since rest"));
+    response.on_hover_text(tr("Area growth of the beam, compared with rest"));
 }

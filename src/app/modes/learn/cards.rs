@@ -75,10 +75,10 @@ fn nothing(_: &Painter, _: &View<'_>, _: &Learn) {}
 /// All cards, in the order of the article.
 pub(crate) const CARDS: &[Card] = &[
     Card {
-        title: "Linear theory makes it grow",
-        text: "Linear theory replaces a rotation by its tangent: what rotates by an angle \u{3b8} moves along a straight \
-                line instead of an arc. So it grows, its area by \u{3b8}\u{b2} (\u{3b8} in radians), whatever the \
-                material. The dashed line is the exact beam, which rotates without growing.",
+        title: "Linear theory makes the area grow",
+        text: "Linear theory replaces a rotation by its tangent: a part that rotates by an angle \u{3b8} moves along \
+                a straight line instead of an arc, and grows. Its area growth is \u{3b8}\u{b2} (\u{3b8} in radians), \
+                whatever the material. The dashed line is the exact beam, which rotates without growing.",
         formula: &["K u = f", "`det` ( I + \u{3b8} J ) = 1 + \u{3b8}^{2}"],
         symbols: "K: stiffness matrix (N/m). u: displacements of the nodes (m). f: forces on the nodes (N). I: identity \
                   matrix. J: rotation by 90\u{b0}. det: determinant, the factor by which an area grows.",
@@ -167,8 +167,9 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "The method in ten lines",
-        text: "This is all of warped stiffness. One pass through lines 3 to 10 is an iteration. The program makes it in \
-                one go when you reach line 8; the numbers beside a line are of the beam as it is drawn.",
+        text: "This is the whole warped stiffness method. One pass through lines 3 to 10 is an iteration. The program \
+                runs the whole iteration when you reach line 8; the numbers next to a line describe the beam as it is \
+                drawn.",
         formula: &["A = \u{3a3} R K_{e} R^{T}", "b = \u{3a3} R K_{e} X"],
         symbols: "A: stiffness matrix of the rotated triangles (N/m). b: forces that stand for the rest shape (N). f with \
                   index int: internal forces, of all triangles; with index e: of one. r: residual, the share of the \
@@ -190,8 +191,9 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Iterate",
-        text: "R depends on where the beam is, and the beam on R. So solve with the present R, compute the new R, and \
-                solve again. Near the equilibrium each iteration multiplies the residual by \u{3c1}.",
+        text: "R depends on the positions, and the positions depend on R. So solve with the current R, compute the \
+                new R, and solve again: a fixed-point iteration. Near the equilibrium each iteration multiplies the \
+                residual by \u{3c1}.",
         formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | \u{2248} \u{3c1} | r_{k} |"],
         symbols: "k: number of the iteration. r: residual. \u{3c1}: convergence factor (spectral radius); below 1 the \
                   iteration converges.",
@@ -212,9 +214,9 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Beyond \u{3c1} = 1 it does not converge",
-        text: "Under twice the force, a change of R changes the forces by more than A accounts for: \u{3c1} is above 1, \
-                and no number of iterations helps. Newton\u{2019}s method adds the missing part G: how the forces change \
-                as R rotates. An iteration costs the same.",
+        text: "Under twice the force, a change of R changes the forces by more than A accounts for: the spectral \
+                radius \u{3c1} is above 1, and more iterations do not help. Newton\u{2019}s method adds the missing \
+                part G: how the forces change as R rotates. An iteration costs about the same.",
         formula: &["\u{3c1} = | \u{3bb} |_{`max`} ( A^{\u{2212}1} G )", "( A + G ) \u{394}x = f \u{2212} f_{`int`}"],
         symbols: "\u{3bb}: eigenvalues; the largest counts. G: geometric stiffness (N/m). \u{394}x: change of the \
                   positions (m).",
@@ -234,10 +236,10 @@ pub(crate) const CARDS: &[Card] = &[
         lines: false,
     },
     Card {
-        title: "Locking",
-        text: "The forces balance, and still the beam is far from the exact one (dashed). A three-node triangle has the \
-                same strain everywhere, so it cannot bend without stretching: it is too stiff. On the same five cells \
-                another element cures it.",
+        title: "Shear locking",
+        text: "The forces balance, and still the beam is far from the exact one (dashed). A three-node triangle has \
+                the same strain everywhere, so it bends only with extra stretch and shear, which make it too stiff. \
+                Another element on the same five cells cures this.",
         formula: &["`error` = | u \u{2212} u_{`exact`} | / | u_{`exact`} |"],
         symbols: "u here: displacement of the tip (m). t3, t6: triangles of three and six nodes. q4: quadrilateral of four.",
         task: "Try t6 and q4.",
@@ -257,9 +259,10 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "The trade-off",
-        text: "Element, mesh and method each cost time and leave an error, and which choice is cheapest depends on your \
-                machine. The table has the time of the fastest setting that keeps the error you ask for. The mode Budget \
-                shows all settings.",
+        text: "Element, mesh and method each cost time and leave an error, and which choice is cheapest depends on \
+                your machine. The table has the time of the fastest setting within the error you ask for. The mode \
+                Budget shows all settings and their Pareto front: those that no other setting beats in both time and \
+                error.",
         formula: &["`error` \u{2264} `mesh` + `iteration` + `theory`"],
         symbols: "mesh: error of the finite cells. iteration: error of stopping early. theory: error of linear theory.",
         task: "Press \u{201c}Measure\u{201d}; it runs in the background. Then ask for another error.",

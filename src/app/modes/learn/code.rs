@@ -101,7 +101,12 @@ fn verdict(simulation: &Simulation, _: usize) -> String {
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let simulation = shown.input.simulation;
     if !describes(simulation) {
-        return not_triangles(ui, "These lines are of the method warped with three-node triangles.", learn, actions);
+        return not_triangles(
+            ui,
+            "These lines are for the method warped with three-node triangles only.",
+            learn,
+            actions,
+        );
     }
     let running = shown.input.running && *simulation.status() == Status::Running;
     ui.horizontal_wrapped(|ui| {

@@ -46,7 +46,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         let error = known.as_ref().and_then(|all| all.iter().find(|e| e.element == element));
         let text = match error {
             Some(e) => fill!(
-                "%{element}: %{error} off, %{n} unknowns",
+                "%{element}: error %{error}, %{n} unknowns",
                 element = element.id(),
                 error = percent(e.percent),
                 n = e.unknowns
@@ -64,11 +64,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         ui.add_space(2.0);
     }
     if known.is_none() {
-        let text = if learn.is_looking() {
-            "Looking for the errors."
-        } else {
-            "No reference solution of this scene is known."
-        };
+        let text =
+            if learn.is_looking() { "Computing the errors." } else { "No reference solution of this scene is known." };
         ui.label(RichText::new(tr(text)).size(SMALL).color(palette.secondary));
     }
 }

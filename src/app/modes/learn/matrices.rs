@@ -47,8 +47,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     });
     let (all, free) = (2 * simulation.system().mesh().nodes().len(), simulation.system().dofs());
     let note = fill!(
-        "Triangle %{n}: nodes %{nodes}; framed: its blocks. Grey: what clamping takes away, %{all} \u{2212} %{clamped} = \
-         %{free} unknowns. Red is positive, blue negative.",
+        "Triangle %{n}: nodes %{nodes}; framed: its blocks. Grey: clamped, %{all} \u{2212} %{clamped} = %{free} \
+         unknowns. Red is positive, blue negative.",
         n = learn.picked + 1,
         nodes = triangle.nodes.map(|n| (n + 1).to_string()).join(", "),
         all = all,
@@ -136,7 +136,7 @@ fn cells(
         Some((i, j)) => {
             let value =
                 if stored(i, j) { engineering(three_digits(matrix[(i, j)]), "N/m") } else { tr("no entry").into() };
-            let places = fill!("force: %{row}, moved: %{column}", row = name(i), column = name(j));
+            let places = fill!("force: %{row}, displacement: %{column}", row = name(i), column = name(j));
             response.on_hover_text_at_pointer(format!("{value}\n{places}"))
         }
         None => response,

@@ -350,7 +350,7 @@ impl Learn {
                     actions.push(Action::Toggle(Toggle::Mode(Mode::Explore)));
                 }
                 if wide {
-                    let tip = "This card\u{2019}s scene again, as it was";
+                    let tip = "Restores this card\u{2019}s scene";
                     if ui.button(tr("Set up again")).on_hover_text(tr(tip)).clicked() {
                         actions.push(Action::Card(card));
                     }
@@ -479,7 +479,7 @@ fn text(ui: &mut Ui, card: &Card) {
     }
 }
 
-const NOT_TRIANGLES: &str = "These numbers are of three-node triangles.";
+const NOT_TRIANGLES: &str = "These numbers are for three-node triangles only.";
 
 /// Shows the reason for which a card cannot show the scene, with a button that sets up the card again.
 fn not_triangles(ui: &mut Ui, words: &str, learn: &Learn, actions: &mut Vec<Action>) {

@@ -120,10 +120,10 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &text));
     response.on_hover_text(tr(
-        "Force out of balance over all forces, after each iteration; grey dashes: what is asked for",
+        "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
     if rho.is_none() && learn.is_looking() {
-        ui.label(RichText::new(tr("Looking for \u{3c1}.")).size(SMALL).color(palette.secondary));
+        ui.label(RichText::new(tr("Computing \u{3c1}.")).size(SMALL).color(palette.secondary));
     }
 }
 

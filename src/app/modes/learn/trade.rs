@@ -71,7 +71,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     });
     let text = match shown.study {
         Some(study) => fill!(
-            "Error against %{reference}. Grey: the closest it gets.",
+            "Error against %{reference}. Grey: the smallest error measured.",
             reference = translated(&study.reference.to_string())
         ),
         None => tr("Nothing measured yet: it takes some seconds.").to_owned(),
