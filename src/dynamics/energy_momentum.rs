@@ -14,7 +14,8 @@ use crate::scene::IntegratorKind;
 pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::EnergyMomentum,
     id: "energy-momentum",
-    about: "Energy–momentum: second order, keeps energy, momentum and angular momentum; iterates to the tolerance always.",
+    about: "Energy–momentum: second order, conserves energy, momentum and angular momentum; always iterates to the \
+            tolerance.",
     order: 2,
     stages: 1,
     always_iterates: true,

@@ -13,7 +13,8 @@ use crate::scene::IntegratorKind;
 pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::ImplicitEuler,
     id: "implicit-euler",
-    about: "Implicit Euler, as in the article and in many games: always stable, one solve a step, but it damps the motion.",
+    about: "Implicit Euler, as in the article and in many games: always stable, one solve per step, but it damps the \
+            motion.",
     order: 1,
     stages: 1,
     always_iterates: false,

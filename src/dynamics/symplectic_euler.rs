@@ -17,7 +17,7 @@ use crate::timings::timed;
 pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::SymplecticEuler,
     id: "symplectic-euler",
-    about: "Symplectic Euler: explicit, solves nothing, cheap a step, but explodes beyond its critical step.",
+    about: "Symplectic Euler: explicit, no solve, cheap per step, but unstable beyond its critical time step.",
     order: 1,
     stages: 0,
     always_iterates: false,

@@ -13,7 +13,8 @@ use std::f64::consts::SQRT_2;
 pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     kind: IntegratorKind::TrBdf2,
     id: "tr-bdf2",
-    about: "TR-BDF2: second order, damps only what the step cannot resolve; one solve for each of its two stages will do.",
+    about: "TR-BDF2: second order, damps only what the step cannot resolve; one solve for each of its two stages is \
+            enough.",
     order: 2,
     stages: 2,
     always_iterates: false,

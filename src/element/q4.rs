@@ -23,7 +23,7 @@ const RULE: [RulePoint; 4] = [
 pub(super) static Q4: ElementType = ElementType {
     kind: ElementKind::Q4,
     id: "q4",
-    about: "Four nodes and modes that bend: the most accurate for its unknowns, on quadrilaterals.",
+    about: "Four nodes and incompatible bending modes: the most accurate per unknown, on quadrilaterals.",
     cell: &SQUARE,
     nodes: SQUARE.corners,
     sides: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],

@@ -10,7 +10,7 @@ use crate::model::ElementKind;
 pub(super) static T3: ElementType = ElementType {
     kind: ElementKind::T3,
     id: "t3",
-    about: "Three nodes, constant strain: cheap, and too stiff in bending.",
+    about: "Three nodes, constant strain: cheap, and too stiff in bending (shear locking).",
     cell: &TRIANGLE,
     nodes: TRIANGLE.corners,
     sides: &[&[0, 1], &[1, 2], &[2, 0]],

@@ -18,7 +18,7 @@ const FAR_WEIGHT: f64 = 0.5 * 0.109_951_743_655_322;
 pub(super) static T6: ElementType = ElementType {
     kind: ElementKind::T6,
     id: "t6",
-    about: "Six nodes, linear strain: bends as it should.",
+    about: "Six nodes, linear strain: no shear locking.",
     cell: &TRIANGLE,
     nodes: &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]],
     sides: &[&[0, 3, 1], &[1, 4, 2], &[2, 5, 0]],

@@ -14,8 +14,8 @@ use crate::scene::MethodKind;
 pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Warped,
     id: "warped",
-    about: "Warped stiffness: the article's iteration, in which the stiffness of every element rotates with it. Large \
-            rotations, but it diverges under large loads.",
+    about: "Warped stiffness: the article's fixed-point iteration, in which the stiffness of every element rotates \
+            with it. Allows large rotations, but diverges under large loads.",
     start: || Box::<Warped>::default(),
     motion: Some(MotionMethod::Warped),
 };

@@ -25,6 +25,6 @@ fn scene() -> Scene {
         .force("right", [0.0, -1000.0])
         .probe("tip", "right");
     scene.name = "Cantilever".to_owned();
-    scene.about = "A slender beam clamped left with a dead force at its tip: the classic large-rotation test.".to_owned();
+    scene.about = "A slender beam clamped at the left, with a force of constant direction at its tip: the classic large-rotation test.".to_owned();
     scene
 }

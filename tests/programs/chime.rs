@@ -34,6 +34,6 @@ fn scene() -> Scene {
         .moving(IntegratorKind::TrBdf2, 0.0005);
     scene.name = "Chime".to_owned();
     scene.dynamics.duration = 0.5;
-    scene.about = "A thin steel tine is struck and rings at about 40 Hz: steps longer than a few milliseconds cannot follow it.".to_owned();
+    scene.about = "A thin steel tine is struck and rings at about 40 Hz: time steps longer than a few milliseconds cannot resolve it.".to_owned();
     scene
 }

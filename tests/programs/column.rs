@@ -23,6 +23,6 @@ fn scene() -> Scene {
         .force("right", [-700.0, 2.0])
         .probe("tip", "right");
     scene.name = "Buckling column".to_owned();
-    scene.about = "Pushed along its axis beyond Euler's load, with a small side load that decides which way it buckles.".to_owned();
+    scene.about = "Compressed along its axis beyond Euler's buckling load; a small side load decides which way it buckles.".to_owned();
     scene
 }

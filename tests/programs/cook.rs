@@ -28,6 +28,6 @@ fn scene() -> Result<Scene, SceneError> {
         .probe("middle", [48.0, 52.0])
         .probe("corner", [48.0, 60.0]);
     scene.name = "Cook's membrane".to_owned();
-    scene.about = "A tapered, clamped panel under shear at its end: its end's middle rises by 23.96 in linear theory, the classic answer, and by 15.86 with large rotations.".to_owned();
+    scene.about = "A tapered, clamped panel under shear at its end: the end's middle rises by 23.96 in linear theory, the classic answer, and by 15.86 with large rotations.".to_owned();
     Ok(scene)
 }

@@ -24,6 +24,6 @@ fn scene() -> Scene {
         .force("right", [0.0, -333.3333333333333])
         .probe("tip", "right");
     scene.name = "Elastica".to_owned();
-    scene.about = "A ribbon fifty times as long as high under a large tip force: Euler's elastica, to a fraction of a percent.".to_owned();
+    scene.about = "A ribbon fifty times as long as high under a large tip force: within a fraction of a percent of Euler's elastica.".to_owned();
     scene
 }

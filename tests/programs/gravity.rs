@@ -30,6 +30,6 @@ fn scene() -> Scene {
         .gravity([0.0, -9.81])
         .probe("tip", "right");
     scene.name = "Sagging shelf".to_owned();
-    scene.about = "A rubber shelf, clamped at the wall, sags under nothing but its own weight.".to_owned();
+    scene.about = "A rubber shelf, clamped at the wall, sags under its own weight alone.".to_owned();
     scene
 }

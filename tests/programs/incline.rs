@@ -23,6 +23,6 @@ fn scene() -> Scene {
         .force("right", [1500.0, -1500.0])
         .probe("tip", "right");
     scene.name = "Inclined force".to_owned();
-    scene.about = "A slender beam pulled at 45 degrees, along and across at once: tension stiffens what bending softens.".to_owned();
+    scene.about = "A slender beam pulled at 45 degrees, along and across at once: the tension stiffens it against bending.".to_owned();
     scene
 }

@@ -24,6 +24,6 @@ fn scene() -> Scene {
         .moment("right", 10471.975511965977)
         .probe("tip", "right");
     scene.name = "Roll-up".to_owned();
-    scene.about = "An end moment of 2 pi E I / L turns with its edge and closes the beam to a circle.".to_owned();
+    scene.about = "An end moment of 2 pi E I / L, which rotates with its edge, bends the beam into a circle.".to_owned();
     scene
 }

@@ -32,6 +32,6 @@ fn scene() -> Scene {
         .probe("quarter", [0.05, 0.006])
         .probe("crown", [0.1, 0.008]);
     scene.name = "Snap-through".to_owned();
-    scene.about = "A shallow steel arch whose crown is pushed down: it pushes back less and less beyond its limit load. See `warpbeam curve snap`.".to_owned();
+    scene.about = "A shallow steel arch whose crown is pushed down: beyond the limit load, its reaction decreases. See `warpbeam curve snap`.".to_owned();
     scene
 }

@@ -26,6 +26,6 @@ fn scene() -> Scene {
         .moving(IntegratorKind::EnergyMomentum, 0.016666666666666666)
         .starting([0.0, 0.0], 6.0);
     scene.name = "Spin".to_owned();
-    scene.about = "A free bar turns in empty space: its energy and angular momentum should stay constant.".to_owned();
+    scene.about = "A free bar rotates in empty space: its energy and angular momentum should stay constant.".to_owned();
     scene
 }

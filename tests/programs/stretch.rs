@@ -26,6 +26,6 @@ fn scene() -> Scene {
         .force("right", [50000.0, 0.0])
         .probe("end", "right");
     scene.name = "Axial bar".to_owned();
-    scene.about = "Pulled along its axis, free to thin: the end moves by P L / (E A), whatever the mesh.".to_owned();
+    scene.about = "A bar pulled along its axis, free to contract sideways: its end moves by P L / (E A) on any mesh.".to_owned();
     scene
 }

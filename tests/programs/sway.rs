@@ -39,6 +39,6 @@ fn scene() -> Scene {
     scene.dynamics.duration = 8.0;
     scene.dynamics.damping.mass = 0.1;
     scene.dynamics.damping.stiffness = 0.001;
-    scene.about = "The ground under a mast jerks aside and back: seen from the ground, a pulse of inertia that makes the mast sway.".to_owned();
+    scene.about = "The ground under a mast jerks sideways and back: in the ground's frame, a pulse of inertial force that makes the mast sway.".to_owned();
     scene
 }

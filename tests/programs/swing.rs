@@ -28,6 +28,6 @@ fn scene() -> Scene {
         .moving(IntegratorKind::TrBdf2, 0.016666666666666666);
     scene.name = "Swing".to_owned();
     scene.dynamics.duration = 2.0;
-    scene.about = "A slender rubber beam is let go from horizontal and swings under its own weight.".to_owned();
+    scene.about = "A slender rubber beam is released from horizontal and swings under its own weight.".to_owned();
     scene
 }

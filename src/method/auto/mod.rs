@@ -31,8 +31,8 @@ pub use report::{AutoReport, Decision};
 pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Auto,
     id: "auto",
-    about: "As little of the others as the asked accuracy needs: no solve where nothing changed, linear theory while it \
-            serves, the old factor while it serves, load steps where nothing else does.",
+    about: "The cheapest of the other methods that reaches the required accuracy: no solve if nothing changed, linear \
+            theory or the old factorization while accurate enough, load steps as a last resort.",
     start: || Box::<Auto>::default(),
     motion: Some(MotionMethod::Adaptive),
 };
