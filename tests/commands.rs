@@ -188,14 +188,14 @@ fn names_of_probes_are_fields_and_differ() {
     fs::write(folder.path().join("b.toml"), scene("'tip, right \"end\"'")).unwrap();
     let refused = warpbeam_in(folder.path(), &["solve", "b.toml"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(stderr(&refused).contains("probe.1.name: expected a name of its own"), "{}", stderr(&refused));
+    assert!(stderr(&refused).contains("probe.1.name: expected a unique name"), "{}", stderr(&refused));
 }
 
 /// Results report their limitations, in the text output and in JSON.
 #[test]
 fn results_say_what_limits_them() {
     for (args, expected) in [
-        (&["cook"][..], "errors are those of the polygon that the file's straight sides make"),
+        (&["cook"][..], "errors refer to the polygon of the file's straight sides"),
         (&["article"], "the largest stress is at the end of a support, where it grows without limit"),
         (&["jump"], "the largest stress is at a point force, where it grows without limit"),
         (&["article", "--set", "load.0={kind='force',at=[3.4,0.2],force=[0,-10]}"], "acts on the nearest node, "),

@@ -117,7 +117,7 @@ fn what_cannot_be_used_is_said_with_its_line() {
         (
             "2 3 1 3\n1 5 1 1\n1 4 1\n2 1 2 2\n2 1 2 3\n3 1 4 3\n",
             "1 1 1 1\n1 5 1 1\n1 4 1\n",
-            "got 1 lines and none; Gmsh saves only physical groups once there is one",
+            "got only 1 lines; Gmsh saves only the physical groups if there are any",
         ),
         ("2 1 2 2", "2 1 2 2000000000", "expected an element"),
         ("$EndElements", "", "expected $EndElements"),
@@ -209,7 +209,7 @@ fn a_scene_file_names_its_mesh_relative_to_itself() {
         ("old.msh", "wall", 2, "scene.toml:3: mesh.file: old.msh: line 2: expected Gmsh format 4.1"),
         ("binary.msh", "wall", 2, "got a binary file; save it with `gmsh in.msh -save -format msh41 -o out.msh`"),
         ("square.msh", "left", 2, "scene.toml:9: support.0.edge: expected one of wall, got \"left\""),
-        ("unnamed.msh", "wall", 2, "Gmsh saves only physical groups once there is one"),
+        ("unnamed.msh", "wall", 2, "Gmsh saves only the physical groups if there are any"),
         ("parts.msh", "wall", 2, "scene.toml:2: mesh: expected one connected body, got 2 parts that share no nodes"),
     ] {
         fs::write(&path, scene(file, edge)).unwrap();
@@ -266,7 +266,7 @@ fn a_part_that_hangs_on_a_node_is_refused() {
         Simulation::new(&Scene::from_toml_in(&text, folder.path()).unwrap())
     };
     let error = scene(&hinged(""), "").unwrap_err().to_string();
-    assert!(error.contains("a part that hangs on node 3 at (1, 1) and can turn about it"), "{error}");
+    assert!(error.contains("a part that is connected only at node 3 at (1, 1) and can rotate about it"), "{error}");
     // A support in the direction of the hinge does not prevent the rotation.
     assert!(scene(&hinged(""), "[[support]]\nat = [2.0, 1.0]\nfix = [\"x\"]\n").is_err());
     let mut held = scene(&hinged(""), "[[support]]\nat = [2.0, 1.0]\nfix = [\"y\"]\n").unwrap();
@@ -407,8 +407,8 @@ fn shapes_that_do_not_fit_are_refused_with_a_remedy() {
             ElementKind::Q4,
             "expected quadrilaterals for q4, got 2 triangles of 2: set element = \"t3\" or \"t6\"",
         ),
-        (&mixed, ElementKind::Q4, "expected quadrilaterals for q4, got 1 triangles of 2: mesh it anew in one shape"),
-        (&mixed, ElementKind::T3, "expected triangles for t3, got 1 quadrilaterals of 2: mesh it anew in one shape"),
+        (&mixed, ElementKind::Q4, "expected quadrilaterals for q4, got 1 triangles of 2: mesh the part again"),
+        (&mixed, ElementKind::T3, "expected triangles for t3, got 1 quadrilaterals of 2: mesh the part again"),
     ];
     for (file, element, expected) in cases {
         let error = Mesh::from_gmsh(file, element).unwrap_err().to_string();

@@ -789,11 +789,11 @@ fn decisions_are_shown() {
     let mut harness = harness("elastica");
     pick(&mut harness, "Method", "auto");
     unfold(&mut harness, "stable");
-    assert!(harness.query_by_label("Factorized anew.").is_some());
+    assert!(harness.query_by_label("New factorization.").is_some());
     type_into(&mut harness, "Force", "0.1");
     // From the state under the large load it iterates; from the next one it uses linear theory.
     type_into(&mut harness, "Force", "0.09");
-    assert!(harness.query_by_label("Linear theory serves.").is_some());
+    assert!(harness.query_by_label("Linear theory suffices.").is_some());
     // A density without gravity changes no load.
     type_into(&mut harness, "Density ρ", "1234");
     assert!(harness.query_by_label("Nothing changed: no solve.").is_some());

@@ -404,12 +404,15 @@ fn what_supports_cannot_do_is_refused_with_its_reason() {
         (beam().clamp("right").moved([0.0, 0.0], 1e3), "support.1.turn: expected -100 to 100 rad, got 1000"),
         (
             beam().clamp("bottom").moved([0.0, 0.1], 0.0),
-            "support.1: expected what support.0 does to the node at (0, -0.5)",
+            "support.1: expected the same displacement as support.0 at the node (0, -0.5)",
         ),
-        (beam().moved([0.0, 0.1], 0.0).moving(warpbeam::IntegratorKind::TrBdf2, 0.01), "supports do not move in time"),
+        (
+            beam().moved([0.0, 0.1], 0.0).moving(warpbeam::IntegratorKind::TrBdf2, 0.01),
+            "supports of a dynamic scene cannot move",
+        ),
         (
             beam().clamp([5.0, 3.0]),
-            "support.1.at: expected a point of the body, or one within an element of it (1.414 m)",
+            "support.1.at: expected a point in the body, or at most one element size (1.414 m) from a node",
         ),
         (beam().force([-50.0, 0.0], [0.0, 1.0]), "is 50 m from the nearest node, at (0, 0)"),
     ];

@@ -72,9 +72,9 @@ fn what_is_none_is_named() {
         ("1 /", "m", "unknown unit"),
         ("1 m^99", "m", "unknown unit"),
         ("1 m^0", "m", "unknown unit"),
-        ("two", "N", "`two` is no number; expected a force (N)"),
-        ("", "m", "is no number"),
-        ("kN", "N", "is no number"),
+        ("two", "N", "`two` is not a number; expected a force (N)"),
+        ("", "m", "is not a number"),
+        ("kN", "N", "is not a number"),
     ] {
         let error = parse(text, unit).unwrap_err().to_string();
         assert!(error.contains(message), "{text}: {error}");

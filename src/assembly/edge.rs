@@ -143,7 +143,8 @@ pub(super) fn node_at(mesh: &Mesh, at: [f64; 2], key: &str) -> Result<u32, Inval
     }
     let [x, y] = at;
     let message = format!(
-        "expected a point of the body, or one within an element of it ({}); ({}, {}) is {} from the nearest node, at ({}, {})",
+        "expected a point in the body, or at most one element size ({}) from a node; ({}, {}) is {} from the nearest \
+         node, at ({}, {})",
         engineering(size, "m"),
         number(x),
         number(y),
@@ -158,8 +159,8 @@ pub(super) fn node_at(mesh: &Mesh, at: [f64; 2], key: &str) -> Result<u32, Inval
 pub(super) fn no_such_edge(mesh: &Mesh, name: &str, key: &str) -> Invalid {
     if mesh.edges().is_empty() {
         let message = format!(
-            "expected a named edge, got \"{name}\", but the mesh names none; in Gmsh, make curves physical groups, and the \
-             surface too: Gmsh saves only physical groups once there is one"
+            "expected a named edge, got \"{name}\", but the mesh has no named edges; in Gmsh, make curves physical \
+             groups, and the surface too: Gmsh saves only the physical groups if there are any"
         );
         return Invalid::new(format!("{key}.edge"), message);
     }

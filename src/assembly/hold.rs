@@ -17,7 +17,10 @@ pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bo
         }
     }
     if fixed.iter().all(|&f| f) {
-        return Err(Invalid::new("support", "expected some node that can move, got supports that fix them all"));
+        return Err(Invalid::new(
+            "support",
+            "expected at least one node that can move, got supports that fix every node",
+        ));
     }
     Ok(fixed)
 }
@@ -54,7 +57,8 @@ pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<
     if let (0, Some(node)) = (hold.loose, hold.hinge) {
         let (x, name) = (mesh.node(node), mesh.node_name(node));
         let message = format!(
-            "expected elements that share sides, got a part that hangs on node {} at ({}, {}) and can turn about it",
+            "expected elements that share sides, got a part that is connected only at node {} at ({}, {}) and can \
+             rotate about it",
             name.map_or_else(|| "?".to_owned(), |name| name.to_string()),
             number(x.x),
             number(x.y)
@@ -73,7 +77,7 @@ pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<
     }
     Err(Invalid::new(
         "support",
-        "expected supports that hold the body in both directions and against turning: it can still move freely",
+        "expected supports that prevent translation along both axes and rotation: the body can still move freely",
     ))
 }
 

@@ -87,7 +87,7 @@ impl Loads {
                 Load::Moment { edge: name, moment, pulse } => {
                     let (edge, straight) = system.edge(name, &key)?;
                     if !straight.is_straight() {
-                        let message = format!("expected a straight edge, got \"{name}\", which is not");
+                        let message = format!("expected a straight edge, got \"{name}\", which is not straight");
                         return Err(Invalid::new(format!("{key}.edge"), message));
                     }
                     let nodes: Vec<u32> = straight.arms().iter().map(|&(node, _)| node).collect();

@@ -109,8 +109,10 @@ impl Supports {
                     let x = mesh.node(node);
                     if !agree(&all[first], &new, x, axis, system.size()) {
                         let there = format!("({}, {})", number(x.x), number(x.y));
-                        let message =
-                            format!("expected what support.{first} does to the node at {there}, which both fix");
+                        let message = format!(
+                            "expected the same displacement as support.{first} at the node {there}, which \
+                             both fix"
+                        );
                         return Err(Invalid::new(&key, message));
                     }
                 }

@@ -23,7 +23,7 @@ pub enum SystemError {
     #[error(transparent)]
     Scene(#[from] Invalid),
     /// The factor of the matrix does not fit in memory.
-    #[error("the factor of {unknowns} unknowns does not fit in memory; expected a coarser mesh")]
+    #[error("the factorization of {unknowns} unknowns does not fit in memory; use a coarser mesh")]
     TooLarge {
         /// Number of free unknowns.
         unknowns: usize,
@@ -121,7 +121,7 @@ impl System {
             (Some(beam), _) => Mesh::beam(beam).map_err(|e| Invalid::new("beam", e.to_string())),
             (None, Some(file)) => {
                 let failed = |message: String| Invalid::new("mesh.file", format!("{}: {message}", file.file));
-                let unread = "its contents are not there: open the scene from its folder".to_owned();
+                let unread = "its contents were not loaded: open the scene from its folder".to_owned();
                 let text = file.text.as_deref().ok_or_else(|| failed(unread))?;
                 let element = file.element.or_else(|| Mesh::gmsh_element(text)).unwrap_or_default();
                 let mesh = Mesh::from_gmsh_scaled(text, element, file.scale.unwrap_or(1.0));

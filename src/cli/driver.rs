@@ -18,7 +18,7 @@ pub(super) fn silence() {
     if let Ok(program) = std::env::current_exe() {
         let error =
             std::process::Command::new(program).args(std::env::args_os().skip(1)).env(NO_DEVICE_SELECTION, "1").exec();
-        log::debug!("not started anew: {error}");
+        log::debug!("not restarted: {error}");
     }
 }
 

@@ -124,7 +124,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         }
     }
     if let Some(off) = reference.and_then(|r| r.beam_off_by_percent) {
-        let _ = writeln!(text, "  beam theory is {off:.1} % off");
+        let _ = writeln!(text, "  beam theory differs by {off:.1} %");
     }
     let deformation = &solution.deformation;
     let _ = writeln!(

@@ -50,9 +50,9 @@ impl std::fmt::Display for MotionDecision {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Undecided => "not decided yet",
-            Self::Linear => "linear theory serves",
-            Self::OldFactor => "the old factor serves",
-            Self::NewFactor => "factorized anew",
+            Self::Linear => "linear theory suffices",
+            Self::OldFactor => "old factorization reused",
+            Self::NewFactor => "new factorization",
         })
     }
 }

@@ -21,7 +21,7 @@ pub enum StepError {
     #[error("a result is not a finite number")]
     NotFinite,
     /// The step has added more energy than errors of rounding or linearization explain.
-    #[error("the step has added energy to the motion")]
+    #[error("the time step has added energy to the motion")]
     AddedEnergy,
     /// The iteration of a stage did not reach its tolerance.
     #[error("the iteration did not reach its tolerance within {0} solves")]
@@ -33,7 +33,7 @@ pub enum StepError {
 #[non_exhaustive]
 pub enum StopReason {
     /// A step failed even at the smallest length.
-    #[error("a step failed even at {} s: {error}", number(*step))]
+    #[error("a time step failed even when shortened to {} s: {error}", number(*step))]
     Step {
         /// Length of the last step tried, s.
         step: f64,
@@ -41,7 +41,7 @@ pub enum StopReason {
         error: StepError,
     },
     /// An explicit step gave a state that is not finite.
-    #[error("the motion exploded: the step of {} s, the critical one is about {} s", number(*step), number(*critical))]
+    #[error("the motion exploded: the time step is {} s, the critical one about {} s; shorten the time step", number(*step), number(*critical))]
     Exploded {
         /// Step length, s.
         step: f64,
@@ -49,7 +49,7 @@ pub enum StopReason {
         critical: f64,
     },
     /// A node has moved by more than this multiple of the body's size.
-    #[error("the body has gone more than {} times its size away", number(*.0))]
+    #[error("the body has moved by more than {} times its size", number(*.0))]
     RanAway(f64),
     /// Stopped from outside before the end.
     #[error("interrupted before the end: the result is partial")]

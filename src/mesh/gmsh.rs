@@ -40,7 +40,7 @@ pub enum GmshError {
 }
 
 const SAVE_IT: &str = "save it with `gmsh in.msh -save -format msh41 -o out.msh`";
-const ONLY_PHYSICAL: &str = "Gmsh saves only physical groups once there is one";
+const ONLY_PHYSICAL: &str = "Gmsh saves only the physical groups if there are any";
 
 /// Distance from z = 0, relative to the size of the mesh, that counts as rounding error.
 const FLAT: f64 = 1e-9;
@@ -332,11 +332,11 @@ impl File {
         let fitting: Vec<String> =
             ELEMENTS.iter().filter(|e| e.shares_cell(other)).map(|e| format!("\"{}\"", e.id)).collect();
         let remedy = if wrong == all {
-            format!("set element = {}, or mesh it anew in {expected}s", fitting.join(" or "))
+            format!("set element = {}, or mesh the part again with {expected}s", fitting.join(" or "))
         } else {
             format!(
-                "mesh it anew in one shape; in Gmsh, `Recombine Surface` with Mesh.RecombinationAlgorithm = 2 or 3 leaves \
-                 {}s only, and no recombination {}s only",
+                "mesh the part again with one shape; in Gmsh, `Recombine Surface` with Mesh.RecombinationAlgorithm = \
+                 2 or 3 gives {}s only, and no recombination {}s only",
                 SQUARE.name, TRIANGLE.name
             )
         };
@@ -367,7 +367,8 @@ impl File {
             let message = match self.lines.len() {
                 0 => "expected triangles or quadrilaterals, got none; mesh with `gmsh -2`".to_owned(),
                 n => format!(
-                    "expected triangles or quadrilaterals, got {n} lines and none; {ONLY_PHYSICAL}: make the surface one, too"
+                    "expected triangles or quadrilaterals, got only {n} lines; {ONLY_PHYSICAL}: make the surface a \
+                     physical group, too"
                 ),
             };
             return Err(GmshError::Content(message));

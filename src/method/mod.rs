@@ -62,7 +62,7 @@ impl MethodEntry {
         self.motion.ok_or_else(|| {
             let known: Vec<&str> = METHODS.iter().filter(|m| m.motion.is_some()).map(|m| m.id).collect();
             let known = known.join(", ");
-            let message = format!("expected one of {known} beside analysis = \"dynamic\", got \"{}\"", self.id);
+            let message = format!("expected one of {known} with analysis = \"dynamic\", got \"{}\"", self.id);
             Invalid::new("solver.method", message)
         })
     }
@@ -210,7 +210,7 @@ mod tests {
         let other = MethodEntry { id: "other", motion: None, ..MethodKind::Newton.entry() };
         let refused = other.in_motion().unwrap_err();
         assert_eq!(refused.key, "solver.method");
-        let known = "expected one of linear, warped, newton, auto beside analysis = \"dynamic\", got \"other\"";
+        let known = "expected one of linear, warped, newton, auto with analysis = \"dynamic\", got \"other\"";
         assert_eq!(refused.message, known);
         assert!(other.serves(Analysis::Static) && !other.serves(Analysis::Dynamic));
     }

@@ -41,20 +41,24 @@ impl std::fmt::Display for Reason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::IterationLimit(n) => {
-                write!(f, "the limit of {} is reached; more may do", count(*n, "iteration"))
+                write!(f, "the limit of {} is reached; a higher limit may help", count(*n, "iteration"))
             }
             Self::Stuck(n) => {
-                write!(f, "the residual has not fallen for {n} iterations, and is more than rounding explains")
+                write!(f, "the residual has not fallen for {n} iterations, and is larger than rounding errors")
             }
             Self::Stalled(n) => write!(
                 f,
-                "the residual has not fallen for {n} iterations: this load is too large for the iteration; lower it"
+                "the residual has not fallen for {n} iterations: the load is too large for this method; lower the load"
             ),
             Self::RanAway(sizes) => {
-                write!(f, "the body has gone more than {sizes} times its size away; lower the load")
+                write!(f, "the body has moved by more than {sizes} times its size; lower the load")
             }
             Self::Interrupted => write!(f, "interrupted before the end: the result is partial"),
-            Self::NoDescent => write!(f, "no load step, however small, and no descent leads on from here"),
+            Self::NoDescent => write!(
+                f,
+                "neither smaller load steps nor a descent of the energy lead to an \
+                 equilibrium; lower the load"
+            ),
             Self::Iteration(error) => write!(f, "{error}; lower the load"),
         }
     }
@@ -64,7 +68,10 @@ impl std::fmt::Display for Reason {
 #[must_use]
 pub fn floor_text(floor: f64, tolerance: f64) -> String {
     let [floor, tolerance] = [floor, tolerance].map(|v| number(two_digits(v)));
-    format!("no digits are left: rounding may change the residual by {floor}, so {tolerance} cannot be asked for here")
+    format!(
+        "the limit of rounding is reached: rounding may change the residual by {floor}, so the tolerance \
+         {tolerance} cannot be met here"
+    )
 }
 
 /// Number of iterations without progress after which a fixed-point iteration is given up. A larger number lets slower

@@ -313,8 +313,8 @@ impl Scene {
             .map(|(i, pulse)| {
                 let [duration, step] = [pulse.duration, step].map(|time| engineering(time, "s"));
                 format!(
-                    "the pulse of load.{i} lasts {duration}, less than a step of {step}: its impulse is exact, its shape is not \
-                     resolved"
+                    "the pulse of load.{i} lasts {duration}, less than a time step of {step}: its impulse is exact, \
+                     its shape is not resolved"
                 )
             })
             .collect()

@@ -280,7 +280,7 @@ impl Scene {
                 let name = if support.turn == 0.0 { "displacement" } else { "turn" };
                 return Err(Invalid::new(
                     format!("{key}.{name}"),
-                    "expected analysis = \"static\" beside it: supports do not move in time",
+                    "expected analysis = \"static\", or no value: supports of a dynamic scene cannot move",
                 ));
             }
         }
@@ -290,14 +290,14 @@ impl Scene {
             if load.pulse().is_some() && !dynamic {
                 return Err(Invalid::new(
                     format!("{key}.pulse"),
-                    "expected analysis = \"dynamic\" beside a pulse in time",
+                    "expected analysis = \"dynamic\", or no pulse: a pulse acts for a time",
                 ));
             }
         }
         for (i, probe) in self.probes.iter().enumerate() {
             probe.place.validate(&format!("probe.{i}"))?;
             if let Some(first) = self.probes[..i].iter().position(|other| other.name == probe.name) {
-                let message = format!("expected a name of its own, got \"{}\", which probe.{first} has", probe.name);
+                let message = format!("expected a unique name, got \"{}\", which probe.{first} has", probe.name);
                 return Err(Invalid::new(format!("probe.{i}.name"), message));
             }
         }
@@ -305,15 +305,15 @@ impl Scene {
         check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;
         check("solver.accept_after", limits::ACCEPT_AFTER, f64::from(self.solver.accept_after))?;
         if dynamic && self.solver.accept_after != 0 {
-            let message =
-                "expected analysis = \"static\" beside it; of a motion, dynamics.iterations sets the solves a stage";
+            let message = "expected analysis = \"static\", or 0: in a dynamic scene, dynamics.iterations limits the solves per \
+                 stage";
             return Err(Invalid::new("solver.accept_after", message));
         }
         check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)?;
         self.dynamics.validate()?;
         self.start.validate()?;
         let given = |key, is_default: bool| {
-            let message = "expected analysis = \"dynamic\" beside it";
+            let message = "expected analysis = \"dynamic\" in a scene with this table";
             if dynamic || is_default { Ok(()) } else { Err(Invalid::new(key, message)) }
         };
         given("dynamics", self.dynamics.is_default())?;

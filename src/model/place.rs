@@ -140,13 +140,13 @@ impl Support {
         if self.turn != 0.0 && !matches!(self.place, Place::Edge(_)) {
             return refuse(
                 "turn",
-                "expected edge = \"…\" beside it: a single node has no direction to turn".to_owned(),
+                "expected edge = \"…\" for this support: a single node cannot be rotated".to_owned(),
             );
         }
         if self.turn != 0.0 && !(self.fix.contains(&Axis::X) && self.fix.contains(&Axis::Y)) {
             return refuse(
                 "turn",
-                "expected fix = [\"x\", \"y\"] beside it: a rotation moves nodes along both".to_owned(),
+                "expected fix = [\"x\", \"y\"] for this support: a rotation moves nodes along both axes".to_owned(),
             );
         }
         Ok(())

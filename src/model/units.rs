@@ -123,7 +123,7 @@ const KEYS: &[(&str, Limit)] = &[
 #[non_exhaustive]
 pub enum UnitError {
     /// The text does not begin with a number.
-    #[error("`{text}` is no number; expected {expected}")]
+    #[error("`{text}` is not a number; expected {expected}")]
     NoNumber {
         /// Text as typed.
         text: String,

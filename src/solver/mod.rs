@@ -24,7 +24,7 @@ pub enum SolverError {
     #[error("the stiffness matrix is not positive definite")]
     NotPositiveDefinite,
     /// The factor does not fit in memory or in the index type.
-    #[error("the factor of this mesh does not fit in memory")]
+    #[error("the factorization of this mesh does not fit in memory")]
     TooLarge,
 }
 

@@ -142,7 +142,7 @@ pub fn strain_warning(max_strain: f64) -> Option<String> {
     (percent.is_finite() && max_strain > LAW_HOLDS).then(|| {
         let most = 100.0 * LAW_HOLDS;
         format!(
-            "strains reach {percent:.0} %: beyond {most} % the linear law between stress and strain is no material's"
+            "strains reach {percent:.0} %: beyond {most} % the linear law between stress and strain is not realistic"
         )
     })
 }

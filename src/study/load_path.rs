@@ -40,14 +40,14 @@ pub struct Jump {
 impl std::fmt::Display for Jump {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if self.factor >= 1.0 {
-            return write!(f, "it jumped: another equilibrium under this load is nearer to rest");
+            return write!(f, "the body jumped: another equilibrium under this load is closer to rest");
         }
         let percent = engineering(100.0 * self.factor, "%");
         match self.distance {
             0.0 => write!(f, "beyond {percent} of the load no stable equilibrium was found"),
             distance => write!(
                 f,
-                "it jumped: beyond {percent} of the load the next equilibrium is {} away",
+                "the body jumped: beyond {percent} of the load the next equilibrium is {} away",
                 engineering(distance, "m")
             ),
         }
@@ -86,7 +86,7 @@ impl std::fmt::Display for Bifurcation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let percent = self.percent();
         match self.unstable_modes {
-            [0, _] => write!(f, "buckles at {percent} of the load: beyond, this path is unstable"),
+            [0, _] => write!(f, "buckles at {percent} of the load: beyond it, this path is unstable"),
             [_, 0] => write!(f, "stable again from {percent} of the load on"),
             [_, modes] => write!(f, "from {percent} of the load on {modes} modes are unstable"),
         }
@@ -119,7 +119,7 @@ impl std::fmt::Display for PathEnd {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "the path ends at {} of the load: ", engineering(100.0 * self.factor, "%"))?;
         match self.reason {
-            PathEndReason::NoEquilibrium => write!(f, "no equilibrium was found beyond"),
+            PathEndReason::NoEquilibrium => write!(f, "no equilibrium was found beyond it"),
             PathEndReason::Solves(most) => write!(f, "it took more than {most} solves"),
             PathEndReason::Interrupted => write!(f, "interrupted"),
         }

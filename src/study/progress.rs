@@ -15,20 +15,24 @@ pub enum StudyError {
     Simulation(#[from] SimulationError),
     /// The scene is dynamic and has no equilibrium to compare with.
     #[error(
-        "expected a scene with analysis = \"static\": this measures solves of its equilibrium, and it is in motion"
+        "expected a scene with analysis = \"static\": the study measures solves for an equilibrium, and this scene is \
+         in motion"
     )]
     InMotion,
     /// The scene is static and has no path to compare with.
-    #[error("expected a scene with analysis = \"dynamic\": this measures the path of its motion, and it is at rest")]
+    #[error(
+        "expected a scene with analysis = \"dynamic\": the study measures the path of a motion, and this scene is \
+         at rest"
+    )]
     AtRest,
     /// The motion on the fine mesh, which would be the reference, stops.
-    #[error("no reference solution: the fine motion of the scene stops: {0}")]
+    #[error("no reference solution: the motion of the fine mesh stops: {0}")]
     NoPath(StopReason),
     /// The scene has a mesh file, which cannot be meshed with other cells.
-    #[error("expected a scene with [beam]: this measures it on coarser and finer meshes")]
+    #[error("expected a scene with [beam]: the study measures coarser and finer meshes of it")]
     NoBeam,
     /// The scene has no probe that moves.
-    #[error("expected a scene with a probe that moves; errors are measured there")]
+    #[error("expected a scene with a probe that moves: errors are measured at probes")]
     NoProbe,
     /// The refined mesh of a file would have too many unknowns.
     #[error("no reference solution: the mesh of {elements} elements is too large to be refined")]
@@ -40,14 +44,14 @@ pub enum StudyError {
     #[error("no reference solution: the equilibrium is unstable")]
     Unstable,
     /// No equilibrium was found on fine meshes.
-    #[error("no reference solution: the fine solution of the scene does not converge")]
+    #[error("no reference solution: the solution on the fine mesh does not converge")]
     NoReference,
     /// The solutions on refined meshes do not converge, or too slowly.
-    #[error("no reference solution: solutions on finer and finer meshes do not approach each other")]
+    #[error("no reference solution: the solutions on finer and finer meshes do not converge")]
     NoBound,
     /// The reference solution is not more accurate than the requested result.
     #[error(
-        "the reference solution's own error may be {} %, no less than the {} % asked",
+        "the reference solution's own error may be {} %, not less than the {} % asked for",
         number(two_digits(*own_percent)),
         number(*asked_percent)
     )]
@@ -58,7 +62,7 @@ pub enum StudyError {
         asked_percent: f64,
     },
     /// Cancelled.
-    #[error("called off")]
+    #[error("cancelled")]
     Cancelled,
 }
 

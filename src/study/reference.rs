@@ -117,7 +117,7 @@ impl std::fmt::Display for Reference {
             Some(first) => write!(f, "{first}")?,
             None => f.write_str("no reference solution")?,
         }
-        self.beam_off_by_percent.map_or(Ok(()), |off| write!(f, "; beam theory is {off:.1} % off"))
+        self.beam_off_by_percent.map_or(Ok(()), |off| write!(f, "; beam theory differs by {off:.1} %"))
     }
 }
 
@@ -250,15 +250,18 @@ impl Reference {
     #[must_use]
     pub fn limits(&self) -> Vec<String> {
         let mut limits: Vec<String> =
-            self.moved.iter().map(|point| format!("of the reference solution, {point}")).collect();
+            self.moved.iter().map(|point| format!("in the reference solution, {point}")).collect();
         if self.is_polygon {
             limits.push(
-                "errors are those of the polygon that the file's straight sides make, not of a curved part".to_owned(),
+                "errors refer to the polygon of the file's straight sides, not to the curved part it stands for"
+                    .to_owned(),
             );
         }
         if self.probes.contains(&None) {
             limits.push(
-                "of some probes no error is known: they do not move, or finer meshes do not agree on how".to_owned(),
+                "the error of some probes is unknown: they do not move, or their displacement does not converge on \
+                 finer meshes"
+                    .to_owned(),
             );
         }
         limits

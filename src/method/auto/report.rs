@@ -54,9 +54,9 @@ impl std::fmt::Display for Decision {
         f.write_str(match self {
             Self::Undecided => "not decided yet",
             Self::Unchanged => "nothing changed: no solve",
-            Self::Linear => "linear theory serves",
-            Self::OldFactor => "the old factor serves",
-            Self::NewFactor => "factorized anew",
+            Self::Linear => "linear theory suffices",
+            Self::OldFactor => "old factorization reused",
+            Self::NewFactor => "new factorization",
             Self::LoadSteps => "load stepping",
         })
     }
