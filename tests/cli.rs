@@ -453,7 +453,7 @@ fn what_takes_long_shows_a_bar_on_a_terminal() {
     assert_eq!((quiet.status.code(), stderr(&quiet).as_str()), (Some(0), ""));
     let (code, text) = on_a_terminal(Path::new("."), &args);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains(" of 60 s, ") && text.contains(" s a second") && text.contains(" left"), "{text}");
+    assert!(text.contains(" of 60 s, ") && text.contains(" s per second") && text.contains(" left"), "{text}");
     // The bar shows a remaining time only once it can estimate one.
     assert!(!text.contains("0s left"), "{text}");
 }
@@ -742,9 +742,9 @@ fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let text = stdout(&output);
     for words in [
-        "off by 3 %",
-        "off by 5 %",
-        "off by 10 %",
+        "differs by 3 %",
+        "differs by 5 %",
+        "differs by 10 %",
         "linear  at full load",
         "warped  at",
         "diverged",
@@ -766,8 +766,8 @@ fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
             && (full[4] - reference[1].as_f64().unwrap()).abs() < 1e-6
     );
     for (args, why) in [
-        (&["curve", "swing"][..], "expected a scene at rest"),
-        (&["curve", "shear", "--set", "solver.method=linear"], "expected a scene at rest"),
+        (&["curve", "swing"][..], "expected a static scene"),
+        (&["curve", "shear", "--set", "solver.method=linear"], "expected a static scene"),
         (&["curve", "snap", "--picture", "x.png", "--of", "nobody"], "expected one of quarter, crown, support.0"),
         (&["curve", "snap", "--picture", "x.pdf"], "expected a name that ends in .svg or .png"),
     ] {
@@ -844,7 +844,7 @@ fn solve_tells_the_reaction_of_every_support() {
     let sum: f64 = supports.iter().map(|s| s["force"][1].as_f64().unwrap()).sum();
     assert!(sum.abs() < 1e-3, "{sum}");
     let text = stdout(&warpbeam(&[&["solve", "snap", "--no-truth"][..], &set].concat()));
-    assert!(text.contains("support right, moved by (-5, 0) mm, turned by 30°: reaction ("), "{text}");
+    assert!(text.contains("support right, moved by (-5, 0) mm, rotated by 30°: reaction ("), "{text}");
     let wrong = warpbeam(&["solve", "snap", "--set", "support.1.turn=3 mm"]);
     assert!(stderr(&wrong).contains("`3 mm` is a length (m); expected an angle (rad)"), "{}", stderr(&wrong));
 }
@@ -1045,7 +1045,7 @@ fn tune_chooses_a_setting_that_meets_the_demand() {
     // With a time limit only, it chooses the most accurate setting within it. A reference without a closed form
     // has its own error included.
     let text = stdout(&warpbeam(&["tune", "bracket", "--time", "100s"]));
-    assert!(text.contains("meet at most 100000 ms; the closest:"), "{text}");
+    assert!(text.contains("meet at most 100000 ms; the most accurate:"), "{text}");
     assert!(!text.contains("the reference's own 0.0000 %"), "{text}");
     let hopeless = warpbeam(&["tune", "cantilever", "--error", "1%", "--time", "1e-6ms"]);
     assert_eq!(hopeless.status.code(), Some(1));

@@ -106,7 +106,7 @@ fn options_that_do_not_fit_a_scene_are_refused() {
         ),
         (&["solve", "swing", "--certificate"], "swing: expected a scene with analysis = \"static\" for --certificate"),
         (&["record", "cantilever", "--seconds", "1", "-o", "a.gif"], "expected no --seconds and no --speed"),
-        (&["curve", "swing"], "expected a scene at rest"),
+        (&["curve", "swing"], "expected a static scene"),
         (&["tune", "swing"], "expected a scene with analysis = \"static\""),
     ] {
         let refused = warpbeam(args);

@@ -69,7 +69,7 @@ fn a_motion_is_recorded_in_every_format() {
     let folder = folder.path();
     let args = ["swing", "--seconds", "0.4", "--size", "320x200"];
     let text = record(folder, &[&args[..], &["-o", "swing.gif"]].concat());
-    assert!(text.contains("11 pictures, 25 a second"), "{text}");
+    assert!(text.contains("11 pictures, 25 per second"), "{text}");
     record(folder, &[&args[..], &["-o", "frames"]].concat());
     let (gif, pngs) = (decode_gif(&folder.join("swing.gif")), decode_folder(&folder.join("frames")));
     assert_eq!((gif.size, gif.frames.len()), ([320, 200], 11));
@@ -111,10 +111,10 @@ fn rates_are_what_the_format_has_and_slow_motion_is_slow() {
     let folder = folder.path();
     let short = ["swing", "--size", "64x64", "--seconds", "0.2"];
     let text = record(folder, &[&short[..], &["--fps", "30", "-o", "a.gif"]].concat());
-    assert!(text.contains("7 pictures, 33.33 a second") && text.contains("cannot have 30"), "{text}");
+    assert!(text.contains("7 pictures, 33.33 per second") && text.contains("cannot have 30"), "{text}");
     assert!(decode_gif(&folder.join("a.gif")).frames.iter().all(|(_, delay)| (delay - 0.03).abs() < 1e-9));
     let text = record(folder, &[&short[..], &["--fps", "30", "-o", "frames"]].concat());
-    assert!(text.contains("7 pictures, 30 a second\n"), "{text}");
+    assert!(text.contains("7 pictures, 30 per second\n"), "{text}");
     // A tenth of the speed gives ten times as many pictures of the same time.
     record(folder, &[&short[..], &["--speed", "0.1", "-o", "slow.gif"]].concat());
     assert_eq!(decode_gif(&folder.join("slow.gif")).frames.len(), 51);

@@ -15,18 +15,18 @@ const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solve
 2 bad input or usage, or a result that could not be written, 3 no usable graphics adapter.";
 
 const SOLVE_FILES: &str = "--out of a static scene:
-  .csv  a row a node: node, rest_x, rest_y, x, y, u_x, u_y (m), rotation_deg,
+  .csv  a row per node: node, rest_x, rest_y, x, y, u_x, u_y (m), rotation_deg,
           strain_xx, _yy, _zz, _xy (Biot), stress_xx, _yy, _zz, _xy (Cauchy, Pa),
           von_mises (Cauchy, Pa), file_node (its number in the mesh file)
   .vtu  the mesh and its fields, for ParaView: at points displacement, strain,
         stress, von Mises, node numbers, named edges; of cells rotation,
         energy density, largest strain, mesh error
 --out of a scene in motion (analysis = \"dynamic\"):
-  .csv  a row a time step. Columns: t (s); for every probe NAME
+  .csv  a row per time step. Columns: t (s); for every probe NAME
           NAME_x, NAME_y, NAME_u_x, NAME_u_y (m), NAME_v_x, NAME_v_y (m/s);
         then energies (J):
-          kinetic, elastic, potential, dissipated, integrator (what it lost), pulses, hands
-  .pvd  a ParaView collection of FILE_0000.vtu, FILE_0001.vtu, ... beside it:
+          kinetic, elastic, potential, dissipated, integrator (energy lost by it), pulses, hands
+  .pvd  a ParaView collection of FILE_0000.vtu, FILE_0001.vtu, ... next to it:
         at most about 300 states, evenly spread in time
   .vtu  the last state
 
@@ -37,7 +37,7 @@ Ctrl-C ends a motion early: its files are valid, the result is printed with stat
 /// and quadrilaterals.
 #[derive(Debug, Parser)]
 #[command(name = "warpbeam", version, after_help = EXIT_CODES)]
-#[cfg_attr(feature = "app", command(before_help = "Without a command: the window."))]
+#[cfg_attr(feature = "app", command(before_help = "Without a command, the window opens."))]
 #[cfg_attr(not(feature = "app"), command(subcommand_required = true, arg_required_else_help = true))]
 pub(super) struct Cli {
     #[command(subcommand)]
@@ -46,7 +46,7 @@ pub(super) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Open the window. Without a display: solve the scene, write an image, exit 0.
+    /// Open the window. Without a display, solve the scene and write an image.
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Run {
@@ -82,7 +82,7 @@ pub(super) enum Command {
     /// Choose element, mesh and method of a static scene for a required error and time: measure finer and finer meshes
     /// on this machine until both are met, and print the choice and the reason.
     #[command(
-        after_help = "Exit codes: 0 both are met, 1 nothing meets them (the closest is printed), 2 bad input or usage."
+        after_help = "Exit codes: 0 both are met, 1 no setting meets them (the best one is printed), 2 bad input or usage."
     )]
     Tune(TuneArgs),
     /// Solve at extremes of load, stiffness, Poisson ratio, slenderness, cells and initial state, and on mesh files,
@@ -124,14 +124,15 @@ pub(super) struct SolveArgs {
     /// Also write a table (.csv), the mesh with its fields (.vtu) or, for a motion, a series of them (.pvd); see below.
     #[arg(long, value_name = "FILE.csv|.vtu|.pvd")]
     pub out: Option<PathBuf>,
-    /// Reference solution that errors are measured against: on meshes of up to about 10,000 unknowns, in a second or
-    /// two; on meshes fine enough for an error of 0.01 %; or none.
+    /// Reference solution against which errors are measured. `bounded`: meshes of up to about 10,000 unknowns, a second
+    /// or two; `full`: meshes fine enough for an error of 0.01 %; `none`: no reference solution and no errors.
     #[arg(long, value_enum, default_value_t = ReferenceEffort::Bounded)]
     pub reference: ReferenceEffort,
     /// Same as --reference none.
     #[arg(long = "no-truth", hide = true, conflicts_with = "reference")]
     pub no_reference: bool,
-    /// Certify the result, whatever the size of the scene: stability, ρ, and jumps on the load path to it.
+    /// Certify the result, whatever the size of the scene: stability, spectral radius ρ of the warped iteration, and
+    /// jumps on the load path to it.
     #[arg(long)]
     pub certificate: bool,
     /// Do not certify the result. Certification takes some solves, and is omitted beyond 100,000 unknowns anyway.
@@ -166,7 +167,7 @@ pub(super) struct CurveArgs {
     /// Also write the curve as a table.
     #[arg(long, value_name = "FILE.csv")]
     pub out: Option<PathBuf>,
-    /// Also draw the load path: over the displacement of the moving support, or over the load; unstable states are
+    /// Also draw the load path, over the displacement of the moving support or over the load; unstable states are
     /// dashed.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub picture: Option<PathBuf>,
@@ -182,7 +183,7 @@ pub(super) struct FolderArgs {
     /// Folder to write to; created if necessary.
     #[arg(long = "out", value_name = "DIR")]
     pub folder: PathBuf,
-    /// Omit the expensive part: coarser meshes, fewer cases.
+    /// Measure less, in less time: coarser meshes, fewer cases.
     #[arg(long)]
     pub quick: bool,
 }

@@ -83,13 +83,13 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let mut warnings = limits_of(&simulation, &stress);
     if let Some(Err(error)) = &reference {
         warnings.push(match error {
-            StudyError::TooFine { .. } => format!("{error} within the budget; --reference full does it"),
+            StudyError::TooFine { .. } => format!("{error} within the default effort; --reference full does it"),
             error => error.to_string(),
         });
     }
     if is_static && !certifies && !no_certificate {
         let unknowns = count(simulation.system().dofs() as u64, "unknown");
-        warnings.push(format!("not certified: {unknowns}; --certificate does it"));
+        warnings.push(format!("not certified: {unknowns}; use --certificate to certify the result"));
     }
     let reference = reference.and_then(Result::ok);
     warnings.extend(reference.as_ref().map(Reference::limits).unwrap_or_default());
@@ -108,7 +108,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     written?;
     match (interrupted, &solution.status) {
         (true, Status::Stopped(reason)) => eprintln!("warpbeam: {reason}"),
-        (true, status) if status.is_success() => eprintln!("warpbeam: interrupted: not everything was found out"),
+        (true, status) if status.is_success() => eprintln!("warpbeam: interrupted: some results are missing"),
         _ => {}
     }
     Ok(if interrupted { ExitCode::from(NOT_CONVERGED) } else { exit_code(&solution.status) })
@@ -227,7 +227,7 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     };
     write_folder(&out.folder, "study", &table, &drawing, Some(&summary))?;
     text::print(&summary)?;
-    Ok(ended(interrupted, "the study lacks what was not measured yet"))
+    Ok(ended(interrupted, "the study has only the settings measured until then"))
 }
 
 pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
@@ -269,7 +269,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let tuning = match tuning {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
         Err(error) if error.is_unknown() => {
-            text::print(&format!("{}: not known which settings meet {demand}: {error}\n", scene.name))?;
+            text::print(&format!("{}: it is not known which settings meet {demand}: {error}\n", scene.name))?;
             return Ok(ExitCode::from(NOT_CONVERGED));
         }
         tuning => tuning.map_err(failed(&source))?,

@@ -63,13 +63,13 @@ fn parse_panes(text: &str) -> Result<Panes, app::PaneSettingError> {
 
 /// Notes about files in `record --help`.
 pub(super) const RECORD_NOTES: &str = "\
-OUT.gif loops for ever, in one palette of 256 colours. A GIF counts in hundredths of a second: where --fps is no such \
-rate, the nearest is taken, and said.
-A name without extension is a folder of numbered pictures in full colour, frame-0001.png and on, ready for
+OUT.gif loops forever and has one palette of 256 colours. GIF frame times are hundredths of a second: if --fps does \
+not fit, the nearest rate is used and printed.
+A name without extension is a folder for images in full colour, frame-0001.png, frame-0002.png, ..., ready for
   ffmpeg -framerate 25 -i FOLDER/frame-%04d.png -pix_fmt yuv420p OUT.mp4
 
-Camera and colours span the whole motion: it is run once before it is drawn.
-Ctrl-C leaves a shorter, valid recording, and exit code 1.
+Camera and colour range fit the whole motion, which is computed once before it is drawn.
+Ctrl-C ends with a shorter, valid recording and exit code 1.
 ";
 
 #[derive(Debug, Args)]

@@ -54,12 +54,13 @@ enum CliError {
     #[error("{scene}: {error}")]
     Study { scene: String, error: StudyError },
     #[error(
-        "{0}: expected a scene at rest with a method other than linear: a load path is one of equilibria under finite rotations"
+        "{0}: expected a static scene with a method other than linear: a load path is a sequence of equilibria with \
+         large rotations"
     )]
     NoPath(String),
     #[error("--of {name}: expected one of {}", known.join(", "))]
     NoOrdinate { name: String, known: Vec<String> },
-    #[error("the tuned scene cannot be written as TOML: {0}")]
+    #[error("the chosen scene cannot be written as TOML: {0}")]
     Toml(#[from] toml::ser::Error),
     #[error("standard output: {0}")]
     Output(std::io::Error),

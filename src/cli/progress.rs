@@ -101,7 +101,7 @@ impl Watch {
     /// Shows the current time of a motion, s.
     pub(super) fn show_time(&self, time: f64, duration: f64) {
         let rate = || time / self.began.elapsed().as_secs_f64().max(1e-9);
-        self.show(time / duration, || format!("{time:.3} of {duration} s, {:.3} s a second", rate()));
+        self.show(time / duration, || format!("{time:.3} of {duration} s, {:.3} s per second", rate()));
     }
 
     /// Shows the progress of a study; returns [`ControlFlow::Break`] if the command should end.

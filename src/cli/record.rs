@@ -50,7 +50,7 @@ fn text(progress: &RecordProgress) -> String {
 fn summary(recorded: &Recorded, asked: Option<u16>, output: &Path) -> String {
     let Recorded { pictures, rate, .. } = recorded;
     let rounded = number((100.0 * rate).round() / 100.0);
-    let mut text = format!("{}: {}, {rounded} a second", output.display(), count(*pictures, "picture"));
+    let mut text = format!("{}: {}, {rounded} per second", output.display(), count(*pictures, "picture"));
     if let Some(asked) = asked.filter(|&asked| (f64::from(asked) - rate).abs() > 1e-9) {
         // Folders have every rate.
         text += &format!(" (a GIF cannot have {asked})");

@@ -99,7 +99,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         let _ = writeln!(text, "  this equilibrium is unstable: the exact tangent is not positive definite");
     }
     if let Some(rho) = fixed_point_rho {
-        let _ = writeln!(text, "{}", rho_text(rho));
+        let _ = writeln!(text, "{} (spectral radius)", rho_text(rho));
     }
     let references = reference.map_or(&[][..], Reference::probes);
     for (i, probe) in solution.probes.iter().enumerate() {
@@ -108,7 +108,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
             let [ex, ey, _, exy] = at_probe.strain.components().map(|v| engineering(100.0 * v, "%"));
             let _ = writeln!(
                 text,
-                "  turned by {}, strain {ex}, {ey}, shear {exy}",
+                "  rotation {}, strain {ex}, {ey}, shear {exy}",
                 engineering(at_probe.rotation_deg, "°")
             );
             if let Some(cauchy) = &at_probe.cauchy {
@@ -197,7 +197,7 @@ fn reactions(scene: &Scene, solution: &Solution) -> String {
             let _ = write!(text, ", moved by {}", engineering_pair(support.displacement, "m"));
         }
         if support.turn != 0.0 {
-            let _ = write!(text, ", turned by {}", engineering(support.turn.to_degrees(), "°"));
+            let _ = write!(text, ", rotated by {}", engineering(support.turn.to_degrees(), "°"));
         }
         let _ = write!(text, ": reaction {}", pair(reaction.force, "N"));
         if matches!(support.place, Place::Edge(_)) {
@@ -261,7 +261,7 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     let scale = 10f64.powi(-power);
     let mut text = format!("{}: tip displacement, {symbol}m\n\n", scene.name);
     let _ =
-        writeln!(text, "  load   linear theory            exact beam               linear error   tip turn   strain");
+        writeln!(text, "  load   linear theory            exact beam               linear error   rotation   strain");
     for sample in curve.samples.iter().step_by(5).skip(1) {
         let _ = writeln!(
             text,
@@ -280,7 +280,7 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     for departure in &curve.departures {
         let _ = writeln!(
             text,
-            "linear theory is off by {} % at {:.1} % of the load: the tip has turned by {:.1}°, the largest strain is {:.2} %",
+            "linear theory differs by {} % at {:.1} % of the load: tip rotation {:.1}°, largest strain {:.2} %",
             departure.percent,
             100.0 * departure.at.factor,
             departure.at.rotation.to_degrees().abs(),
@@ -290,9 +290,9 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     text.push('\n');
     if let Some(factor) = curve.buckles_at {
         let percent = engineering(100.0 * factor, "%");
-        let _ = writeln!(text, "the exact beam buckles at {percent} of the load: beyond, its path is unstable\n");
+        let _ = writeln!(text, "the exact beam buckles at {percent} of the load: beyond it, its path is unstable\n");
     } else if curve.samples.last().is_some_and(|sample| sample.factor < 1.0) {
-        text.push_str("the exact beam could not be followed farther\n\n");
+        text.push_str("the exact beam could not be followed to the full load\n\n");
     }
     for point in &curve.methods {
         let unstable = point.status == Status::Converged && point.stable == Some(false);
@@ -353,7 +353,9 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
     text.push('\n');
     for pair in path.states.windows(2) {
         let (at, word) = match [pair[0].stable, pair[1].stable] {
-            [Some(true), Some(false)] => (&pair[0], "the limit load: beyond, it is unstable under force control"),
+            [Some(true), Some(false)] => {
+                (&pair[0], "the limit load: beyond it, the path is unstable under force control")
+            }
             [Some(false), Some(true)] => (&pair[1], "stable under force control again"),
             _ => continue,
         };

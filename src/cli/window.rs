@@ -21,31 +21,21 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
     let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);
-    fits(
-        "--compare",
-        !options.compare.is_empty(),
-        false,
-        "it shows equilibria; of a motion, --motion shows other integrators",
-    )?;
-    fits("--curve", options.curve, false, "it shows equilibria; of a motion, --motion shows the energy")?;
-    fits(
-        "--motion",
-        options.motion.is_some(),
-        true,
-        "it shows integrators; of equilibria, --compare shows other methods",
-    )?;
+    fits("--compare", !options.compare.is_empty(), false, "it shows equilibria; for a motion, use --motion")?;
+    fits("--curve", options.curve, false, "it shows equilibria; for a motion, --motion shows the energy")?;
+    fits("--motion", options.motion.is_some(), true, "it shows integrators; for an equilibrium, use --compare")?;
     fits(
         "--study",
         options.study && options.learn.is_none(),
         false,
-        "it measures solves; of a motion, use `warpbeam study`",
+        "it measures solves; for a motion, use `warpbeam study`",
     )?;
     let watch = Watch::new();
     let status = app::shot(source, scene, simulation, &options, &output, &mut |progress| watch.observe(&progress))?;
     let interrupted = watch.is_cancelled();
     drop(watch);
     if interrupted {
-        eprintln!("warpbeam: interrupted: the picture has what was measured until then");
+        eprintln!("warpbeam: interrupted: the picture shows only the settings measured until then");
         return Ok(ExitCode::from(NOT_CONVERGED));
     }
     if let Some(reason) = status.failure() {

@@ -37,7 +37,7 @@ pub fn study(study: &Study) -> Drawing {
     let chart = Chart {
         title: format!("{}: error against time", study.scene),
         time_label: "time of a solve, ms",
-        error_label: "error bound, % of the true displacement",
+        error_label: "error bound, % of the reference displacement",
         points: study.measurements.iter().map(point).collect(),
         legend: METHODS.iter().map(|m| (m.id, color(m.id, false))).collect(),
         faint_label: None,
@@ -62,8 +62,8 @@ pub fn motion_study(study: &MotionStudy) -> Drawing {
     });
     let chart = Chart {
         title: format!("{}: error of its path against time", study.scene),
-        time_label: "time of computing a simulated second, ms",
-        error_label: "error bound of the path, % of how far it leads",
+        time_label: "computing time per simulated second, ms",
+        error_label: "error bound of the path, % of its largest displacement",
         points: points.collect(),
         legend: INTEGRATORS.iter().map(|i| (i.id, color(i.id, false))).collect(),
         faint_label: Some("linear theory"),

@@ -46,7 +46,9 @@ impl Study {
     #[must_use]
     pub fn summary(&self) -> String {
         let mut text = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);
-        text.push_str("nothing measured is both faster and surer than these (error: at most the sum of its parts):\n");
+        text.push_str(
+            "Pareto front: no measured setting is both faster and more accurate (error: at most the sum of its parts):\n",
+        );
         text.push_str("    time, ms    at most, %     measured   mesh error  stopped early  linear theory   setting\n");
         for m in self.front() {
             let e = &m.error;
@@ -66,7 +68,8 @@ impl Study {
         let own = self.against.own_error_percent;
         for percent in [10.0, 1.0, 0.1] {
             if own >= percent {
-                let _ = writeln!(text, "an error of {percent} %: not known, the reference's own may be {own:.2} %");
+                let _ =
+                    writeln!(text, "an error of {percent} %: not known, the reference's own error may be {own:.2} %");
                 continue;
             }
             let words = self
@@ -81,7 +84,7 @@ impl Study {
                     let words = match own.min_by_key(|m| m.time.total()) {
                         Some(m) => format!("{:.4} ms", m.milliseconds()),
                         None if method == MethodKind::Auto && percent < self.asked_percent => {
-                            format!("asked for {} % only", self.asked_percent)
+                            format!("solver.max_error_percent is {}", self.asked_percent)
                         }
                         None => "not reached".to_owned(),
                     };

@@ -137,7 +137,7 @@ impl Scaling {
     #[must_use]
     pub fn summary(&self) -> String {
         let mut text = format!("{}: an iteration of `newton`, by unknowns\n\n", self.scene);
-        text.push_str("element   unknowns  iteration, ms   µs an unknown   memory, MiB\n");
+        text.push_str("element   unknowns  iteration, ms  µs per unknown   memory, MiB\n");
         for p in &self.points {
             let memory = p.peak_mib.map_or_else(|| "–".to_owned(), |m| format!("{m:.1}"));
             let each = p.milliseconds * 1e3 / p.dofs as f64;

@@ -25,7 +25,7 @@ impl std::fmt::Display for Demand {
             (Some(error), Some(time)) => write!(f, "at most {error} % error and {time} ms"),
             (Some(error), None) => write!(f, "at most {error} % error"),
             (None, Some(time)) => write!(f, "at most {time} ms"),
-            (None, None) => write!(f, "nothing in particular"),
+            (None, None) => write!(f, "no requirement"),
         }
     }
 }
@@ -143,8 +143,8 @@ impl std::fmt::Display for Tuning {
         let Self { chosen, demand, met, measured, meeting, study, .. } = self;
         let which = match (met, demand.max_error_percent.is_some(), demand.time_is_met(chosen)) {
             (true, true, _) => "the fastest",
-            (true, false, _) => "the closest",
-            (false, _, true) => "the closest within the time",
+            (true, false, _) => "the most accurate",
+            (false, _, true) => "the most accurate within the time",
             (false, _, false) => "the fastest of all",
         };
         let text = if *met {

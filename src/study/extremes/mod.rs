@@ -392,7 +392,8 @@ pub fn summary(entries: &[Entry]) -> String {
     let at_rounding = entries.iter().filter(|e| e.residual_floor.is_some()).count();
     let _ = writeln!(
         text,
-        "\n{at_rounding} of what converged did so to working precision: above the tolerance, within the bound of rounding"
+        "\n{at_rounding} of the converged cases stopped at working precision: residual above the tolerance, within \
+         the bound of rounding"
     );
     let kinds: [(Kind, &str); 4] = [
         (|c| c.is_plain() && !c.moved, "of the cases from rest, by load α = P L²/EI"),

@@ -214,7 +214,7 @@ pub fn counts(entries: &[MotionEntry]) -> BTreeMap<(&'static str, &'static str, 
 #[must_use]
 pub fn summary(entries: &[MotionEntry]) -> String {
     let mut text = format!(
-        "in motion: {} cases, a beam let go under its weight, {STEPS} steps\n\nelement {:<28}",
+        "in motion: {} cases, a beam released under its own weight, {STEPS} steps\n\nelement {:<28}",
         entries.len(),
         "integrator"
     );

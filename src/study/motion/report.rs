@@ -52,17 +52,20 @@ impl MotionStudy {
     #[must_use]
     pub fn summary(&self) -> String {
         let mut text = format!(
-            "{}: error of the first probe's path, the largest distance over {} s, percent of the {:.4} m that it leads,\n\
-             against {}\n",
+            "{}: error of the first probe's path: largest distance over {} s, percent of its largest displacement \
+             {:.4} m,\nagainst {}\n",
             self.scene,
             number(round(self.duration)),
             self.reference.size,
             self.reference
         );
         if self.duration < self.scene_duration * (1.0 - 1e-6) {
-            let _ = writeln!(text, "(the scene goes on to {} s, which is not looked at)", number(self.scene_duration));
+            let _ = writeln!(text, "(the scene lasts {} s; the rest is not measured)", number(self.scene_duration));
         }
-        text.push_str("\nnothing measured is both faster and surer than these (time: of a simulated second; error: at most the sum of its parts):\n");
+        text.push_str(
+            "\nPareto front: no measured setting is both faster and more accurate (time: per simulated \
+             second; error: at most the sum of its parts):\n",
+        );
         text.push_str(
             "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting\n",
         );
@@ -108,14 +111,14 @@ impl MotionStudy {
         let real = self.fastest_of(1.0, |m| m.milliseconds <= REAL_TIME);
         let words = real.map_or_else(
             || match self.fastest_within(1.0) {
-                None => "nothing measured is within 1 %".to_owned(),
+                None => "no measured setting is within 1 %".to_owned(),
                 Some(fastest) => {
-                    format!("within 1 %, nothing measured is as fast as real time: {}", time_text(fastest))
+                    format!("within 1 %, no measured setting runs in real time; the fastest: {}", time_text(fastest))
                 }
             },
             |m| {
                 let times = REAL_TIME / m.milliseconds;
-                format!("within 1 %, the fastest in real time, {times:.0} times as fast as it: {}", m.setting)
+                format!("within 1 %, the fastest setting runs at {times:.0} times real time: {}", m.setting)
             },
         );
         let _ = writeln!(text, "{words}\n");
@@ -125,7 +128,8 @@ impl MotionStudy {
     fn steps(&self, text: &mut String) {
         let _ = writeln!(
             text,
-            "by time step, newton on {}: error of the time steps, %; energy, % of the largest kinetic; time of a simulated second, ms",
+            "by time step, newton on {}: error of the time steps, %; energy drift, % of the largest kinetic energy; \
+             time per simulated second, ms",
             mesh_text(self.reference.element, self.own_mesh)
         );
         let own = |m: &&MotionMeasurement| {
@@ -168,8 +172,8 @@ impl MotionStudy {
         if !pairs.is_empty() {
             let _ = writeln!(
                 text,
-                "auto beside newton, the same otherwise: {:.2} of the time and {:.2} of the factorizations (medians), \
-                 its error larger by {} % at most",
+                "auto compared with newton, otherwise the same setting: {:.2} of the time and {:.2} of the \
+                 factorizations (medians), its error larger by {} % at most",
                 median(|p| p.0),
                 median(|p| p.1),
                 number(round(worst))
@@ -181,14 +185,14 @@ impl MotionStudy {
     fn unfinished(&self, text: &mut String) {
         for (ending, words) in [
             (Ending::Stopped, "stopped before the end"),
-            (Ending::CutShort, "cut short, as the end is too many steps away"),
+            (Ending::CutShort, "stopped early: too many steps to the end"),
         ] {
             let those: Vec<_> = self.measurements.iter().filter(|m| m.ending == ending).collect();
             if !those.is_empty() {
                 let _ = writeln!(text, "{} {words}:", count(those.len() as u64, "setting"));
             }
             for m in those {
-                let _ = writeln!(text, "    {} ({:.0} ms a simulated second)", m.setting, m.milliseconds);
+                let _ = writeln!(text, "    {} ({:.0} ms per simulated second)", m.setting, m.milliseconds);
             }
         }
         let gained = self.measurements.iter().filter(|m| m.energy() == EnergyBehaviour::Gained);
@@ -206,7 +210,7 @@ impl MotionStudy {
 }
 
 fn time_text(m: &MotionMeasurement) -> String {
-    format!("{:.3} ms a simulated second, {}", m.milliseconds, m.setting)
+    format!("{:.3} ms per simulated second, {}", m.milliseconds, m.setting)
 }
 
 /// Rounds to six decimal places, for sums of steps.
