@@ -149,7 +149,7 @@ fn the_first_frame_is_as_the_others() {
         let mut harness = harness_of(lab);
         harness.run();
         harness.key_press(Key::L);
-        let names = ["force", "u_x of tip", "u_y of tip", "u_x of end", "u_y of end", "its reaction along it"];
+        let names = ["force", "u_x of tip", "u_y of tip", "u_x of end", "u_y of end", "reaction in this direction"];
         let start = Instant::now();
         let texts = loop {
             harness.step();

@@ -151,7 +151,7 @@ fn an_explosion_is_recorded_and_said() {
     let args = ["record", "swing", "--set", "dynamics.integrator=symplectic-euler", "--size", "64x64", "-o", "a.gif"];
     let output = warpbeam_in(folder.path(), &args);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    assert!(stderr(&output).contains("stopped: the body has gone"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("stopped: the body has moved"), "{}", stderr(&output));
     let frames = decode_gif(&folder.path().join("a.gif")).frames.len();
     assert!((1..51).contains(&frames), "{frames}");
 }

@@ -158,7 +158,7 @@ fn a_study_of_a_motion_says_how_far_it_is_and_keeps_what_is_measured() {
             assert!((last..=1.0).contains(&progress.fraction), "from {last} to {}", progress.fraction);
             last = progress.fraction;
             let now = progress.now.to_owned();
-            if now.ends_with("its settings' paths") {
+            if now.ends_with("paths of its settings") {
                 meshes.push(now);
                 meshes.dedup();
             } else {

@@ -195,7 +195,7 @@ pub(super) struct TuneArgs {
     /// Largest error, percent of the exact displacement of the first probe: 1% or 1. Without --time and --error: 1%.
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
     pub error: Option<f64>,
-    /// Longest time of a solve from rest: 0.5ms, 200us, 2s, or milliseconds.
+    /// Longest time of a solve from rest: 0.5ms, 200us, 2s, or a number of milliseconds.
     #[arg(long, value_name = "TIME", value_parser = parse_milliseconds)]
     pub time: Option<f64>,
     /// Save the scene with the chosen setting.

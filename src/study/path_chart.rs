@@ -46,7 +46,7 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Figure {
         (Ordinate::Reaction(i), _) => Some(Quantity::new(format!("reaction of {}", support_text(scene, *i)), "N")),
         (Ordinate::Probe(_), _) => Some(Quantity::new(format!("displacement of {name}"), "m")),
         // The other axis names the support.
-        (_, Some(_)) => Some(Quantity::new("its reaction along it", if along.turns { "N m" } else { "N" })),
+        (_, Some(_)) => Some(Quantity::new("reaction in this direction", if along.turns { "N m" } else { "N" })),
         _ => None,
     });
     let point = |s: &PathState| {

@@ -186,7 +186,7 @@ impl Study {
         let ends = |mesh: &MeshChoice, _: &CalledOff| MeshEnds::find(scene, mesh);
         let ends = all_done(parallel::map(&meshes, ends, |done| {
             let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: "the ends of the methods" }, None)
+            observe(Progress { fraction, now: "end state of every method" }, None)
         }))?;
         let all: f64 = ends.iter().map(MeshEnds::expected_time).sum();
         // Start with the element that converges fastest, which is likely to give the best results.

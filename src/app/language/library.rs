@@ -63,6 +63,7 @@ const SENTENCES: &[&str] = &[
     "the factorization of %{n} unknowns does not fit in memory; use a coarser mesh",
     "%{key}: %{message}",
     // Settings, and texts in the placeholders above.
+    "%{mesh}, paths of its settings",
     "%{mesh}, %{method}, %{count}",
     "%{element} as meshed",
     "%{n} triangles",

@@ -271,7 +271,7 @@ impl MotionStudy {
         let own = |mesh: &MeshPlan, cancelled: &CalledOff| Meshed::new(studied, mesh, cancelled);
         let meshed = all_done(parallel::map(&meshes, own, |done| {
             let fraction = REFERENCE_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: "the meshes' own motions" })
+            observe(Progress { fraction, now: "the motion on every mesh" })
         }))?;
         let mut study = Self {
             scene: scene.name.clone(),
@@ -316,7 +316,7 @@ impl MotionStudy {
             let (setting, steps) = job.setting(mesh, meshed.critical, studied.samples);
             FirstRun::new(studied, meshed, setting, steps, cancelled)
         };
-        let now = format!("{}, its settings' paths", mesh_text(mesh.element, mesh.cells));
+        let now = format!("{}, paths of its settings", mesh_text(mesh.element, mesh.cells));
         let first = all_done(parallel::map(&mesh.jobs, first, |done| {
             say(FIRST_RUNS_SHARE * done as f64 / mesh.jobs.len() as f64, &now)
         }))?;
