@@ -40,13 +40,13 @@ pub enum TableError {
     #[error("expected edge = \"…\" or at = [x, y], got both")]
     TwoPlaces,
     /// The keys are not those of a force.
-    #[error("a load of kind \"force\" has the keys edge or at, and force = [fx, fy] in N")]
+    #[error("expected edge or at, and force = [fx, fy] in N, for a load of kind \"force\"")]
     Force,
     /// The keys are not those of gravity.
-    #[error("a load of kind \"gravity\" has the one key acceleration = [ax, ay] in m/s²")]
+    #[error("expected only acceleration = [ax, ay] in m/s² for a load of kind \"gravity\"")]
     Gravity,
     /// The keys are not those of a moment.
-    #[error("a load of kind \"moment\" has the keys edge, and moment in N m")]
+    #[error("expected edge, and moment in N m, for a load of kind \"moment\"")]
     Moment,
 }
 
