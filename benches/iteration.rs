@@ -15,7 +15,7 @@ use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use warpbeam::element::{ELEMENTS, Tangent};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::{Rotation, polar};
-use warpbeam::scene::{Scene, Source, open, registry};
+use warpbeam::scene::{LoadId, Scene, Source, open, registry};
 use warpbeam::simulation::Simulation;
 use warpbeam::solver::Factor;
 
@@ -77,7 +77,7 @@ fn edits(c: &mut Criterion) {
         c.bench_function(&format!("edit a force/{dofs}"), |b| {
             b.iter(|| {
                 force = -2001.0 - force;
-                simulation.set_force(0, [0.0, force]).unwrap();
+                simulation.set_force(LoadId::nth(0), [0.0, force]).unwrap();
             });
         });
         let mut material = scene.material;

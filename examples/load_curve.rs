@@ -6,8 +6,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 
-use warpbeam::exact_beam::ExactBeam;
-use warpbeam::{Material, MethodKind, Scene, Simulation, Status};
+use warpbeam::{LoadId, Material, MethodKind, Reference, Scene, Simulation, Status};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "curve.csv".to_owned());
@@ -35,14 +34,13 @@ pub fn curve() -> Result<String, Box<dyn Error>> {
         let alpha = 0.5 * f64::from(i);
         let mut deflections = Vec::new();
         for beam in [&mut linear, &mut newton] {
-            beam.set_force(0, [0.0, -alpha * unit])?;
+            beam.set_force(LoadId::nth(0), [0.0, -alpha * unit])?;
             if *beam.solve() != Status::Converged {
                 return Err(format!("α = {alpha}: {:?}", beam.status()).into());
             }
             deflections.push(-beam.probe("tip").unwrap_or_default().y / length);
         }
-        let exact = ExactBeam::of(newton.scene()).and_then(|reference| reference.tip_displacement());
-        let exact = exact.ok_or("no exact beam")?;
+        let exact = Reference::of(newton.scene())?.first().ok_or("no reference solution")?.displacement;
         writeln!(csv, "{alpha},{:.6},{:.6},{:.6}", deflections[0], deflections[1], -exact.y / length)?;
     }
     Ok(csv)

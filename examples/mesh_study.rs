@@ -6,8 +6,7 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use warpbeam::study::{Extent, Study};
-use warpbeam::{Scene, Simulation, Status};
+use warpbeam::{Extent, Scene, Simulation, Status, Study};
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("{}", report(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").as_path())?);
@@ -23,7 +22,7 @@ pub fn report(folder: &Path) -> Result<String, Box<dyn Error>> {
         return Err(format!("{:?}", bracket.status()).into());
     }
     let stable = bracket.certify().stable;
-    let largest = bracket.stress_result().largest.map_or(0.0, |largest| largest.von_mises);
+    let largest = bracket.nodal_stress().largest_von_mises().map_or(0.0, |(_, largest)| largest);
     let study = Study::new(&scene, Extent::Quick, &mut |_| ControlFlow::Continue(()))?;
     Ok(format!(
         "{}: stable {stable:?}, largest von Mises (Cauchy) stress {largest:.0} Pa, end moved by {:.4} m\n\n{}",

@@ -12,6 +12,8 @@ use thiserror::Error;
 use crate::simulation::{Field, Simulation};
 
 /// Reason why a result was not written.
+///
+/// See [`write`].
 #[derive(Debug, Error)]
 pub enum ExportError {
     /// The file name has an unknown extension.
@@ -33,6 +35,7 @@ pub enum ExportError {
 }
 
 /// A file format.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Equilibrium: one row per node with rest and current position and displacement. Motion: one row per time step
@@ -59,7 +62,16 @@ impl Format {
     }
 }
 
-/// Writes the current state in the format given by the file name.
+/// Writes the current state in the format given by the file name: a table (`.csv`) or the mesh with its fields (`.vtu`).
+///
+/// ```no_run
+/// use warpbeam::{Scene, Simulation, export};
+///
+/// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]))?;
+/// beam.solve();
+/// export::write(&beam, "beam.vtu".as_ref())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`ExportError`].
@@ -85,6 +97,7 @@ pub const MOST_STATES: u64 = 300;
 /// - `.pvd`: a collection of the files `NAME_0000.vtu`, `NAME_0001.vtu`, … in the same folder: the first and the last
 ///   state, and every n-th step, with the smallest n that gives at most [`MOST_STATES`] states.
 /// - `.vtu`: the last state.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct MotionWriter {
     path: PathBuf,
@@ -257,6 +270,7 @@ fn table_row(simulation: &Simulation) -> String {
 ///
 /// # Errors
 /// [`ExportError::Write`].
+#[doc(hidden)]
 pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
     std::fs::write(path, text).map_err(failed(path))
 }

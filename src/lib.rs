@@ -14,6 +14,23 @@
 //! # Ok::<(), warpbeam::SimulationError>(())
 //! ```
 //!
+//! # Contents
+//!
+//! - **Describe a scene**: [`Scene`] with its builder methods, or [`Scene::from_toml`]; [`Beam`], [`Material`],
+//!   [`Load`], [`Support`], [`Probe`], [`SolverSettings`], [`DynamicsSettings`]. A mesh of your own: [`Mesh::new`] and
+//!   [`Simulation::with_mesh`].
+//! - **Solve it**: [`Simulation::solve`], or [`Simulation::step`] in a loop of your own; [`Status`], [`Solution`],
+//!   [`Equilibrium`], [`Certificate`].
+//! - **Edit and grab**: [`Simulation::set_force`] and its companions take a [`LoadId`] or [`SupportId`];
+//!   [`Simulation::grab`] attaches a [`MouseSpring`] to a [`MaterialPoint`]; [`Simulation::change_scene`].
+//! - **Read results**: [`Simulation::positions`], [`Simulation::probe`], [`Simulation::point_state`], [`Field`],
+//!   [`NodalStress`]; files with [`export`].
+//! - **Move in time**: [`Scene::moving`], [`Motion`] with its [`Ledger`] of energies, [`Moment`].
+//! - **Measure errors and time**: [`Reference`], [`Study`], [`Timings`].
+//!
+//! Every vector is a [`nalgebra::Vector2<f64>`]; methods that take one also take `[f64; 2]`. All units are SI.
+//! `examples/` has a game loop, grabbing, a mesh of one's own, a motion with energies, a load curve and a study.
+//!
 //! # Notation
 //!
 //! | symbol | meaning | shape, unit |
@@ -38,11 +55,11 @@
 //!
 //! Data flows in one direction; each module imports only from modules to its left:
 //!
-//! [`format`], [`timings`], the scene's data (`model`), [`simd`] → [`rotation`], [`material`], [`displacement`] →
-//! [`element`] → [`mesh`] → [`solver`], [`scene`] (reads scenes and mesh files, and re-exports their data), [`state`] →
-//! [`assembly`] → [`method`] for equilibria, [`dynamics`] for motions, [`stress`] → [`simulation`] → [`exact_beam`] →
-//! [`study`] → `plot`, the drawings → the window → the commands. [`article`] needs elements and rotations only. The list
-//! `LAYERS` in `tests/architecture.rs` holds this order, and a test fails on imports against it.
+//! `format`, `timings`, the scene's data (`model`), `simd` → `rotation`, `material`, `displacement` → `element` → `mesh`
+//! → `solver`, `scene` (reads scenes and mesh files), `state` → `assembly` → `method` for equilibria, `dynamics` for
+//! motions, `stress` → `simulation` → `exact_beam` → `study` → `plot`, the drawings → the window → the commands.
+//! `article` needs elements and rotations only. The list `LAYERS` in `tests/architecture.rs` holds this order, and a test
+//! fails on imports against it.
 //!
 //! The feature `app` (on by default) adds the window and the commands; `cli` adds the commands alone, without a GPU or
 //! a window. Without both features the library depends on no GPU, window or command line crate.
@@ -56,43 +73,86 @@
 
 #![forbid(unsafe_code)]
 
+// The public face is the list of re-exports below. The modules are public for the program, tests and benchmarks of this
+// package only: they may change without notice.
 #[cfg(feature = "app")]
+#[doc(hidden)]
 pub mod app;
+#[doc(hidden)]
 pub mod article;
+#[doc(hidden)]
 pub mod assembly;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
+#[doc(hidden)]
 pub mod displacement;
+#[doc(hidden)]
 pub mod dynamics;
+#[doc(hidden)]
 pub mod element;
+#[doc(hidden)]
 pub mod exact_beam;
 pub mod export;
+#[doc(hidden)]
 pub mod format;
+#[doc(hidden)]
 pub mod material;
+#[doc(hidden)]
 pub mod mesh;
+#[doc(hidden)]
 pub mod method;
 mod model;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod picture;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod plot;
 #[cfg(feature = "app")]
+#[doc(hidden)]
 pub mod render;
+#[doc(hidden)]
 pub mod rotation;
+#[doc(hidden)]
 pub mod scene;
+#[doc(hidden)]
 pub mod simd;
+#[doc(hidden)]
 pub mod simulation;
+#[doc(hidden)]
 pub mod solver;
+#[doc(hidden)]
 pub mod state;
+#[doc(hidden)]
 pub mod stress;
+#[doc(hidden)]
 pub mod study;
+#[doc(hidden)]
 pub mod timings;
 
 pub use nalgebra;
 
-pub use mesh::Mesh;
+// Describe a scene.
+pub use mesh::{Mesh, MeshError, Segment};
 pub use scene::{
-    Axis, Beam, Diagonals, ElementKind, IntegratorKind, Load, Material, MethodKind, Place, Plane, Scene, SceneError,
+    Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
+    MeshFile, MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SolverSettings, Start, Support,
 };
-pub use simulation::{Field, Simulation, SimulationError, Solution, Status};
-pub use state::State;
+// Solve it.
+pub use method::Certificate;
+pub use simulation::{Equilibrium, Simulation, SimulationError, Solution, Status};
+// Edit and grab.
+pub use assembly::MouseSpring;
+pub use mesh::MaterialPoint;
+pub use scene::{LoadId, SupportId};
+pub use state::{State, StateError};
+// Read results.
+pub use simulation::{Deformation, Energy, Field, PointState, PointValues, ProbeResult, Reaction, SupportReaction};
+pub use stress::{NodalStress, PlaneTensor};
+// Move in time.
+pub use dynamics::{Counts, Ledger, Momentum, StopReason};
+pub use simulation::{Moment, Motion};
+// Measure errors and time.
+pub use study::{Extent, Measurement, Reference, Study, StudyError};
+pub use timings::Timings;

@@ -17,7 +17,7 @@ use warpbeam::simulation::SimulationError;
 use warpbeam::solver::{Factor, Symbolic};
 use warpbeam::state::StateError;
 use warpbeam::study::{LoadCurve, Reference};
-use warpbeam::{Axis, ElementKind, Material, Mesh, MethodKind, Scene, Simulation, Status};
+use warpbeam::{Axis, ElementKind, LoadId, Material, Mesh, MethodKind, Scene, Simulation, Status};
 
 const BAD: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300];
 
@@ -118,13 +118,13 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
 #[test]
 fn setters_name_what_is_not_there() {
     let mut scene = Scene::beam(4.0, 1.0).clamp("left").force("right", [0.0, -1.0]).moment("right", 2.0);
-    scene.set_force(0, [1.0, 2.0]).unwrap();
-    scene.set_moment(1, 3.0).unwrap();
+    scene.set_force(LoadId::nth(0), [1.0, 2.0]).unwrap();
+    scene.set_moment(LoadId::nth(1), 3.0).unwrap();
     for (error, words) in [
-        (scene.set_force(1, [0.0; 2]), "load.1: expected a load of kind \"force\", got a moment"),
-        (scene.set_force(2, [0.0; 2]), "load.2: expected a load of kind \"force\", got no load"),
-        (scene.set_moment(0, 0.0), "load.0: expected a load of kind \"moment\", got a force"),
-        (scene.set_gravity(usize::MAX, [0.0; 2]), "got no load"),
+        (scene.set_force(LoadId::nth(1), [0.0; 2]), "load.1: expected a load of kind \"force\", got a moment"),
+        (scene.set_force(LoadId::nth(2), [0.0; 2]), "load.2: expected a load of kind \"force\", got no load"),
+        (scene.set_moment(LoadId::nth(0), 0.0), "load.0: expected a load of kind \"moment\", got a force"),
+        (scene.set_gravity(LoadId::nth(usize::MAX), [0.0; 2]), "got no load"),
     ] {
         let text = error.unwrap_err().to_string();
         assert!(text.contains(words), "{text}");

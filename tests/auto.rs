@@ -32,7 +32,7 @@ fn distance(a: &Simulation, b: &Simulation) -> f64 {
 }
 
 fn report(simulation: &Simulation) -> AutoReport {
-    simulation.auto_report().unwrap()
+    simulation.equilibrium().unwrap().auto_report().unwrap()
 }
 
 /// For every scene and element and loads over five decades, the result is within the requested error of Newton's.

@@ -14,7 +14,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
-use warpbeam::scene::{Load, MethodKind, Scene, Source};
+use warpbeam::scene::{Load, LoadId, MethodKind, Scene, Source};
 use warpbeam::simulation::{Simulation, Status};
 
 /// Returns a window that solves everything in the background; every frame is checked.
@@ -89,7 +89,7 @@ fn agrees_with_solve(lab: &Lab) {
     let off = lab.simulation().displacement().iter().zip(fresh.displacement()).map(|(a, b)| (a - b).norm());
     let off = off.fold(0.0, f64::max);
     assert!(off < 1e-5 * largest, "{off} of {largest}");
-    assert!(lab.simulation().certificate().is_some(), "it is not certified");
+    assert!(lab.simulation().equilibrium().unwrap().certificate().is_some(), "it is not certified");
 }
 
 /// Action of a user.
@@ -257,7 +257,7 @@ fn a_dropped_lab_ends_its_worker() {
     lab.solve();
     let system = Arc::downgrade(lab.simulation().system());
     let mut heavy = lab.scene().clone();
-    heavy.set_force(0, [0.0, -1e4]).unwrap();
+    heavy.set_force(LoadId::nth(0), [0.0, -1e4]).unwrap();
     heavy.solver.tolerance = 1e-14;
     heavy.solver.max_iterations = 100_000;
     lab.set_scene(heavy).unwrap();

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use common::{scene, scene_with, solved};
 use warpbeam::method::METHODS;
-use warpbeam::{Load, Mesh, MethodKind, Scene, Simulation, Status};
+use warpbeam::{Load, LoadId, Mesh, MethodKind, Scene, Simulation, Status};
 
 fn largest(simulation: &Simulation) -> f64 {
     simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max)
@@ -53,7 +53,7 @@ fn edits_of_loads_keep_the_state() {
 fn equations_are_shared_and_kept() {
     let mut body = solved(&scene("cantilever"));
     let system = body.system().clone();
-    body.set_force(0, [0.0, -1200.0]).unwrap();
+    body.set_force(LoadId::nth(0), [0.0, -1200.0]).unwrap();
     let mut material = body.scene().material;
     material.young *= 2.0;
     body.set_material(material).unwrap();
@@ -84,7 +84,7 @@ fn a_mesh_of_ones_own_survives_every_edit() {
         let dofs = simulation.system().dofs();
         simulation.solve();
         let edits: [&dyn Fn(&mut Scene); 6] = [
-            &|s| s.set_force(0, [0.0, -1.0]).unwrap(),
+            &|s| s.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap(),
             &|s| s.material.young *= 2.0,
             &|s| s.solver.method = MethodKind::Warped,
             &|s| s.loads.push(Load::moment("right", 5.0)),
@@ -130,7 +130,7 @@ fn a_mesh_file_is_read_once() {
     folder.close().unwrap();
     for element in scene.elements() {
         simulation.change_scene(&scene.clone().with_element(element)).unwrap();
-        simulation.set_force(0, [0.0, 50.0]).unwrap();
+        simulation.set_force(LoadId::nth(0), [0.0, 50.0]).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged);
         assert!(largest(&simulation) > 0.0);
     }
@@ -141,11 +141,11 @@ fn a_mesh_file_is_read_once() {
 fn a_refused_edit_changes_nothing() {
     let mut simulation = solved(&scene("cantilever"));
     let (before, state) = (simulation.scene().clone(), simulation.state().clone());
-    assert!(simulation.set_force(0, [f64::NAN, 0.0]).is_err());
-    assert!(simulation.set_force(0, [0.0, 1e16]).is_err());
-    assert!(simulation.set_force(7, [0.0, 1.0]).is_err());
-    assert!(simulation.set_moment(0, 1.0).is_err());
-    assert!(simulation.set_gravity(0, [0.0, 1.0]).is_err());
+    assert!(simulation.set_force(LoadId::nth(0), [f64::NAN, 0.0]).is_err());
+    assert!(simulation.set_force(LoadId::nth(0), [0.0, 1e16]).is_err());
+    assert!(simulation.set_force(LoadId::nth(7), [0.0, 1.0]).is_err());
+    assert!(simulation.set_moment(LoadId::nth(0), 1.0).is_err());
+    assert!(simulation.set_gravity(LoadId::nth(0), [0.0, 1.0]).is_err());
     let mut material = before.material;
     material.poisson = 0.7;
     assert!(simulation.set_material(material).is_err());
@@ -163,7 +163,7 @@ fn a_snapshot_stays_and_can_go_on() {
         start.solver.method = method;
         let mut search = Simulation::new(&start).unwrap();
         search.step();
-        let mut copy = search.snapshot().unwrap();
+        let mut copy = search.equilibrium().unwrap().snapshot();
         let seen = search.solution();
         assert_eq!(copy.solution(), seen, "{}", method.id());
         assert_eq!((copy.scene(), copy.state()), (search.scene(), search.state()));
@@ -176,8 +176,8 @@ fn a_snapshot_stays_and_can_go_on() {
             copy.displacement().iter().zip(search.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(off <= 1e-6 * largest(&search), "{}: {off}", method.id());
         assert_eq!(copy.certify().stable, search.certify().stable, "{}", method.id());
-        copy.set_force(0, [0.0, -1.0]).unwrap();
+        copy.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap();
         assert_eq!(*copy.solve(), Status::Converged);
     }
-    assert!(Simulation::new(&scene("swing")).unwrap().snapshot().is_none(), "of a motion");
+    assert!(Simulation::new(&scene("swing")).unwrap().equilibrium().is_none(), "of a motion");
 }

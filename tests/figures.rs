@@ -160,7 +160,7 @@ fn the_first_frame_is_as_the_others() {
             assert!(start.elapsed() < Duration::from_secs(60), "{id}: no curve");
             std::thread::sleep(Duration::from_millis(5));
         };
-        let is_title = |text: &str| names.contains(&text) || text.starts_with("way of");
+        let is_title = |text: &str| names.contains(&text) || text.starts_with("displacement of");
         let titles: Vec<_> = texts.iter().filter(|(text, _, _)| is_title(text)).collect();
         assert_eq!(titles.len(), 2, "{id}: {titles:?}");
         let unit = |text: &str| [" m", " mm", " N", " kN"].iter().any(|unit| text.ends_with(unit));

@@ -365,7 +365,9 @@ fn beyond_rho_one_newton_gets_there() {
     let simulation = harness.state().simulation();
     assert_eq!((simulation.method(), simulation.status()), (MethodKind::Newton, &Status::Converged));
     assert_eq!(text(&harness, "converged after"), format!("converged after {} iterations", simulation.iterations()));
-    assert!(simulation.certificate().and_then(|c| c.fixed_point_rho).is_some_and(|rho| rho > 1.0));
+    assert!(
+        simulation.equilibrium().unwrap().certificate().and_then(|c| c.fixed_point_rho).is_some_and(|rho| rho > 1.0)
+    );
 }
 
 /// Card 8: each element's error is the one that `solve` reports.

@@ -11,7 +11,7 @@ use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
 use warpbeam::scene::{Analysis, Source};
-use warpbeam::{IntegratorKind, Scene, Simulation, State};
+use warpbeam::{IntegratorKind, LoadId, Scene, Simulation, State};
 
 fn harness_of(name: &str, scene: Scene) -> Harness<'static, Lab> {
     let simulation = Simulation::new(&scene).unwrap();
@@ -257,12 +257,12 @@ fn a_body_that_passes_through_itself_says_so_once() {
     clip.run_steps(100);
     assert!(clip.query_by_label(CROSSES).is_none(), "it goes away");
     let mut scene = clip.state().scene().clone();
-    scene.set_force(0, [0.0, -2.2]).unwrap();
+    scene.set_force(LoadId::nth(0), [0.0, -2.2]).unwrap();
     clip.state_mut().set_scene(scene).unwrap();
     assert!(!is_said(&mut clip, 100), "it was said before");
 
     let mut gentle = scene_of_clip();
-    gentle.set_force(0, [0.0, -1.0]).unwrap();
+    gentle.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap();
     assert!(!is_said(&mut harness_of("clip", gentle), 100));
     for id in common::scene_ids() {
         let moves = ids_of(Analysis::Dynamic).contains(&id);

@@ -71,7 +71,11 @@ fn the_second_part_of_the_displacement_lowers_the_floor() {
         for aspect in [1.0, 50.0] {
             let simulation = at_its_floor(Case { aspect, ..slender(element, MethodKind::Linear) });
             let (plain, residual) = (plain_floor(simulation.problem()), simulation.residual());
-            println!("{} {aspect}: {plain:e} {residual:e} {:?}", element.id(), simulation.residual_floor());
+            println!(
+                "{} {aspect}: {plain:e} {residual:e} {:?}",
+                element.id(),
+                simulation.equilibrium().unwrap().residual_floor()
+            );
             assert!(plain > 15.0 * residual, "{} {aspect}: {plain:e} {residual:e}", element.id());
         }
     }
@@ -393,7 +397,7 @@ fn working_precision_is_called_what_it_is() {
         for method in [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton] {
             let simulation = at_its_floor(slender(element, method));
             assert_eq!(*simulation.status(), Status::Converged, "{} {}", element.id(), method.id());
-            let floor = simulation.residual_floor().unwrap();
+            let floor = simulation.equilibrium().unwrap().residual_floor().unwrap();
             assert!(simulation.residual() <= floor && floor < 1e-6, "{floor:e} {:e}", simulation.residual());
         }
     }
@@ -413,12 +417,15 @@ fn working_precision_is_called_what_it_is() {
     // A solve that meets its tolerance reports no bound.
     let mut simulation =
         Simulation::new(&Case { slenderness: 5.0, ..slender(ElementKind::T6, MethodKind::Newton) }.scene()).unwrap();
-    assert_eq!((simulation.solve().clone(), simulation.residual_floor()), (Status::Converged, None));
+    assert_eq!(
+        (simulation.solve().clone(), simulation.equilibrium().unwrap().residual_floor()),
+        (Status::Converged, None)
+    );
     // A slow iteration that is stopped early is not at the limit of precision.
     let mut scene = Case { slenderness: 5.0, ..slender(ElementKind::T6, MethodKind::Newton) }.scene();
     scene.solver.max_iterations = 1;
     scene.scale_loads(1e6);
     let mut simulation = Simulation::new(&scene).unwrap();
     assert!(matches!(simulation.solve(), Status::NotConverged(Reason::IterationLimit(1))));
-    assert_eq!(simulation.residual_floor(), None);
+    assert_eq!(simulation.equilibrium().unwrap().residual_floor(), None);
 }

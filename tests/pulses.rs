@@ -38,7 +38,7 @@ fn a_pulse_leaves_its_impulse_whatever_the_step() {
             for steps in [0.01, 0.3, 0.6, 1.0, 1.7, 2.5, 6.3] {
                 for iterations in [1, 0] {
                     let pulse = Pulse { start: random.between(0.0, 2.0) * STEP, duration: steps * STEP };
-                    for load in [Load::force("right", force.into()), Load::gravity((force / 200.0).into())] {
+                    for load in [Load::force("right", force), Load::gravity(force / 200.0)] {
                         let scene = pushed(integrator.kind, method, iterations, load, pulse);
                         let mut simulation = Simulation::new(&scene).unwrap();
                         assert_eq!(*simulation.solve(), Status::Finished);

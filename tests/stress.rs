@@ -86,7 +86,7 @@ fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -
     let [a, b]: [[f64; 2]; 2] = [[4.0, 0.0], [0.0, 4.0]].map(|x| turn.apply(x.into()).into());
     scene = scene.support(a, &[Axis::X, Axis::Y]).support(b, &[Axis::Y]);
     for (x, force) in mesh.nodes().iter().zip(&forces).filter(|(_, f)| f.norm() > 0.0) {
-        scene.loads.push(Load::force([x.x, x.y], turn.apply(*force).into()));
+        scene.loads.push(Load::force([x.x, x.y], turn.apply(*force)));
     }
     solved_on(&scene, mesh)
 }
@@ -169,7 +169,7 @@ fn straight_beam(kind: ElementKind, moment: f64, force: f64, turn: Rotation) -> 
     let scene = Scene::beam(10.0, 1.0).with_element(kind).with_cells(along, across);
     let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap().moved(|x| turn.apply(x)).unwrap();
     let scene = scene.with_material(Material::new(YOUNG, 0.0)).clamp("left").moment("right", moment);
-    solved_on(&scene.force("right", turn.apply(Vector2::new(0.0, force)).into()), mesh)
+    solved_on(&scene.force("right", turn.apply(Vector2::new(0.0, force))), mesh)
 }
 
 /// σ_xx = −M y / I and τ = 3/2 Q/A (1 − 4 y²/h²) hold at every node away from the ends, including the faces.

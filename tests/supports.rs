@@ -10,7 +10,7 @@ use nalgebra::{Matrix2, Vector2};
 use warpbeam::assembly::Forces;
 use warpbeam::element::ELEMENTS;
 use warpbeam::method::{METHODS, Workspace, is_stable};
-use warpbeam::scene::{Axis, Support};
+use warpbeam::scene::{Axis, Support, SupportId};
 use warpbeam::study::LoadPath;
 use warpbeam::{Field, Material, Mesh, MethodKind, Scene, Simulation, SimulationError, Status};
 
@@ -87,7 +87,7 @@ fn a_rigid_turn_of_all_supports_leaves_no_stress() {
                     MethodKind::Linear => Vector2::new(-arm.y, arm.x) * angle,
                     _ => rotated(arm, angle) - arm,
                 };
-                scene.move_support(support, increment.into(), angle).unwrap();
+                scene.move_support(SupportId::nth(support), increment, angle).unwrap();
             }
             let simulation = solved(&scene);
             let solution = simulation.solution();
@@ -120,8 +120,8 @@ fn a_turned_clamp_is_another_direction_of_the_weight() {
         straight.solver.max_error_percent = 1e-6;
         let angle = 2.5;
         let weight = Vector2::new(0.0, -0.15);
-        let turned = solved(&straight.clone().gravity(weight.into()).moved([0.5, 0.25], angle));
-        let built = solved(&straight.gravity(rotated(weight, -angle).into()));
+        let turned = solved(&straight.clone().gravity(weight).moved([0.5, 0.25], angle));
+        let built = solved(&straight.gravity(rotated(weight, -angle)));
         let [turned, built] = [&turned, &built].map(|s| Vector2::new(10.0, 0.0) + s.probe("tip").unwrap());
         let expected = rotated(built, angle) + Vector2::new(0.5, 0.25);
         assert!((turned - expected).norm() < 1e-5, "{}: {turned} {expected}", method.id);
@@ -133,19 +133,19 @@ fn a_turned_clamp_is_another_direction_of_the_weight() {
 #[test]
 fn a_full_turn_of_one_end_is_not_rest() {
     let mut scene = Scene::beam(20.0, 0.5).with_cells(40, 1).clamp("left").clamp("right");
-    scene.move_support(1, [-8.0, 0.0], TAU).unwrap();
+    scene.move_support(SupportId::nth(1), [-8.0, 0.0], TAU).unwrap();
     scene.solver.max_iterations = 300;
     let mut simulation = solved(&scene);
     let turn =
         simulation.state().edge_angles()[simulation.system().edges().iter().position(|e| e.name() == "right").unwrap()];
     assert!((turn - TAU).abs() < 1e-9, "{turn}");
     assert!(simulation.solution().energy.elastic > 10.0, "{:?}", simulation.solution().energy);
-    assert!(simulation.load_stepping().1 > 6);
+    assert!(simulation.equilibrium().unwrap().load_steps() > 6);
     // Rotated back in small steps, it is at rest again.
     let mut angle = TAU;
     while angle > 0.0 {
         angle = f64::max(angle - 0.4, 0.0);
-        simulation.move_support(1, [-8.0 * angle / TAU, 0.0], angle).unwrap();
+        simulation.move_support(SupportId::nth(1), [-8.0 * angle / TAU, 0.0], angle).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged, "{angle}");
     }
     assert!(simulation.solution().energy.elastic < 1e-9);
@@ -159,7 +159,7 @@ fn reactions_balance_the_loads() {
         let scene = scene.moment("right", 20.0);
         // A moment on a supported edge goes into its support.
         let mut scene = scene;
-        scene.move_support(1, [-0.3, 0.8], 0.4).unwrap();
+        scene.move_support(SupportId::nth(1), [-0.3, 0.8], 0.4).unwrap();
         let simulation = solved(&scene);
         let solution = simulation.solution();
         let dead = simulation.problem().loads().dead_force();
@@ -194,7 +194,7 @@ fn displacement_control_agrees_with_force_control() {
         let driven = solved(&beam.clone().support(tip, &[Axis::Y]).moved([0.0, -4.0], 0.0));
         let reaction = driven.support_reactions()[1].force;
         assert!(reaction.x == 0.0 && reaction.y < -100.0, "{reaction}");
-        let loaded = solved(&beam.force(tip, reaction.into()));
+        let loaded = solved(&beam.force(tip, reaction));
         let [a, b] = [&driven, &loaded].map(|s| s.probe("tip").unwrap());
         assert!((a.y + 4.0).abs() < 1e-12);
         assert!((a - b).norm() < 1e-6, "{} {}: {a} {b}", element.id, method.id());
@@ -204,7 +204,7 @@ fn displacement_control_agrees_with_force_control() {
 /// Returns a scene in which the right end is displaced and rotated at once.
 fn wrenched(factor: f64) -> Scene {
     let mut scene = clamped();
-    scene.move_support(1, [-2.0 * factor, 3.0 * factor], 1.2 * factor).unwrap();
+    scene.move_support(SupportId::nth(1), [-2.0 * factor, 3.0 * factor], 1.2 * factor).unwrap();
     scene
 }
 
@@ -244,7 +244,7 @@ fn reactions_are_derivatives_of_the_energy() {
     const H: f64 = 1e-4;
     let at = |d: [f64; 2], turn: f64| {
         let mut scene = clamped();
-        scene.move_support(1, d, turn).unwrap();
+        scene.move_support(SupportId::nth(1), d, turn).unwrap();
         solved(&scene).solution()
     };
     let ([x, y], turn) = ([-0.4, 1.5], 0.7);
@@ -267,18 +267,18 @@ fn dragged_supports_end_where_they_would_from_rest() {
         let scene = |y: f64| {
             let mut scene = clamped().with_method(method.kind);
             scene.solver.max_error_percent = 1e-6;
-            scene.move_support(1, [0.0, y], 0.0).unwrap();
+            scene.move_support(SupportId::nth(1), [0.0, y], 0.0).unwrap();
             scene
         };
         let mut dragged = solved(&scene(0.0));
         for y in [0.1, 0.4, 0.9, 0.3] {
-            dragged.move_support(1, [0.0, y], 0.0).unwrap();
+            dragged.move_support(SupportId::nth(1), [0.0, y], 0.0).unwrap();
             assert_eq!(*dragged.solve(), Status::Converged, "{} {y}", method.id);
             let fresh = solved(&scene(y));
             let [a, b] = [&dragged, &fresh].map(|s| s.probe("middle").unwrap());
             assert!((a - b).norm() < 1e-6, "{} {y}: {a} {b}", method.id);
         }
-        dragged.move_support(1, [0.0, 0.0], 0.0).unwrap();
+        dragged.move_support(SupportId::nth(1), [0.0, 0.0], 0.0).unwrap();
         assert_eq!(*dragged.solve(), Status::Converged, "{}", method.id);
         assert!(dragged.displacement().iter().all(|u| u.norm() < 1e-7), "{}", method.id);
     }
@@ -423,6 +423,8 @@ fn what_supports_cannot_do_is_refused_with_its_reason() {
     // A point inside an element selects a node.
     assert!(Simulation::new(&beam().force([10.4, 0.0], [0.0, 1.0])).is_ok());
     assert!(Simulation::new(&Scene::beam(10.0, 1.0)).is_err());
-    assert!(beam().move_support(3, [0.0, 0.0], 0.0).is_err_and(|e| e.to_string().contains("support.3")));
+    assert!(
+        beam().move_support(SupportId::nth(3), [0.0, 0.0], 0.0).is_err_and(|e| e.to_string().contains("support.3"))
+    );
     assert!(!Support::new("left", BOTH).moves());
 }

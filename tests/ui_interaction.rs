@@ -11,7 +11,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
-use warpbeam::scene::{Analysis, Load, MethodKind, Source};
+use warpbeam::scene::{Analysis, Load, LoadId, MethodKind, Source};
 use warpbeam::simulation::{Field, PointValues, Simulation, Status};
 
 /// Time between frames, s; short enough for double clicks within a few frames.
@@ -240,7 +240,7 @@ fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
     let mut harness = harness("article");
     // An arrow along the beam, whose tip is over the body.
     let mut inwards = harness.state().scene().clone();
-    inwards.set_force(0, [-2_000.0, 0.0]).unwrap();
+    inwards.set_force(LoadId::nth(0), [-2_000.0, 0.0]).unwrap();
     harness.state_mut().set_scene(inwards).unwrap();
     harness.run();
     let (camera, tip) = (harness.state().camera(), tip(harness.state()));
@@ -672,7 +672,7 @@ fn the_view_does_not_follow_what_has_not_converged() {
     let mut harness = harness("cantilever");
     let camera = harness.state().camera();
     let mut heavy = harness.state().scene().clone();
-    heavy.set_force(0, [0.0, -9000.0]).unwrap();
+    heavy.set_force(LoadId::nth(0), [0.0, -9000.0]).unwrap();
     harness.state_mut().set_scene(heavy).unwrap();
     for _ in 0..20 {
         harness.step();
@@ -694,7 +694,7 @@ fn the_view_eases_to_where_it_would_jump() {
     let before = eases.state().camera();
     for harness in [&mut jumps, &mut eases] {
         let mut light = harness.state().scene().clone();
-        light.set_force(0, [0.0, -30.0]).unwrap();
+        light.set_force(LoadId::nth(0), [0.0, -30.0]).unwrap();
         harness.state_mut().set_scene(light).unwrap();
     }
     jumps.run();
@@ -1162,7 +1162,7 @@ fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
             let mut scene = harness.state().scene().clone();
             let factor = 1.0 + (most - 1.0) * part;
             scene.solver.method = MethodKind::Newton;
-            scene.set_force(0, force(harness.state()).map(|v| v * factor)).unwrap();
+            scene.set_force(LoadId::nth(0), force(harness.state()).map(|v| v * factor)).unwrap();
             harness.state_mut().set_scene(scene).unwrap();
             harness.run();
             let view = harness.state().view_rect();

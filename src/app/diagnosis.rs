@@ -6,7 +6,7 @@ use crate::app::widgets::palette::Palette;
 use crate::format::{self, engineering, number, two_digits};
 use crate::method::{floor_text, rho_text};
 use crate::scene::{ElementKind, MethodKind, Scene, limits};
-use crate::simulation::{Simulation, Status, probe_results};
+use crate::simulation::{Equilibrium, Simulation, Status, probe_results};
 use crate::study::Reference;
 
 /// Definition of the energy drift, as shown in the user interface.
@@ -149,14 +149,14 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
 
 /// Returns `true` if a converged equilibrium is stable; `None` if it has no certificate.
 pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
-    let certificate = simulation.certificate()?;
+    let certificate = simulation.equilibrium()?.certificate()?;
     certificate.stable.filter(|_| *simulation.status() == Status::Converged)
 }
 
 /// Returns the spectral radius ρ of the warped iteration: at the equilibrium if that is known, else at the current
 /// state.
 pub(crate) fn rho(input: &Readout<'_>) -> Option<f64> {
-    input.equilibrium_rho.or_else(|| input.simulation.certificate()?.fixed_point_rho)
+    input.equilibrium_rho.or_else(|| input.simulation.equilibrium()?.certificate()?.fixed_point_rho)
 }
 
 /// Explains the status, one sentence per entry.
@@ -177,9 +177,10 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         return lines;
     }
     let residual = number(two_digits(simulation.residual()));
+    let floor = simulation.equilibrium().and_then(Equilibrium::residual_floor);
     let asked = number(input.scene.solver.tolerance);
     lines.push(match simulation.status() {
-        Status::Converged if simulation.residual_floor().is_some() => {
+        Status::Converged if floor.is_some() => {
             fill!("The forces balance to machine precision: the relative residual is %{residual}.", residual = residual)
         }
         Status::Converged => {
@@ -195,7 +196,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
             asked = asked
         ),
     });
-    if let Some(floor) = simulation.residual_floor() {
+    if let Some(floor) = floor {
         lines.push(sentence(&translated(&floor_text(floor, input.scene.solver.tolerance))));
     }
     let stable = stability(simulation).map(|stable| match stable {

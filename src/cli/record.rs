@@ -41,7 +41,7 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
 
 fn text(progress: &RecordProgress) -> String {
     match (progress.phase, progress.pictures) {
-        (Phase::Looking, _) => format!("looking ahead, {:.3} s", progress.time),
+        (Phase::Looking, _) => format!("finding the view, {:.3} s", progress.time),
         (Phase::Drawing, pictures) => format!("drawing, {} of {pictures} pictures", progress.drawn),
     }
 }

@@ -248,7 +248,7 @@ fn energy_text(motion: &MotionResult) -> String {
         let _ = writeln!(text, "{} of a step that did not converge", count(counts.halvings, "halving"));
     }
     if let Some(critical) = critical_step {
-        let _ = writeln!(text, "the longest stable step about rest is {}", engineering(*critical, "s"));
+        let _ = writeln!(text, "the critical time step near rest is {}", engineering(*critical, "s"));
     }
     text
 }

@@ -35,7 +35,7 @@ pub struct MethodEntry {
     /// One sentence for lists and tooltips.
     pub about: &'static str,
     /// Constructor.
-    pub start: fn() -> Box<dyn Method>,
+    pub(crate) start: fn() -> Box<dyn Method>,
     /// How time steps are solved; `None` for a method that does not serve motions.
     pub motion: Option<MotionMethod>,
 }
@@ -140,8 +140,9 @@ pub enum Restart {
     NewUnknowns,
 }
 
-/// Solution method. It may have internal state; a new one starts at rest.
-pub trait Method: std::fmt::Debug + Send + Sync {
+/// Solution method. It may have internal state; a new one starts at rest. The trait is not public: methods are listed in
+/// [`METHODS`].
+pub(crate) trait Method: std::fmt::Debug + Send + Sync {
     /// Clones without cached factors; they are rebuilt on first use.
     fn copy(&self) -> Box<dyn Method>;
 

@@ -1,10 +1,47 @@
 //! Builders and setters of scenes. Values are checked when the scene is simulated.
 
+use nalgebra::Vector2;
+
 use super::{
     Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
     MethodKind, Place, Plane, Probe, Pulse, Scene, SolverSettings, Start, Support,
 };
 use crate::format::engineering;
+
+/// Handle of a load in a scene. It is valid as long as no load before it is removed.
+///
+/// ```
+/// use warpbeam::{LoadId, Scene};
+///
+/// let mut scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]);
+/// let force = scene.load_on("right");
+/// assert_eq!(force, Some(LoadId::nth(0))); // `load.0` of a scene file
+/// # Ok::<(), warpbeam::SimulationError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LoadId(usize);
+
+impl LoadId {
+    /// Returns the handle of a load by its position among the loads, counted from 0: `load.0`, `load.1`, … of a scene
+    /// file.
+    #[must_use]
+    pub const fn nth(position: usize) -> Self {
+        Self(position)
+    }
+}
+
+/// Handle of a support in a scene. It is valid as long as no support before it is removed. See [`LoadId`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SupportId(usize);
+
+impl SupportId {
+    /// Returns the handle of a support by its position among the supports, counted from 0: `support.0`, `support.1`, …
+    /// of a scene file.
+    #[must_use]
+    pub const fn nth(position: usize) -> Self {
+        Self(position)
+    }
+}
 
 impl Scene {
     /// Returns a scene without a mesh, for [`crate::Simulation::with_mesh`].
@@ -136,16 +173,16 @@ impl Scene {
     /// # Ok::<(), warpbeam::SimulationError>(())
     /// ```
     #[must_use]
-    pub fn moved(mut self, displacement: [f64; 2], turn: f64) -> Self {
+    pub fn moved(mut self, displacement: impl Into<Vector2<f64>>, rotation: f64) -> Self {
         if let Some(support) = self.supports.last_mut() {
-            (support.displacement, support.turn) = (displacement, turn);
+            (support.displacement, support.turn) = (displacement.into().into(), rotation);
         }
         self
     }
 
     /// Adds a dead force, N.
     #[must_use]
-    pub fn force(mut self, place: impl Into<Place>, force: [f64; 2]) -> Self {
+    pub fn force(mut self, place: impl Into<Place>, force: impl Into<Vector2<f64>>) -> Self {
         self.loads.push(Load::force(place, force));
         self
     }
@@ -159,7 +196,7 @@ impl Scene {
 
     /// Adds the weight under this acceleration, m/s².
     #[must_use]
-    pub fn gravity(mut self, acceleration: [f64; 2]) -> Self {
+    pub fn gravity(mut self, acceleration: impl Into<Vector2<f64>>) -> Self {
         self.loads.push(Load::gravity(acceleration));
         self
     }
@@ -199,8 +236,8 @@ impl Scene {
 
     /// Sets the initial velocity, m/s, and angular velocity about the centre of mass, rad/s.
     #[must_use]
-    pub fn starting(mut self, velocity: [f64; 2], spin: f64) -> Self {
-        self.start = Start { velocity, spin };
+    pub fn starting(mut self, velocity: impl Into<Vector2<f64>>, spin: f64) -> Self {
+        self.start = Start { velocity: velocity.into().into(), spin };
         self
     }
 
@@ -211,53 +248,89 @@ impl Scene {
         self
     }
 
-    /// Sets the components of a force, N; `load` counts the loads from 0.
+    /// Adds a load and returns its handle.
+    pub fn add_load(&mut self, load: Load) -> LoadId {
+        self.loads.push(load);
+        LoadId(self.loads.len() - 1)
+    }
+
+    /// Adds a support and returns its handle.
+    pub fn add_support(&mut self, support: Support) -> SupportId {
+        self.supports.push(support);
+        SupportId(self.supports.len() - 1)
+    }
+
+    /// Returns the handle of the first force or moment on an edge, by name, or on a point.
+    #[must_use]
+    pub fn load_on(&self, place: impl Into<Place>) -> Option<LoadId> {
+        let place = place.into();
+        let is_there = |load: &Load| match load {
+            Load::Force { place: own, .. } => *own == place,
+            Load::Moment { edge, .. } => matches!(&place, Place::Edge(name) if name == edge),
+            Load::Gravity { .. } => false,
+        };
+        self.loads.iter().position(is_there).map(LoadId)
+    }
+
+    /// Returns the handle of the first support of an edge, by name, or of a point.
+    #[must_use]
+    pub fn support_on(&self, place: impl Into<Place>) -> Option<SupportId> {
+        let place = place.into();
+        self.supports.iter().position(|support| support.place == place).map(SupportId)
+    }
+
+    /// Sets the components of a force, N.
     ///
     /// # Errors
     /// If there is no such force. Values out of range are rejected when the scene is simulated.
-    pub fn set_force(&mut self, load: usize, new: [f64; 2]) -> Result<(), Invalid> {
-        match self.loads.get_mut(load) {
-            Some(Load::Force { force, .. }) => *force = new,
+    pub fn set_force(&mut self, load: LoadId, new: impl Into<Vector2<f64>>) -> Result<(), Invalid> {
+        match self.loads.get_mut(load.0) {
+            Some(Load::Force { force, .. }) => *force = new.into().into(),
             other => return Err(no_such_load(load, "force", other.as_deref())),
         }
         Ok(())
     }
 
-    /// Sets a moment, N m; `load` counts the loads from 0.
+    /// Sets a moment, N m.
     ///
     /// # Errors
     /// Same errors as [`Self::set_force`].
-    pub fn set_moment(&mut self, load: usize, new: f64) -> Result<(), Invalid> {
-        match self.loads.get_mut(load) {
+    pub fn set_moment(&mut self, load: LoadId, new: f64) -> Result<(), Invalid> {
+        match self.loads.get_mut(load.0) {
             Some(Load::Moment { moment, .. }) => *moment = new,
             other => return Err(no_such_load(load, "moment", other.as_deref())),
         }
         Ok(())
     }
 
-    /// Sets the acceleration of a weight, m/s²; `load` counts the loads from 0.
+    /// Sets the acceleration of a weight, m/s².
     ///
     /// # Errors
     /// Same errors as [`Self::set_force`].
-    pub fn set_gravity(&mut self, load: usize, new: [f64; 2]) -> Result<(), Invalid> {
-        match self.loads.get_mut(load) {
-            Some(Load::Gravity { acceleration, .. }) => *acceleration = new,
+    pub fn set_gravity(&mut self, load: LoadId, new: impl Into<Vector2<f64>>) -> Result<(), Invalid> {
+        match self.loads.get_mut(load.0) {
+            Some(Load::Gravity { acceleration, .. }) => *acceleration = new.into().into(),
             other => return Err(no_such_load(load, "gravity", other.as_deref())),
         }
         Ok(())
     }
 
-    /// Sets the prescribed displacement, m, and rotation, rad, of a support; `support` counts the supports from 0.
+    /// Sets the prescribed displacement, m, and rotation, rad, of a support.
     ///
     /// # Errors
     /// If there is no such support. Values out of range are rejected when the scene is simulated.
-    pub fn move_support(&mut self, support: usize, displacement: [f64; 2], turn: f64) -> Result<(), Invalid> {
+    pub fn move_support(
+        &mut self,
+        support: SupportId,
+        displacement: impl Into<Vector2<f64>>,
+        rotation: f64,
+    ) -> Result<(), Invalid> {
         let count = self.supports.len();
-        let Some(moved) = self.supports.get_mut(support) else {
+        let Some(moved) = self.supports.get_mut(support.0) else {
             let message = format!("expected one of {}, counted from 0", crate::format::count(count as u64, "support"));
-            return Err(Invalid::new(format!("support.{support}"), message));
+            return Err(Invalid::new(format!("support.{}", support.0), message));
         };
-        (moved.displacement, moved.turn) = (displacement, turn);
+        (moved.displacement, moved.turn) = (displacement.into().into(), rotation);
         Ok(())
     }
 
@@ -331,7 +404,7 @@ impl Scene {
     }
 }
 
-fn no_such_load(load: usize, expected: &str, got: Option<&Load>) -> Invalid {
+fn no_such_load(LoadId(load): LoadId, expected: &str, got: Option<&Load>) -> Invalid {
     let got = match got {
         Some(Load::Force { .. }) => "a force",
         Some(Load::Moment { .. }) => "a moment",

@@ -13,6 +13,7 @@ pub mod limits;
 mod place;
 pub mod units;
 
+pub use build::{LoadId, SupportId};
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
 pub use error::{Invalid, ReadError, SceneError};
 pub use limits::OutOfRange;

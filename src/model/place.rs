@@ -1,5 +1,6 @@
 //! Places on a body; supports, loads and probes at them.
 
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -26,6 +27,12 @@ impl From<&str> for Place {
 impl From<[f64; 2]> for Place {
     fn from(at: [f64; 2]) -> Self {
         Self::At(at)
+    }
+}
+
+impl From<Vector2<f64>> for Place {
+    fn from(at: Vector2<f64>) -> Self {
+        Self::At(at.into())
     }
 }
 
@@ -210,8 +217,8 @@ pub enum Load {
 impl Load {
     /// Returns a dead force, N, at a place.
     #[must_use]
-    pub fn force(place: impl Into<Place>, force: [f64; 2]) -> Self {
-        Self::Force { place: place.into(), force, pulse: None }
+    pub fn force(place: impl Into<Place>, force: impl Into<Vector2<f64>>) -> Self {
+        Self::Force { place: place.into(), force: force.into().into(), pulse: None }
     }
 
     /// Returns a moment, N m, on an edge.
@@ -222,8 +229,8 @@ impl Load {
 
     /// Returns the weight of the body under an acceleration, m/s².
     #[must_use]
-    pub fn gravity(acceleration: [f64; 2]) -> Self {
-        Self::Gravity { acceleration, pulse: None }
+    pub fn gravity(acceleration: impl Into<Vector2<f64>>) -> Self {
+        Self::Gravity { acceleration: acceleration.into().into(), pulse: None }
     }
 
     /// Returns the load's pulse; `None` for a constant load.

@@ -12,7 +12,7 @@ mod rust_code;
 pub use open::{STANDARD_INPUT, Source, locate, open};
 
 pub use crate::model::{
-    Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
-    MeshFile, MethodKind, OutOfRange, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError, SolverSettings, Start,
-    Support, TableError, limits, units,
+    Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, LoadId,
+    Material, MeshFile, MethodKind, OutOfRange, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError,
+    SolverSettings, Start, Support, SupportId, TableError, limits, units,
 };

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
-use self::motion::start_of;
+use self::motion::{TimeStepping, start_of};
 use self::search::Search;
 use crate::assembly::{
     Change, Forces, Kinematics, Mass, Matrix, MouseSpring, NodalProbe, Problem, System, SystemError,
@@ -15,7 +15,7 @@ use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
 use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
-use crate::scene::{Analysis, Invalid, Material, MethodKind, Scene};
+use crate::scene::{Analysis, Invalid, LoadId, Material, MethodKind, Scene, SupportId};
 use crate::solver::{Factor, SolverError};
 use crate::state::{State, StateError, is_finite};
 use crate::stress::{ErrorEstimate, NodalStress, RecoveryScratch};
@@ -27,8 +27,10 @@ mod point;
 mod results;
 mod search;
 mod status;
+mod view;
 
-pub use self::motion::{Moment, Motion};
+pub use self::motion::Moment;
+pub use self::view::{Equilibrium, Motion};
 pub use field::Field;
 pub use point::{PointState, PointValues};
 pub use results::{
@@ -69,7 +71,7 @@ pub struct Solution {
     pub load_steps: u32,
     /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖.
     pub residual: f64,
-    /// Bound of the residual's rounding error; see [`Simulation::residual_floor`].
+    /// Bound of the residual's rounding error; see [`Equilibrium::residual_floor`].
     pub residual_floor: Option<f64>,
     /// Stability and ρ, if [`Simulation::certify`] has been called.
     pub certificate: Option<Certificate>,
@@ -117,9 +119,10 @@ pub struct MotionResult {
 /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
 /// let mut beam = Simulation::new(&scene)?;
 /// assert_eq!(*beam.solve(), Status::Converged);
-/// beam.set_force(0, [0.0, -1000.0])?; // the next solve goes on from here
+/// let force = beam.scene().load_on("right").ok_or("no load")?;
+/// beam.set_force(force, [0.0, -1000.0])?; // the next solve continues from here
 /// assert_eq!(*beam.solve(), Status::Converged);
-/// # Ok::<(), warpbeam::SimulationError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct Simulation {
@@ -151,14 +154,14 @@ enum Process {
     /// Search for an equilibrium; a step is an iteration.
     Search(Box<Search>),
     /// Motion; a step is a time step.
-    Motion(Box<Motion>),
+    Motion(Box<TimeStepping>),
 }
 
 impl Process {
     fn new(body: &mut Body) -> Result<Self, SimulationError> {
         Ok(match body.scene.analysis {
             Analysis::Static => Self::Search(Box::new(Search::new(body)?)),
-            Analysis::Dynamic => Self::Motion(Box::new(Motion::new(body)?)),
+            Analysis::Dynamic => Self::Motion(Box::new(TimeStepping::new(body)?)),
         })
     }
 }
@@ -194,6 +197,7 @@ impl Simulation {
     ///
     /// # Errors
     /// Same errors as [`Self::new`].
+    #[doc(hidden)]
     pub fn with_system(scene: &Scene, system: Arc<System>) -> Result<Self, SimulationError> {
         Self::with_problem(scene.clone(), Problem::new(scene, system)?)
     }
@@ -250,20 +254,6 @@ impl Simulation {
         self.body.state.copy_from(state);
         self.begin();
         Ok(())
-    }
-
-    /// Returns a snapshot of the motion for [`Self::return_to`]; `None` for a search.
-    #[must_use]
-    pub fn moment(&self) -> Option<Moment> {
-        self.motion().map(|motion| Moment::of(motion, &self.body))
-    }
-
-    /// Overwrites an earlier snapshot of the same body with the current motion, without allocating. Does nothing for a
-    /// search.
-    pub fn copy_moment(&self, moment: &mut Moment) {
-        if let Process::Motion(motion) = &self.process {
-            moment.copy_from(motion, &self.body);
-        }
     }
 
     /// Returns to an earlier moment of this motion. Steps from there are the same as after [`Self::restore`]; energies
@@ -327,46 +317,42 @@ impl Simulation {
         Ok(())
     }
 
-    /// Returns a snapshot of a search, for display while a background solve runs. It has no work memory; that is
-    /// allocated if the snapshot is itself continued. `None` for a motion.
-    #[must_use]
-    pub fn snapshot(&self) -> Option<Self> {
-        let process = Process::Search(Box::new(self.search()?.copy()));
-        Some(Self { body: self.body.clone(), process, status: self.status.clone() })
-    }
-
-    /// Sets the components of a force, N; `load` counts the scene's loads from 0.
+    /// Sets the components of a force, N.
     ///
     /// # Errors
     /// If there is no such force, or its size is out of range. Nothing is changed then.
-    pub fn set_force(&mut self, load: usize, force: [f64; 2]) -> Result<(), SimulationError> {
+    pub fn set_force(&mut self, load: LoadId, force: impl Into<Vector2<f64>>) -> Result<(), SimulationError> {
         self.edit(|scene| scene.set_force(load, force))
     }
 
-    /// Sets a moment, N m; `load` counts the scene's loads from 0.
+    /// Sets a moment, N m.
     ///
     /// # Errors
     /// If there is no such moment, or its size is out of range. Nothing is changed then.
-    pub fn set_moment(&mut self, load: usize, moment: f64) -> Result<(), SimulationError> {
+    pub fn set_moment(&mut self, load: LoadId, moment: f64) -> Result<(), SimulationError> {
         self.edit(|scene| scene.set_moment(load, moment))
     }
 
-    /// Sets the acceleration of a weight, m/s²; `load` counts the scene's loads from 0.
+    /// Sets the acceleration of a weight, m/s².
     ///
     /// # Errors
     /// If there is no such gravity, or its size is out of range. Nothing is changed then.
-    pub fn set_gravity(&mut self, load: usize, acceleration: [f64; 2]) -> Result<(), SimulationError> {
+    pub fn set_gravity(&mut self, load: LoadId, acceleration: impl Into<Vector2<f64>>) -> Result<(), SimulationError> {
         self.edit(|scene| scene.set_gravity(load, acceleration))
     }
 
-    /// Sets the prescribed displacement, m, and rotation about its middle, rad, of a support; `support` counts the
-    /// scene's supports from 0.
+    /// Sets the prescribed displacement, m, and rotation about its middle, rad, of a support.
     ///
     /// # Errors
     /// If there is no such support, it does not fix the direction of the motion, or a number is out of range. Nothing
     /// is changed then.
-    pub fn move_support(&mut self, support: usize, displacement: [f64; 2], turn: f64) -> Result<(), SimulationError> {
-        self.edit(|scene| scene.move_support(support, displacement, turn))
+    pub fn move_support(
+        &mut self,
+        support: SupportId,
+        displacement: impl Into<Vector2<f64>>,
+        rotation: f64,
+    ) -> Result<(), SimulationError> {
+        self.edit(|scene| scene.move_support(support, displacement, rotation))
     }
 
     /// Sets the material.
@@ -413,7 +399,8 @@ impl Simulation {
     ///
     /// # Errors
     /// [`StateError::NotFinite`]; the target is then unchanged.
-    pub fn pull_to(&mut self, position: Vector2<f64>) -> Result<(), StateError> {
+    pub fn pull_to(&mut self, position: impl Into<Vector2<f64>>) -> Result<(), StateError> {
+        let position = position.into();
         if !is_finite(&[position]) {
             return Err(StateError::NotFinite { what: "position of the pointer" });
         }
@@ -508,26 +495,21 @@ impl Simulation {
         }
     }
 
-    /// Returns the result of [`Self::certify`], if it was called since the last change.
-    #[must_use]
-    pub fn certificate(&self) -> Option<Certificate> {
-        self.search().and_then(Search::certificate)
-    }
-
     /// Returns the results of the current state.
     #[must_use]
     pub fn solution(&self) -> Solution {
         let Body { problem, state, .. } = &self.body;
-        let (load_factor, load_steps) = self.load_stepping();
+        let search = self.equilibrium();
+        let load_factor = search.map_or(1.0, Equilibrium::load_factor);
         let supports = self.support_reactions();
         Solution {
             dofs: problem.system().dofs(),
             status: self.status.clone(),
             iterations: self.iterations(),
-            load_steps,
+            load_steps: search.map_or(1, Equilibrium::load_steps),
             residual: self.residual(),
-            residual_floor: self.residual_floor(),
-            certificate: self.certificate(),
+            residual_floor: search.and_then(Equilibrium::residual_floor),
+            certificate: search.and_then(Equilibrium::certificate),
             deformation: Deformation::of(problem, state),
             probes: probe_results(problem, state),
             energy: Energy {
@@ -541,14 +523,14 @@ impl Simulation {
             reaction: reaction(problem, state, self.forces()),
             supports,
             time: *self.timings(),
-            auto: self.auto_report(),
+            auto: search.and_then(Equilibrium::auto_report),
             motion: self.motion().map(|motion| MotionResult {
                 time: state.time,
                 counts: motion.counts(),
                 ledger: *motion.ledger(),
-                momentum: motion.momentum(&self.body),
+                momentum: motion.momentum(),
                 critical_step: motion.critical_step(),
-                auto: motion.auto_report(&self.body.scene),
+                auto: motion.auto_report(),
             }),
         }
     }
@@ -560,6 +542,7 @@ impl Simulation {
     }
 
     /// Returns the estimate of the mesh's error in the current state; see [`ErrorEstimate`].
+    #[doc(hidden)]
     #[must_use]
     pub fn mesh_error(&self, nodal: &NodalStress) -> ErrorEstimate {
         ErrorEstimate::of(&self.body.problem, &self.body.state, nodal)
@@ -577,10 +560,12 @@ impl Simulation {
 
     /// Computes a field recovered at the nodes, for display; for a field of elements, the values of [`Self::field`].
     /// `nodal` and `scratch` are work memory, reused between states.
+    #[doc(hidden)]
     pub fn smooth_field(
         &self,
         field: Field,
-        (nodal, scratch): (&mut Option<NodalStress>, &mut RecoveryScratch),
+        nodal: &mut Option<NodalStress>,
+        scratch: &mut RecoveryScratch,
         values: &mut Vec<Option<f64>>,
     ) {
         if field.is_of_elements() {
@@ -593,6 +578,7 @@ impl Simulation {
     }
 
     /// Returns the stress results: the largest stress, those at the probes, and the estimated mesh error.
+    #[doc(hidden)]
     #[must_use]
     pub fn stress_result(&self) -> StressResult {
         let nodal = self.nodal_stress();
@@ -622,12 +608,14 @@ impl Simulation {
     }
 
     /// Returns the equations of the scene with numerical values.
+    #[doc(hidden)]
     #[must_use]
     pub fn problem(&self) -> &Problem {
         &self.body.problem
     }
 
     /// Returns the equations without numerical values: mesh, elements, sparsity.
+    #[doc(hidden)]
     #[must_use]
     pub fn system(&self) -> &Arc<System> {
         self.body.problem.system()
@@ -639,19 +627,21 @@ impl Simulation {
         self.body.scene.solver.method
     }
 
-    fn search(&self) -> Option<&Search> {
+    /// Returns the results of the search; `None` for a motion.
+    #[must_use]
+    pub fn equilibrium(&self) -> Option<Equilibrium<'_>> {
         match &self.process {
-            Process::Search(search) => Some(search),
+            Process::Search(search) => Some(Equilibrium { search, body: &self.body }),
             Process::Motion(_) => None,
         }
     }
 
-    /// Returns the motion; `None` for a search for an equilibrium.
+    /// Returns the results of the motion; `None` for a search for an equilibrium.
     #[must_use]
-    pub fn motion(&self) -> Option<&Motion> {
+    pub fn motion(&self) -> Option<Motion<'_>> {
         match &self.process {
             Process::Search(_) => None,
-            Process::Motion(motion) => Some(motion),
+            Process::Motion(steps) => Some(Motion { steps, body: &self.body }),
         }
     }
 
@@ -675,19 +665,25 @@ impl Simulation {
         &self.body.state.displacement
     }
 
+    /// Returns the current position x of every node, m.
+    pub fn positions(&self) -> impl ExactSizeIterator<Item = Vector2<f64>> + '_ {
+        self.mesh().nodes().iter().zip(self.displacement()).map(|(x, u)| x + u)
+    }
+
+    /// Returns the mesh: nodes at rest, elements and named edges.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        self.system().mesh()
+    }
+
     /// Returns the forces of the current state; for a motion, those of its last stage.
+    #[doc(hidden)]
     #[must_use]
     pub fn forces(&self) -> &Forces {
         match &self.process {
             Process::Search(search) => search.forces(),
             Process::Motion(motion) => motion.forces(),
         }
-    }
-
-    /// Returns the load factor currently applied and the number of load steps so far.
-    #[must_use]
-    pub fn load_stepping(&self) -> (f64, u32) {
-        self.search().map_or((1.0, 1), Search::load_stepping)
     }
 
     /// Returns the reaction of each support, in the scene's order.
@@ -705,12 +701,6 @@ impl Simulation {
             Process::Search(search) => search.kinematics() == Kinematics::Linear,
             Process::Motion(motion) => motion.is_linear(),
         }
-    }
-
-    /// Returns the decisions of `auto`; `None` for other methods.
-    #[must_use]
-    pub fn auto_report(&self) -> Option<AutoReport> {
-        self.search().and_then(Search::auto_report)
     }
 
     /// Returns the status of the simulation.
@@ -736,20 +726,6 @@ impl Simulation {
             Process::Search(search) => search.residual(),
             Process::Motion(motion) => motion.residual(),
         }
-    }
-
-    /// Returns the bound of the rounding error of [`Self::residual`], if a solve has ended within this bound but above
-    /// the tolerance. `None` if the tolerance is met, or the solve has not converged.
-    #[must_use]
-    pub fn residual_floor(&self) -> Option<f64> {
-        let floor = self.search().and_then(Search::residual_floor);
-        floor.filter(|_| self.residual() > self.body.scene.solver.tolerance)
-    }
-
-    /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.
-    #[must_use]
-    pub fn step_ratio(&self) -> Option<f64> {
-        self.search().and_then(Search::step_ratio)
     }
 
     /// Returns the computing time of the last iteration or time step, by stage.

@@ -28,9 +28,9 @@ const UNSEEN: f64 = 1e-6;
 const QUIET: f64 = 0.5;
 const QUIET_STEPS: u32 = 10;
 
-/// Body in motion.
+/// Time stepping of a body: work memory, energies and counts.
 #[derive(Debug)]
-pub struct Motion {
+pub(super) struct TimeStepping {
     mass: Mass,
     memory: Memory,
     start: State,
@@ -64,15 +64,15 @@ pub struct Moment {
 }
 
 impl Moment {
-    pub(super) fn of(motion: &Motion, Body { state, scene, .. }: &Body) -> Self {
-        let Motion { ledger, counts, report, linear, .. } = motion;
+    pub(super) fn of(motion: &TimeStepping, Body { state, scene, .. }: &Body) -> Self {
+        let TimeStepping { ledger, counts, report, linear, .. } = motion;
         let (ledger, counts, report) = (*ledger, *counts, *report);
         let (is_linear, method) = (linear.is_in_use(), scene.solver.method);
         Self { state: state.clone(), ledger, counts, report, is_linear, method }
     }
 
     /// Copies another moment of the same body without allocating.
-    pub(super) fn copy_from(&mut self, motion: &Motion, Body { state, scene, .. }: &Body) {
+    pub(super) fn copy_from(&mut self, motion: &TimeStepping, Body { state, scene, .. }: &Body) {
         self.state.copy_from(state);
         self.method = scene.solver.method;
         (self.ledger, self.counts, self.report) = (motion.ledger, motion.counts, motion.report);
@@ -98,7 +98,7 @@ impl Moment {
     }
 }
 
-impl Motion {
+impl TimeStepping {
     /// Returns a motion that starts from the current state and velocity.
     pub(super) fn new(body: &mut Body) -> Result<Self, SimulationError> {
         let Body { scene, problem, state } = body;
@@ -432,28 +432,20 @@ impl Motion {
         Momentum::of(&body.problem, &self.mass, inertia(&body.scene), &body.state)
     }
 
-    /// Returns the energy ledger since the start.
-    #[must_use]
-    pub fn ledger(&self) -> &Ledger {
+    pub(super) fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// Returns the numbers of steps and solves since the start.
-    #[must_use]
-    pub fn counts(&self) -> Counts {
+    pub(super) fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Returns the decisions of `auto` since the start; `None` for other methods and for explicit integrators.
-    #[must_use]
-    pub fn auto_report(&self, scene: &Scene) -> Option<MotionReport> {
+    pub(super) fn auto_report(&self, scene: &Scene) -> Option<MotionReport> {
         let Counts { solves, factorizations, .. } = self.counts;
         self.decides(scene).then_some(MotionReport { solves, factorizations, ..self.report })
     }
 
-    /// Returns the longest stable step about rest, s; `None` for integrators without such a limit.
-    #[must_use]
-    pub fn critical_step(&self) -> Option<f64> {
+    pub(super) fn critical_step(&self) -> Option<f64> {
         self.critical_step
     }
 }

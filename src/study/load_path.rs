@@ -506,10 +506,11 @@ impl Follower {
             return false;
         }
         let gets_on = |s: &Simulation| *s.status() == Status::Running && s.iterations() < FEW_ITERATIONS;
-        while gets_on(&self.simulation) && self.simulation.load_stepping().1 == 1 {
+        let is_in_one_step = |s: &Simulation| s.equilibrium().is_some_and(|search| search.load_steps() == 1);
+        while gets_on(&self.simulation) && is_in_one_step(&self.simulation) {
             self.simulation.step();
         }
-        *self.simulation.status() == Status::Converged && self.simulation.load_stepping().1 == 1
+        *self.simulation.status() == Status::Converged && is_in_one_step(&self.simulation)
     }
 
     /// Returns the largest distance of a node from its position in the last accepted state, m.

@@ -283,10 +283,9 @@ fn is_unstable(simulation: &Simulation) -> bool {
     if *simulation.status() != Status::Converged || simulation.is_linear() {
         return false;
     }
-    let certificate = simulation.certificate().or_else(|| {
-        let is_small = simulation.system().dofs() <= MOST_CERTIFIED;
-        Some(simulation.snapshot().filter(|_| is_small)?.certify())
-    });
+    let Some(search) = simulation.equilibrium() else { return false };
+    let is_small = simulation.system().dofs() <= MOST_CERTIFIED;
+    let certificate = search.certificate().or_else(|| is_small.then(|| search.snapshot().certify()));
     certificate.and_then(|c| c.stable) == Some(false)
 }
 

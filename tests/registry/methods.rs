@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use warpbeam::method::METHODS;
 use warpbeam::simulation::{Field, Simulation};
 use warpbeam::study::color;
-use warpbeam::{MethodKind, Scene, Status};
+use warpbeam::{LoadId, MethodKind, Scene, Status};
 
 use crate::common::{scene, scene_with};
 use crate::{Test, suite};
@@ -162,20 +162,20 @@ fn a_hopeless_load_leaves_no_trace(method: MethodKind) {
         for force in [1e12, -1e12, 1e15] {
             let mut simulation = ended(&with_method(scene(id), method));
             for (horizontal, vertical) in [(0.0, force), (force, 0.0)] {
-                simulation.set_force(0, [horizontal, vertical]).unwrap();
+                simulation.set_force(LoadId::nth(0), [horizontal, vertical]).unwrap();
                 simulation.solve();
                 assert!(simulation.state().is_finite());
             }
-            simulation.set_force(0, [0.0, 0.0]).unwrap();
+            simulation.set_force(LoadId::nth(0), [0.0, 0.0]).unwrap();
             assert_eq!(*simulation.solve(), Status::Converged, "{id}: {force:e}, then nothing");
             let left = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
             assert!(left < 1e-9, "{id}: {force:e}, then nothing: {left:e} m are left");
-            simulation.set_force(0, [0.0, force]).unwrap();
+            simulation.set_force(LoadId::nth(0), [0.0, force]).unwrap();
             simulation.solve();
-            simulation.set_force(0, [0.0, -100.0]).unwrap();
+            simulation.set_force(LoadId::nth(0), [0.0, -100.0]).unwrap();
             assert_eq!(*simulation.solve(), Status::Converged, "{id}: {force:e}, then 100 N");
             let mut small = with_method(scene(id), method);
-            small.set_force(0, [0.0, -100.0]).unwrap();
+            small.set_force(LoadId::nth(0), [0.0, -100.0]).unwrap();
             let close = if method == MethodKind::Auto { 1e-2 } else { 1e-6 };
             assert!(difference(&simulation, &ended(&small)) < close, "{id}: {force:e}, then 100 N");
         }
@@ -185,10 +185,10 @@ fn a_hopeless_load_leaves_no_trace(method: MethodKind) {
 fn a_restored_state_goes_on_as_the_saved_one(method: MethodKind) {
     let mut simulation = ended(&with_method(scene("cantilever"), method));
     let saved = simulation.state().clone();
-    simulation.set_force(0, [0.0, 500.0]).unwrap();
+    simulation.set_force(LoadId::nth(0), [0.0, 500.0]).unwrap();
     simulation.solve();
     assert_ne!(*simulation.state(), saved);
-    simulation.set_force(0, [0.0, -1000.0]).unwrap();
+    simulation.set_force(LoadId::nth(0), [0.0, -1000.0]).unwrap();
     simulation.restore(&saved).unwrap();
     // Linear theory solves again; for the other methods the restored state is already converged.
     if method != MethodKind::Linear && method != MethodKind::Auto {

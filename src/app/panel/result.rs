@@ -74,7 +74,8 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
         &fill!("Relative error of the first probe's displacement, compared with %{reference}", reference = reference),
     );
     quality_rows(row, input);
-    let (factor, steps) = simulation.load_stepping();
+    let Some(search) = simulation.equilibrium() else { return };
+    let (factor, steps) = (search.load_factor(), search.load_steps());
     let part = format!("{:.3} %", 100.0 * factor);
     let text = fill!("%{n}, at %{part} of the load", n = steps, part = part);
     row("Load steps", text, "Number of steps in which the load is applied");
@@ -89,7 +90,7 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
         row("Energy", engineering(energy(problem, state, factor).elastic, "J"), "Elastic energy stored in the body");
         supports::reaction_rows(row, simulation);
     }
-    if let Some(auto) = simulation.auto_report() {
+    if let Some(auto) = search.auto_report() {
         let [solves, factors] = [count(auto.solves, "back substitution"), count(auto.factorizations, "factorization")];
         let error = match auto.estimated_error {
             error if error.is_finite() => Some(fill!("Estimated error %{error}", error = percent(100.0 * error))),
@@ -142,7 +143,7 @@ fn frame_row(row: &mut Row<'_>, input: &Readout<'_>, what: &str) {
 }
 
 /// Shows time, real-time factor, steps and energy of a motion.
-fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
+fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: Motion<'_>) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
     let clock = &input.playback.clock;
     let factor = match clock.factor() {
@@ -159,7 +160,7 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: &Motion) {
         joined([counts.steps.to_string(), count(counts.solves, "solve")].into_iter().chain(halvings)),
         "Time steps since the start; a step that does not converge is halved",
     );
-    if let Some(auto) = motion.auto_report(input.scene) {
+    if let Some(auto) = motion.auto_report() {
         let factors = count(auto.factorizations, "factorization");
         let linear = count(auto.linear_steps, "step");
         let tip = fill!(

@@ -132,7 +132,7 @@ fn value_range(simulation: &Simulation, field: Field, raw: bool) -> [f64; 2] {
     if raw {
         simulation.field(field, &mut values);
     } else {
-        simulation.smooth_field(field, (&mut None, &mut RecoveryScratch::default()), &mut values);
+        simulation.smooth_field(field, &mut None, &mut RecoveryScratch::default(), &mut values);
     }
     range_of(&values)
 }

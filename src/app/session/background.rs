@@ -12,7 +12,7 @@ use crate::app::task::solve::{
 };
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Scene};
-use crate::simulation::{Simulation, Status};
+use crate::simulation::{Equilibrium, Simulation, Status};
 
 /// Background work of a session.
 #[derive(Debug)]
@@ -390,8 +390,8 @@ impl Session {
         if let Some(returned) = self.background.returned.take() {
             return Some(Model::Existing(Box::new(returned)));
         }
-        let simulation = self.simulation.snapshot()?;
-        let linear = self.linear.as_ref().and_then(Simulation::snapshot);
+        let simulation = self.simulation.equilibrium()?.snapshot();
+        let linear = self.linear.as_ref().and_then(Simulation::equilibrium).map(Equilibrium::snapshot);
         let simulation = std::mem::replace(&mut self.simulation, simulation);
         let linear = std::mem::replace(&mut self.linear, linear);
         Some(Model::Existing(Box::new((Bodies { simulation, linear }, None))))

@@ -29,7 +29,7 @@ use crate::app::task::solve::{Start, note_residual, solve_linear};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{IntegratorKind, Load, Scene, SceneError, Source};
-use crate::simulation::{Simulation, SimulationError, Status};
+use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::timings::Timings;
 
@@ -561,7 +561,7 @@ impl Session {
         if matches!(simulation.status(), Status::Converged | Status::Accepted)
             && !self.converged.as_ref().is_some_and(is_kept)
         {
-            self.converged = simulation.snapshot();
+            self.converged = simulation.equilibrium().map(Equilibrium::snapshot);
         }
     }
 

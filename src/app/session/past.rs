@@ -34,14 +34,15 @@ impl Past {
                 return;
             }
         }
+        let Some(motion) = simulation.motion() else { return };
         let recorded = match self.spare.pop() {
             Some(mut moment) => {
-                simulation.copy_moment(&mut moment);
-                Some(moment)
+                motion.copy_moment(&mut moment);
+                moment
             }
-            None => simulation.moment(),
+            None => motion.moment(),
         };
-        self.moments.extend(recorded);
+        self.moments.push_back(recorded);
     }
 
     /// Removes all moments.
@@ -98,7 +99,7 @@ mod tests {
     fn after(steps: u32, most: usize) -> (Past, usize) {
         let scene = Scene::beam(2.0, 1.0).clamp("left").moving(IntegratorKind::TrBdf2, 1.0);
         let mut simulation = Simulation::new(&scene).unwrap();
-        let bytes = simulation.moment().unwrap().bytes();
+        let bytes = simulation.motion().unwrap().moment().bytes();
         let mut past = Past::default();
         for _ in 0..steps {
             past.record(&simulation, most * bytes);

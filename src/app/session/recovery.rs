@@ -184,7 +184,7 @@ fn remove(file: &Path) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene;
+    use crate::scene::{self, LoadId};
 
     impl Unsaved {
         fn parts(&self) -> Option<(&Document, &Scene)> {
@@ -196,7 +196,7 @@ mod tests {
         let source = Source { name: name.into(), assignments: Vec::new() };
         let original = scene::open(&source).unwrap();
         let mut scene = original.clone();
-        scene.set_force(0, [0.0, force]).unwrap();
+        scene.set_force(LoadId::nth(0), [0.0, force]).unwrap();
         Unsaved { document: Document::new(source, original), scene }
     }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use nalgebra::Vector2;
 
 use super::*;
-use crate::scene::MethodKind;
+use crate::scene::{LoadId, MethodKind};
 
 fn cantilever(force: f64) -> Scene {
     Scene::beam(4.0, 1.0).with_cells(8, 2).clamp("left").force("right", [0.0, force]).probe("tip", "right")
@@ -19,7 +19,7 @@ fn session(scene: Scene) -> Session {
 
 fn with_force(session: &Session, force: f64) -> Edit {
     let mut scene = session.scene().clone();
-    scene.set_force(0, [0.0, force]).unwrap();
+    scene.set_force(LoadId::nth(0), [0.0, force]).unwrap();
     Edit::Scene("Force", Box::new(scene))
 }
 

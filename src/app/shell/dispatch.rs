@@ -12,7 +12,7 @@ use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
 use crate::app::viewport::pointer::Interaction;
-use crate::scene::Source;
+use crate::scene::{LoadId, Source};
 use crate::study::Extent;
 
 impl Lab {
@@ -239,9 +239,9 @@ impl Lab {
             let (label, set) = match pull {
                 Pull::Force(magnitude, degrees) => {
                     self.desk.panel.keep_force_direction(degrees);
-                    ("Force", scene.set_force(load, vector(magnitude, degrees)))
+                    ("Force", scene.set_force(LoadId::nth(load), vector(magnitude, degrees)))
                 }
-                Pull::Moment(moment) => ("Moment", scene.set_moment(load, moment)),
+                Pull::Moment(moment) => ("Moment", scene.set_moment(LoadId::nth(load), moment)),
             };
             // An arrow always belongs to an existing load.
             if set.is_ok() && scene != *self.scene() {

@@ -128,7 +128,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
     entries
 }
 
-fn of_motion(palette: &Palette, input: &Readout<'_>, motion: &Motion) -> [Number; 3] {
+fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Number; 3] {
     let cost = input.timings.total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
     let clock = &input.playback.clock;

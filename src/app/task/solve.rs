@@ -8,7 +8,7 @@ use crate::app::task::thread::{Reporter, Task, Update};
 use crate::assembly::System;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, MethodKind, Scene, SolverSettings};
-use crate::simulation::{Simulation, SimulationError, Status};
+use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 
 /// Largest number of unknowns of a model that is meshed and solved between two frames.
@@ -33,8 +33,8 @@ impl Bodies {
     /// Returns copies of both simulations to display while the solve goes on; `None` for a motion, which has no
     /// search.
     fn snapshot(&self) -> Option<Self> {
-        let linear = self.linear.as_ref().and_then(Simulation::snapshot);
-        Some(Self { simulation: self.simulation.snapshot()?, linear })
+        let linear = self.linear.as_ref().and_then(Simulation::equilibrium).map(Equilibrium::snapshot);
+        Some(Self { simulation: self.simulation.equilibrium()?.snapshot(), linear })
     }
 }
 

@@ -147,7 +147,7 @@ impl BodyMesh {
             let nodes = &self.nodes;
             drawing.points(&|n| nodes[n as usize], &mut self.points);
             if view.is_smooth() {
-                simulation.smooth_field(view.field, (&mut self.nodal, &mut self.scratch), &mut self.known);
+                simulation.smooth_field(view.field, &mut self.nodal, &mut self.scratch, &mut self.known);
                 drawing.nodal_values(&self.known, view.field.period(), &mut self.values);
             } else {
                 simulation.field(view.field, &mut self.known);

@@ -204,5 +204,5 @@ fn departure_text(departures: &[Departure]) -> Option<(String, String)> {
     let percent = each(&|departure| departure.percent.to_string());
     let angles = each(&|departure| format!("{:.1}°", departure.at.rotation.to_degrees().abs()));
     (!departures.is_empty())
-        .then(|| (fill!("linear off by %{percent} %", percent = percent), fill!("at %{angles}", angles = angles)))
+        .then(|| (fill!("linear error %{percent} %", percent = percent), fill!("at %{angles}", angles = angles)))
 }

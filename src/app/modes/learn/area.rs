@@ -9,7 +9,7 @@ use crate::app::language::{fill, percent, spaced, tr};
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
 use crate::scene::limits::Limit;
-use crate::scene::{Load, MethodKind};
+use crate::scene::{Load, LoadId, MethodKind};
 
 /// Largest force of the slider, N.
 pub(super) const LARGEST_FORCE: f64 = 4e4;
@@ -67,7 +67,7 @@ fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Ac
     let size = x.hypot(y);
     if let Some(new) = field.show(ui, &mut learn.messages, size) {
         let mut scene = Box::new(scene.clone());
-        if scene.set_force(number, [x, y].map(|v| v * new / size)).is_ok() {
+        if scene.set_force(LoadId::nth(number), [x, y].map(|v| v * new / size)).is_ok() {
             actions.push(Action::Edit("Force", scene));
         }
     }

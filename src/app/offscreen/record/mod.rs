@@ -426,7 +426,7 @@ fn bounds(simulation: &Simulation) -> (Vector2<f64>, Vector2<f64>) {
 
 /// Computes the values of the default field at the nodes.
 fn smooth_values(simulation: &Simulation, values: &mut Vec<Option<f64>>) {
-    simulation.smooth_field(Field::default(), (&mut None, &mut RecoveryScratch::default()), values);
+    simulation.smooth_field(Field::default(), &mut None, &mut RecoveryScratch::default(), values);
 }
 
 #[cfg(test)]

@@ -1,0 +1,137 @@
+//! Views of a simulation: results that only a search for an equilibrium has, and results that only a motion has.
+
+use super::motion::{Moment, TimeStepping};
+use super::search::Search;
+use super::{Body, Simulation};
+use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
+use crate::method::{AutoReport, Certificate};
+
+/// Results of a search for an equilibrium; returned by [`Simulation::equilibrium`].
+///
+/// ```
+/// use warpbeam::{Scene, Simulation};
+///
+/// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]);
+/// let mut beam = Simulation::new(&scene)?;
+/// beam.solve();
+/// let search = beam.equilibrium().ok_or("a static scene has a search")?;
+/// assert_eq!((search.load_factor(), search.load_steps()), (1.0, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Equilibrium<'a> {
+    pub(super) search: &'a Search,
+    pub(super) body: &'a Body,
+}
+
+impl Equilibrium<'_> {
+    /// Returns the result of [`Simulation::certify`], if it was called since the last change.
+    #[must_use]
+    pub fn certificate(self) -> Option<Certificate> {
+        self.search.certificate()
+    }
+
+    /// Returns the decisions of `auto`; `None` for other methods.
+    #[must_use]
+    pub fn auto_report(self) -> Option<AutoReport> {
+        self.search.auto_report()
+    }
+
+    /// Returns the load factor currently applied, relative to the full loads.
+    #[must_use]
+    pub fn load_factor(self) -> f64 {
+        self.search.load_stepping().0
+    }
+
+    /// Returns the number of load steps so far; 1 if the loads were applied at once.
+    #[must_use]
+    pub fn load_steps(self) -> u32 {
+        self.search.load_stepping().1
+    }
+
+    /// Returns the bound of the rounding error of [`Simulation::residual`], if a solve has ended within this bound but
+    /// above the tolerance. `None` if the tolerance is met, or the solve has not converged.
+    #[must_use]
+    pub fn residual_floor(self) -> Option<f64> {
+        self.search.residual_floor().filter(|_| self.search.residual() > self.body.scene.solver.tolerance)
+    }
+
+    /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.
+    #[must_use]
+    pub fn step_ratio(self) -> Option<f64> {
+        self.search.step_ratio()
+    }
+
+    /// Returns a copy of the search, for display while the search itself goes on elsewhere. It has no work memory; that
+    /// is allocated if the copy is itself continued.
+    #[must_use]
+    pub fn snapshot(self) -> Simulation {
+        let search = self.search.copy();
+        let status = search.status().clone();
+        Simulation { body: self.body.clone(), process: super::Process::Search(Box::new(search)), status }
+    }
+}
+
+/// Results of a motion; returned by [`Simulation::motion`].
+///
+/// ```
+/// use warpbeam::{IntegratorKind, Scene, Simulation};
+///
+/// let scene = Scene::beam(1.0, 0.1).clamp("left").gravity([0.0, -9.81]);
+/// let mut swing = Simulation::new(&scene.moving(IntegratorKind::EnergyMomentum, 1.0 / 60.0))?;
+/// for _ in 0..30 {
+///     swing.step();
+/// }
+/// let motion = swing.motion().ok_or("a dynamic scene has a motion")?;
+/// assert_eq!(motion.counts().steps, 30);
+/// assert!(motion.ledger().drift().abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<'a> {
+    pub(super) steps: &'a TimeStepping,
+    pub(super) body: &'a Body,
+}
+
+impl<'a> Motion<'a> {
+    /// Returns the energy ledger since the start.
+    #[must_use]
+    pub fn ledger(self) -> &'a Ledger {
+        self.steps.ledger()
+    }
+
+    /// Returns the numbers of steps and solves since the start.
+    #[must_use]
+    pub fn counts(self) -> Counts {
+        self.steps.counts()
+    }
+
+    /// Returns the momentum and angular momentum.
+    #[must_use]
+    pub fn momentum(self) -> Momentum {
+        self.steps.momentum(self.body)
+    }
+
+    /// Returns the decisions of `auto` since the start; `None` for other methods and for explicit integrators.
+    #[must_use]
+    pub fn auto_report(self) -> Option<MotionReport> {
+        self.steps.auto_report(&self.body.scene)
+    }
+
+    /// Returns the longest stable step about rest, s; `None` for integrators without such a limit.
+    #[must_use]
+    pub fn critical_step(self) -> Option<f64> {
+        self.steps.critical_step()
+    }
+
+    /// Returns a snapshot for [`Simulation::return_to`].
+    #[must_use]
+    pub fn moment(self) -> Moment {
+        Moment::of(self.steps, self.body)
+    }
+
+    /// Overwrites an earlier snapshot of the same body with the current motion, without allocating.
+    pub fn copy_moment(self, moment: &mut Moment) {
+        moment.copy_from(self.steps, self.body);
+    }
+}
