@@ -8,6 +8,8 @@ use crate::rotation::Rotation;
 
 /// Positions, rotations and velocities of a body. Slices over nodes are in the mesh's order; rotations are in the order
 /// of the elements.
+///
+/// See [`Simulation::restore`](crate::Simulation::restore) for an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// u = x − X of every node, m.
@@ -28,6 +30,8 @@ pub struct State {
 }
 
 /// Error for a state or a nodal vector that does not fit a body.
+///
+/// See [`Simulation::restore`](crate::Simulation::restore) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum StateError {
@@ -97,6 +101,7 @@ impl State {
     }
 
     /// Returns the displacement including the digits that [`Self::displacement`] rounds away, m.
+    #[doc(hidden)]
     #[must_use]
     pub fn compensated(&self) -> Compensated<'_> {
         self.displacement.view()

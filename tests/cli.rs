@@ -44,7 +44,7 @@ fn every_command_has_help() {
     for words in ["NAME_v_x", "dissipated", "about 300", "Ctrl-C"] {
         assert!(stdout(&warpbeam(&["solve", "--help"])).contains(words), "{words}");
     }
-    for words in ["hundredths of a second", "ffmpeg", "Ctrl-C"] {
+    for words in ["frame times", "ffmpeg", "Ctrl-C"] {
         assert!(stdout(&warpbeam(&["record", "--help"])).contains(words), "{words}");
     }
     assert!(stdout(&warpbeam(&["--version"])).starts_with("warpbeam "));

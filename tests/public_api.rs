@@ -41,59 +41,50 @@ fn implemented(line: &str) -> Option<&str> {
 /// Reads the types named `names` from the library's sources.
 fn faces(names: &BTreeSet<String>) -> BTreeMap<String, Face> {
     let mut faces: BTreeMap<String, Face> = names.iter().map(|name| (name.clone(), Face::default())).collect();
-    let outside = ["src/app", "src/cli", "src/plot", "src/render", "src/bin"];
-    for file in rust_files("src".as_ref()).iter().filter(|file| !outside.iter().any(|folder| file.starts_with(folder)))
-    {
-        let text = std::fs::read_to_string(file).unwrap();
-        let (mut doc, mut hidden) = (String::new(), false);
-        let (mut of, mut in_enum, mut signature) = (None::<String>, false, String::new());
-        for line in text.lines() {
-            if line == "}" {
-                of = None;
-            } else if line.starts_with("pub struct ") || line.starts_with("pub enum ") {
-                let name = line.split(|c: char| !c.is_alphanumeric()).nth(2).unwrap().to_owned();
-                in_enum = line.starts_with("pub enum ");
-                if let Some(face) = faces.get_mut(&name) {
-                    face.doc = std::mem::take(&mut doc);
-                    of = line.ends_with('{').then_some(name);
-                }
-            } else if let Some(name) = implemented(line) {
-                (of, in_enum) = (faces.contains_key(name).then(|| name.to_owned()), false);
-            } else if let Some(face) = of.as_ref().and_then(|name| faces.get_mut(name)) {
-                let item = line.strip_prefix("    ").unwrap_or(line);
-                let begins = item.starts_with("pub ") || in_enum && item.starts_with(char::is_uppercase);
-                if begins || !signature.is_empty() {
-                    signature = format!("{signature} {}", item.trim()).trim().to_owned();
-                    if signature.ends_with(['{', ';', ','])
-                        && (in_enum || !signature.ends_with("(&self,") && is_whole(&signature))
-                    {
-                        let whole = signature
-                            .trim_end_matches(['{', ';', ',', ' ', '('])
-                            .replace(",)", ")")
-                            .replace("( ", "(")
-                            .replace(", )", ")");
-                        if !hidden {
-                            face.items.insert(whole);
-                        }
-                        (signature, hidden) = (String::new(), false);
-                    }
-                }
+    let outside = ["src/app", "src/cli", "src/plot", "src/render", "src/bin", "src/study/extremes"];
+    for file in rust_files("src".as_ref()) {
+        if outside.iter().any(|folder| file.starts_with(folder)) {
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for (number, line) in lines.iter().enumerate() {
+            let is_type = line.starts_with("pub struct ") || line.starts_with("pub enum ");
+            let name = if is_type { line.split(|c: char| !c.is_alphanumeric()).nth(2) } else { implemented(line) };
+            let Some(face) = name.and_then(|name| faces.get_mut(name)) else { continue };
+            if is_type {
+                let above =
+                    lines[..number].iter().rev().take_while(|line| line.starts_with("///") || line.starts_with('#'));
+                face.doc = above.map(|line| format!("{line}\n")).collect();
             }
-            match line.trim() {
-                text if text.starts_with("///") => doc = format!("{doc}{text}\n"),
-                "#[doc(hidden)]" => hidden = true,
-                text if text.starts_with("#[") => {}
-                _ if signature.is_empty() => (doc, hidden) = (String::new(), false),
-                _ => {}
+            if line.ends_with('{') {
+                let block: Vec<&str> = lines[number + 1..].iter().copied().take_while(|line| *line != "}").collect();
+                face.items.extend(items(&block, line.starts_with("pub enum ")));
             }
         }
     }
     faces
 }
 
-/// Returns `true` if all parentheses are closed.
-fn is_whole(signature: &str) -> bool {
-    signature.matches('(').count() == signature.matches(')').count()
+/// Returns the public fields and methods, or the variants, in the lines of a block; items with `doc(hidden)` are left out.
+fn items(block: &[&str], is_enum: bool) -> Vec<String> {
+    let (mut items, mut hidden) = (Vec::new(), false);
+    let mut lines = block.iter().filter_map(|line| line.strip_prefix("    "));
+    while let Some(line) = lines.next() {
+        if line.starts_with("pub ") || is_enum && line.starts_with(char::is_uppercase) {
+            let mut item = line.to_owned();
+            // A signature ends where all of its parentheses are closed.
+            while item.matches('(').count() > item.matches(')').count() {
+                let Some(next) = lines.next() else { break };
+                item = format!("{item}{}{}", if item.ends_with('(') { "" } else { " " }, next.trim());
+            }
+            if !hidden {
+                items.push(item.trim_end_matches([' ', '{', ';', ',', '=']).replace(", )", ")"));
+            }
+        }
+        hidden = line == "#[doc(hidden)]" || hidden && (line.starts_with("#[") || line.starts_with("///"));
+    }
+    items
 }
 
 #[test]

@@ -110,11 +110,23 @@ struct Tally {
     wrong: Vec<String>,
 }
 
+impl Tally {
+    /// Returns the sum of both.
+    fn with(mut self, mut other: Self) -> Self {
+        self.judged += other.judged;
+        self.sharp += other.sharp;
+        self.severe += other.severe;
+        self.none += other.none;
+        self.wrong.append(&mut other.wrong);
+        self
+    }
+}
+
 /// Checks for random scenes that |claimed − true error| is at most the claimed own error. The true error is taken from
 /// the finer of two independent solutions, and 1.5 times their distance is allowed for their own error.
-fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
+fn judge(seeds: &[u64]) -> Tally {
     let mut tally = Tally::default();
-    for seed in seeds {
+    for &seed in seeds {
         let scene = random::scene(seed);
         let mut own = Simulation::new(&scene).unwrap();
         own.solve();
@@ -155,7 +167,13 @@ fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
 fn claimed_errors_are_true_within_the_own_error_of_the_reference() {
     // All 300 scenes take a quarter of an hour; by default, every fifth is used.
     let all = std::env::var_os("WARPBEAM_ALL_SCENES").is_some();
-    let tally = judge((0..300).step_by(if all { 1 } else { 5 }));
+    let seeds: Vec<u64> = (0..300).step_by(if all { 1 } else { 5 }).collect();
+    // One thread per core: the test is the only one of its program.
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let tally = std::thread::scope(|scope| {
+        let parts: Vec<_> = seeds.chunks(seeds.len().div_ceil(threads)).map(|own| scope.spawn(|| judge(own))).collect();
+        parts.into_iter().map(|part| part.join().unwrap()).fold(Tally::default(), Tally::with)
+    });
     println!("{tally:?}");
     assert!(tally.wrong.is_empty(), "{:#?}", tally.wrong);
     let scenes = if all { 300 } else { 60 };

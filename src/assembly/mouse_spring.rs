@@ -10,6 +10,8 @@ const REACH: f64 = 0.25;
 
 /// Mouse spring at a material point. Its force k (p − x + τ (ṗ − ẋ)) is capped smoothly (Huber 1964), so that its
 /// tangent is never negative and no pointer motion exerts more force than a time step can handle.
+///
+/// See [`Simulation::grab`](crate::Simulation::grab) for an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MouseSpring {
     point: MaterialPoint,

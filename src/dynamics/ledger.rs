@@ -9,6 +9,8 @@ use crate::state::State;
 
 /// Energies of a motion, J, and the energy added and removed since its start. Their sum is the energy at the start;
 /// [`Self::imbalance`] is the rounding error.
+///
+/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Ledger {
@@ -149,6 +151,8 @@ fn kinetic_energy(mass: &Mass, inertia: Inertia, state: &State) -> f64 {
 }
 
 /// Momentum and angular momentum of a body.
+///
+/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Momentum {
     /// Σ M v, kg m/s.
@@ -159,6 +163,7 @@ pub struct Momentum {
 
 impl Momentum {
     /// Computes the momentum of a state.
+    #[doc(hidden)]
     #[must_use]
     pub fn of(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
         let mut nodal = state.velocity.clone();

@@ -29,6 +29,8 @@ pub enum StepError {
 }
 
 /// Reason why a motion cannot continue.
+///
+/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum StopReason {
@@ -77,6 +79,8 @@ impl Solves {
 }
 
 /// Counts of operations since the start.
+///
+/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Counts {

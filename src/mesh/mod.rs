@@ -20,6 +20,8 @@ pub use locate::MaterialPoint;
 pub use recovery::Recovery;
 
 /// Error of a mesh. Elements are numbered from 0.
+///
+/// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -74,6 +76,8 @@ pub enum MeshError {
 }
 
 /// Side of an element, by node numbers.
+///
+/// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     nodes: [u32; MOST_SIDE_NODES],
@@ -124,6 +128,8 @@ fn side_key([a, b]: [u32; 2]) -> [u32; 2] {
 }
 
 /// Nodes, elements and named edges of a body at rest.
+///
+/// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     nodes: Vec<Vector2<f64>>,

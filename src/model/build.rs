@@ -155,6 +155,16 @@ impl Scene {
     }
 
     /// Adds a support that fixes `place` in these directions.
+    ///
+    /// ```
+    /// use warpbeam::{Axis, Scene, Simulation};
+    ///
+    /// // A simply supported beam under its weight.
+    /// let beam = Scene::beam(10.0, 1.0).support([0.0, -0.5], &[Axis::X, Axis::Y]).support([10.0, -0.5], &[Axis::Y]);
+    /// let mut beam = Simulation::new(&beam.gravity([0.0, -9.81]))?;
+    /// beam.solve();
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
     #[must_use]
     pub fn support(mut self, place: impl Into<Place>, fix: &[Axis]) -> Self {
         self.supports.push(Support::new(place, fix));
@@ -249,6 +259,16 @@ impl Scene {
     }
 
     /// Adds a load and returns its handle.
+    ///
+    /// ```
+    /// use warpbeam::{Load, Scene, Simulation};
+    ///
+    /// let mut scene = Scene::beam(10.0, 1.0).clamp("left");
+    /// let force = scene.add_load(Load::force("right", [0.0, -500.0]));
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.set_force(force, [0.0, -800.0])?;
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
     pub fn add_load(&mut self, load: Load) -> LoadId {
         self.loads.push(load);
         LoadId(self.loads.len() - 1)

@@ -6,6 +6,8 @@ use super::error::Invalid;
 use super::limits::{self, Limit};
 
 /// Time integration settings of a dynamic scene.
+///
+/// See [`Scene::moving`](crate::Scene::moving) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -35,6 +37,8 @@ impl Default for DynamicsSettings {
 }
 
 /// Rayleigh damping: mass-proportional and stiffness-proportional.
+///
+/// See [`Scene::moving`](crate::Scene::moving) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -46,6 +50,8 @@ pub struct Damping {
 }
 
 /// Integrators; [`crate::dynamics::INTEGRATORS`] describes each.
+///
+/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -62,6 +68,8 @@ pub enum IntegratorKind {
 }
 
 /// Initial velocities of a dynamic scene.
+///
+/// See [`Scene::moving`](crate::Scene::moving) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -73,6 +81,8 @@ pub struct Start {
 }
 
 /// Time dependence of a load: the factor is sin²(π (t − start)/duration) during the pulse and 0 at other times.
+///
+/// See [`Scene::moving`](crate::Scene::moving) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pulse {

@@ -6,6 +6,8 @@ use std::sync::Arc;
 use thiserror::Error;
 
 /// Value that can be parsed but not used.
+///
+/// See [`LoadId`](crate::LoadId) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{key}: {message}")]
 pub struct Invalid {
@@ -49,6 +51,8 @@ impl From<std::io::Error> for ReadError {
 }
 
 /// Reason why a scene could not be opened.
+///
+/// See [`Scene::from_toml`](crate::Scene::from_toml) for an example.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneError {

@@ -22,6 +22,8 @@ pub use place::{Axis, Load, Place, Probe, Support, TableError};
 use crate::format::number;
 
 /// Complete description of a simulation.
+///
+/// See [`Scene::beam`](crate::Scene::beam) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -63,6 +65,8 @@ pub struct Scene {
 }
 
 /// Kind of result.
+///
+/// See [`Scene::moving`](crate::Scene::moving) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -75,6 +79,8 @@ pub enum Analysis {
 }
 
 /// Structured mesh of the rectangle [0, length] × [−height/2, height/2], or of the arch it is bent to.
+///
+/// See [`Scene::beam`](crate::Scene::beam) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -97,6 +103,8 @@ pub struct Beam {
 }
 
 /// Mesh from a Gmsh file.
+///
+/// See [`Scene::beam`](crate::Scene::beam) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -115,6 +123,8 @@ pub struct MeshFile {
 }
 
 /// Element types.
+///
+/// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -129,6 +139,8 @@ pub enum ElementKind {
 }
 
 /// Directions in which the cells of a beam are cut.
+///
+/// See [`Scene::beam`](crate::Scene::beam) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -141,6 +153,8 @@ pub enum Diagonals {
 }
 
 /// Linear elastic, isotropic material.
+///
+/// See [`Material::new`](crate::Material::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -173,6 +187,8 @@ fn default_thickness() -> f64 {
 }
 
 /// Conditions out of the plane.
+///
+/// See [`Material::new`](crate::Material::new) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Plane {
@@ -184,6 +200,8 @@ pub enum Plane {
 }
 
 /// Settings of the equilibrium solver.
+///
+/// See [`Equilibrium`](crate::Equilibrium) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -220,6 +238,8 @@ fn is_off(iterations: &u32) -> bool {
 }
 
 /// Methods; `method::METHODS` describes each.
+///
+/// See [`Equilibrium`](crate::Equilibrium) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]

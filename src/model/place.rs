@@ -10,6 +10,8 @@ use super::{is_zero, limits};
 use crate::format::number;
 
 /// Whole edge or single point.
+///
+/// See [`Scene::beam`](crate::Scene::beam) for an example.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
     /// Named edge: `left`, `right`, `bottom`, `top`, or a name of the mesh file.
@@ -96,6 +98,8 @@ impl Place {
 }
 
 /// Support: nodes that are fixed, or moved along a prescribed displacement.
+///
+/// See [`Scene::moved`](crate::Scene::moved) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SupportTable", into = "SupportTable")]
 #[non_exhaustive]
@@ -161,6 +165,8 @@ impl Support {
 }
 
 /// Direction of the plane.
+///
+/// See [`Scene::support`](crate::Scene::support) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Axis {
@@ -171,6 +177,8 @@ pub enum Axis {
 }
 
 /// Displacement to report: the mean over an edge, or of a material point.
+///
+/// See [`Scene::beam`](crate::Scene::beam) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ProbeTable", into = "ProbeTable")]
 #[non_exhaustive]
@@ -183,6 +191,8 @@ pub struct Probe {
 
 /// Load. Forces and gravity are dead loads: they keep their direction as the body rotates; a moment rotates with its
 /// edge.
+///
+/// See [`Scene::add_load`](crate::Scene::add_load) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "LoadTable", into = "LoadTable")]
 #[non_exhaustive]

@@ -110,6 +110,16 @@ fn unreadable(path: &Path, reason: ReadError) -> SceneError {
 impl Scene {
     /// Reads a scene from TOML text. Reads no other file: a scene with a mesh file needs [`Self::from_toml_in`].
     ///
+    /// ```
+    /// use warpbeam::Scene;
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]);
+    /// assert_eq!(Scene::from_toml(&scene.to_toml()?)?, scene);
+    /// let error = Scene::from_toml("name = \"Beam\"\nlength = 10.0").unwrap_err();
+    /// assert!(error.to_string().contains("length"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`SceneError::Syntax`] or [`SceneError::Invalid`], with the line.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {

@@ -8,6 +8,8 @@ use crate::state::State;
 use crate::stress::{ErrorEstimate, Local, NodalStress, visit_points};
 
 /// Quantity with a value at every quadrature point, and recovered at every node.
+///
+/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {
@@ -77,6 +79,7 @@ impl Field {
     /// Computes the field at every quadrature point of a state: element by element in the mesh's order, the points of
     /// an element in the order of [`crate::element::ElementType::points`]. `None` if the arithmetic leaves the range of
     /// f64, and for the Cauchy stress if an element is inverted.
+    #[doc(hidden)]
     pub fn values(self, problem: &Problem, state: &State, kinematics: Kinematics, values: &mut Vec<Option<f64>>) {
         values.clear();
         if self.is_of_elements() {
@@ -91,6 +94,7 @@ impl Field {
     }
 
     /// Computes the field at every node; all values are `None` for fields of elements.
+    #[doc(hidden)]
     pub fn nodal_values(self, nodal: &NodalStress, values: &mut Vec<Option<f64>>) {
         values.clear();
         let (material, kinematics) = (nodal.material(), nodal.kinematics());

@@ -40,6 +40,8 @@ pub use results::{
 pub use status::Status;
 
 /// Reason why a scene cannot be simulated.
+///
+/// See [`Simulation`](crate::Simulation) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -58,6 +60,8 @@ impl From<Invalid> for SimulationError {
 }
 
 /// Results of a state.
+///
+/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution {
@@ -247,6 +251,18 @@ impl Simulation {
 
     /// Restarts from a state of this body: a clone of an earlier [`Self::state`].
     ///
+    /// ```
+    /// use warpbeam::{Scene, Simulation};
+    ///
+    /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]))?;
+    /// beam.solve();
+    /// let solved = beam.state().clone();
+    /// beam.reset();
+    /// beam.restore(&solved)?;
+    /// assert_eq!(beam.displacement(), solved.displacement());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`StateError`] if it is a state of another body. Nothing is changed then.
     pub fn restore(&mut self, state: &State) -> Result<(), StateError> {
@@ -376,6 +392,20 @@ impl Simulation {
     /// Attaches a mouse spring to a material point; its target is the current position until [`Self::pull_to`] is
     /// called. Returns `true` if there is such a point.
     ///
+    /// ```
+    /// use warpbeam::{Scene, Simulation};
+    ///
+    /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left"))?;
+    /// let tip = beam.mesh().locate([9.9, 0.0].into()).ok_or("no such point")?;
+    /// beam.grab(tip);
+    /// beam.pull_to([9.0, 3.0])?;
+    /// beam.solve();
+    /// let (spring, force) = beam.mouse_spring().ok_or("nothing is grabbed")?;
+    /// assert!(spring.position(beam.displacement()).y > 2.5 && force.y > 0.0);
+    /// beam.release();
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// The spring's stiffness is the larger of that for which the body's mass vibrates at 5 Hz and ten times the body's
     /// stiffness at the point; its force is capped at an elongation of a quarter of the body's size.
     pub fn grab(&mut self, point: MaterialPoint) -> bool {
@@ -488,6 +518,15 @@ impl Simulation {
     /// Computes properties of the final state that do not depend on the method, at the cost of some solves; the result
     /// is kept until the next change. All properties are `None` for linear theory, before the end, for motions, and
     /// with a mouse spring.
+    ///
+    /// ```
+    /// use warpbeam::{Scene, Simulation};
+    ///
+    /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]))?;
+    /// beam.solve();
+    /// assert_eq!(beam.certify().stable, Some(true));
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
     pub fn certify(&mut self) -> Certificate {
         match &mut self.process {
             Process::Search(search) => search.certify(&self.body.problem, &self.body.state),
@@ -496,6 +535,17 @@ impl Simulation {
     }
 
     /// Returns the results of the current state.
+    ///
+    /// ```
+    /// use warpbeam::{Scene, Simulation};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.solve();
+    /// let solution = beam.solution();
+    /// assert!((solution.reaction.force.y - 500.0).abs() < 1e-3 && solution.energy.elastic > 0.0);
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
     #[must_use]
     pub fn solution(&self) -> Solution {
         let Body { problem, state, .. } = &self.body;
@@ -738,6 +788,15 @@ impl Simulation {
     }
 
     /// Returns the computing time of all iterations since the last edit, or of all time steps, by stage.
+    ///
+    /// ```
+    /// use warpbeam::{Scene, Simulation};
+    ///
+    /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]))?;
+    /// beam.solve();
+    /// assert!(beam.timings().total() >= beam.timings().factorize);
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
     #[must_use]
     pub fn timings(&self) -> &Timings {
         match &self.process {

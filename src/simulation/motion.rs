@@ -53,6 +53,8 @@ pub(super) struct TimeStepping {
 }
 
 /// Snapshot of a motion: state, energies and counts. [`super::Simulation::return_to`] returns to it.
+///
+/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Debug)]
 pub struct Moment {
     state: State,

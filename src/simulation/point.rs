@@ -11,6 +11,8 @@ use crate::scene::Material;
 use crate::stress::{Local, NodalStress, PlaneTensor, visit_points};
 
 /// Source of the deformation at a material point.
+///
+/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointValues {
     /// Recovered at the nodes and interpolated.
@@ -21,6 +23,8 @@ pub enum PointValues {
 
 /// Displacement, deformation and stress at a material point, all of one deformation: F = R S, ε = S − I, and σ follows
 /// from ε by the material law. In linear theory ε = sym F − I, R = I and S = I + ε.
+///
+/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PointState {
@@ -77,6 +81,18 @@ impl Field {
 impl Simulation {
     /// Computes deformation and stress at a material point; `None` if there is no such point, or the arithmetic leaves
     /// the range of f64. Takes a loop over the whole body.
+    ///
+    /// ```
+    /// use warpbeam::{Field, PointValues, Scene, Simulation};
+    ///
+    /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]))?;
+    /// beam.solve();
+    /// let middle = beam.mesh().locate([5.0, 0.4].into()).ok_or("no such point")?;
+    /// let state = beam.point_state(middle, PointValues::Recovered).ok_or("the state is not finite")?;
+    /// assert!(state.cauchy.is_some_and(|stress| stress.plane.m11 > 0.0), "the upper side is in tension");
+    /// assert!(state.field(Field::RotationAngle).is_some_and(|degrees| degrees < -5.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn point_state(&self, point: MaterialPoint, values: PointValues) -> Option<PointState> {
         let (problem, state) = (self.problem(), self.state());

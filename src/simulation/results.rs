@@ -10,6 +10,8 @@ use crate::state::State;
 use crate::stress::{ErrorEstimate, NodalStress, PlaneTensor, Singularity};
 
 /// Result at a probe.
+///
+/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProbeResult {
@@ -22,6 +24,8 @@ pub struct ProbeResult {
 }
 
 /// Energies, J.
+///
+/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Energy {
@@ -36,6 +40,8 @@ pub struct Energy {
 }
 
 /// Total reaction of the supports on the body.
+///
+/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reaction {
     /// Total force, N.
@@ -45,6 +51,8 @@ pub struct Reaction {
 }
 
 /// Reaction of one support on the body.
+///
+/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SupportReaction {
@@ -59,6 +67,8 @@ pub struct SupportReaction {
 }
 
 /// Measures of the deformation of a state.
+///
+/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Deformation {
@@ -72,6 +82,7 @@ pub struct Deformation {
 
 impl Deformation {
     /// Computes the measures for a state.
+    #[doc(hidden)]
     #[must_use]
     pub fn of(problem: &Problem, state: &State) -> Self {
         let elements = problem.system().elements();

@@ -4,6 +4,8 @@ use crate::dynamics::StopReason;
 use crate::method::Reason;
 
 /// Status of a simulation.
+///
+/// See [`Simulation`](crate::Simulation) for an example.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Status {

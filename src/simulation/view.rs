@@ -32,6 +32,7 @@ impl Equilibrium<'_> {
     }
 
     /// Returns the decisions of `auto`; `None` for other methods.
+    #[doc(hidden)]
     #[must_use]
     pub fn auto_report(self) -> Option<AutoReport> {
         self.search.auto_report()
@@ -113,6 +114,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Returns the decisions of `auto` since the start; `None` for other methods and for explicit integrators.
+    #[doc(hidden)]
     #[must_use]
     pub fn auto_report(self) -> Option<MotionReport> {
         self.steps.auto_report(&self.body.scene)

@@ -24,6 +24,8 @@ pub use estimate::ErrorEstimate;
 pub use singularity::Singularity;
 
 /// Symmetric second-order tensor without shear out of the plane: stress (Pa) or strain.
+///
+/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlaneTensor {
     /// Components in the plane.
@@ -181,6 +183,7 @@ pub struct RecoveryScratch {
 
 impl NodalStress {
     /// Recovers the stress of a state.
+    #[doc(hidden)]
     #[must_use]
     pub fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
         let mut result = Self::empty(*problem.material());
@@ -195,6 +198,7 @@ impl NodalStress {
     }
 
     /// Recovers another state, without allocating if the mesh is the same.
+    #[doc(hidden)]
     pub fn follow(
         &mut self,
         problem: &Problem,
@@ -221,6 +225,7 @@ impl NodalStress {
     }
 
     /// Returns strain and rotation at every node.
+    #[doc(hidden)]
     #[must_use]
     pub fn nodes(&self) -> &[Local] {
         &self.nodes
@@ -233,6 +238,7 @@ impl NodalStress {
     }
 
     /// Returns the strain measure of the state.
+    #[doc(hidden)]
     #[must_use]
     pub fn kinematics(&self) -> Kinematics {
         self.kinematics
@@ -251,6 +257,7 @@ impl NodalStress {
     }
 
     /// Returns the weighted mean of strain and rotation over nodes, with weights that sum to 1.
+    #[doc(hidden)]
     #[must_use]
     pub fn mean(&self, weights: &[(u32, f64)]) -> Local {
         Local::mean(weights.iter().filter_map(|&(node, weight)| Some((*self.nodes.get(node as usize)?, weight))))

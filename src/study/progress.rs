@@ -7,6 +7,8 @@ use crate::format::{number, two_digits};
 use crate::simulation::SimulationError;
 
 /// Reason why a scene cannot be studied.
+///
+/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -90,6 +92,8 @@ pub struct Progress<'a> {
 pub type Observer<'a> = &'a mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
 
 /// Extent of a study.
+///
+/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// Coarser meshes only.

@@ -89,6 +89,8 @@ impl std::fmt::Display for ProbeReference {
 }
 
 /// Reference solution of a scene.
+///
+/// See [`Reference::of`](crate::Reference::of) for an example.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reference {
@@ -130,6 +132,18 @@ const MARGIN: f64 = 1.5;
 
 impl Reference {
     /// Computes the reference solution of a scene at bounded cost.
+    ///
+    /// ```no_run
+    /// use warpbeam::{Reference, Scene, Simulation};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.solve();
+    /// let reference = Reference::of(&scene)?.first().ok_or("no reference")?;
+    /// let distance = (beam.probe("tip").unwrap_or_default() - reference.displacement).norm();
+    /// println!("the tip is {distance} m from the reference solution");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// Same errors as [`Self::find`].

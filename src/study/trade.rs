@@ -96,6 +96,8 @@ impl ErrorSplit {
 }
 
 /// Measured time and error of a setting.
+///
+/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// Setting.
@@ -141,6 +143,8 @@ impl Measurement {
 }
 
 /// Speed–accuracy study of a scene.
+///
+/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
     /// Name of the scene.
@@ -163,7 +167,17 @@ const ENDS_SHARE: f64 = 0.1;
 const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, MOST_ITERATIONS];
 
 impl Study {
-    /// Measures a scene.
+    /// Measures a scene. `observe` receives the progress, and breaks to cancel.
+    ///
+    /// ```no_run
+    /// use std::ops::ControlFlow;
+    /// use warpbeam::{Extent, Scene, Study};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
+    /// let study = Study::new(&scene, Extent::Quick, &mut |_| ControlFlow::Continue(()))?;
+    /// println!("{}", study.summary());
+    /// # Ok::<(), warpbeam::StudyError>(())
+    /// ```
     ///
     /// # Errors
     /// [`StudyError`].

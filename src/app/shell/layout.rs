@@ -385,21 +385,23 @@ impl Lab {
 
     /// Shows the progress of the background solve, with a button that cancels it.
     fn show_work(&self, ui: &Ui, rect: Rect, actions: &mut Vec<Action>) {
+        /// Half of the usual width, points.
+        const HALF_WIDTH: f32 = 140.0;
         let Some((scene, phase, seconds)) = self.desk.session.work() else { return };
         let palette = Palette::new(ui.visuals());
         let area = egui::Area::new(egui::Id::unique("work"))
             .order(egui::Order::Middle)
-            .fixed_pos(rect.center_top() + egui::vec2(0.0, 52.0))
-            .pivot(egui::Align2::CENTER_TOP)
+            .fixed_pos(rect.center_top() + egui::vec2(-HALF_WIDTH, 52.0))
             .constrain_to(rect);
         area.show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    let text = format!("{}\u{2026} {seconds} s", status_bar::phase_text(scene, phase));
-                    ui.colored_label(palette.text, text);
+                    // The button comes first, so that it stays under the pointer while the text changes.
                     if ui.button(tr("Cancel")).on_hover_text(tr("Return to the previous state (Esc)")).clicked() {
                         actions.push(Action::Cancel);
                     }
+                    let text = format!("{}\u{2026} {seconds} s", status_bar::phase_text(scene, phase));
+                    ui.colored_label(palette.text, text);
                 });
             });
         });
