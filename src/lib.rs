@@ -82,7 +82,7 @@ pub mod app;
 pub mod article;
 #[doc(hidden)]
 pub mod assembly;
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 #[doc(hidden)]
 pub mod cli;
 #[doc(hidden)]

@@ -1,9 +1,13 @@
-//! Entry point of the command line program.
+//! Entry point of the command line program, and of the module of the web page.
 
 #![forbid(unsafe_code)]
 
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
+#[cfg(not(target_arch = "wasm32"))]
+fn main() -> std::process::ExitCode {
     warpbeam::cli::main()
+}
+
+#[cfg(target_arch = "wasm32")]
+fn main() {
+    warpbeam::app::open_page();
 }

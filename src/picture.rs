@@ -1,6 +1,5 @@
 //! Images in memory, written as PNG files.
 
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -23,6 +22,9 @@ pub enum PictureError {
         /// The reason.
         reason: String,
     },
+    /// The picture cannot be encoded.
+    #[error("the picture cannot be encoded: {0}")]
+    Encode(String),
 }
 
 /// Pixels of an image, RGBA, eight bits per channel.
@@ -38,16 +40,26 @@ impl Picture {
     /// Writes a PNG file.
     ///
     /// # Errors
-    /// [`PictureError::Write`].
+    /// [`PictureError`].
     pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
-        let failed = |reason: String| PictureError::Write { path: path.to_owned(), reason };
-        let file = std::fs::File::create(path).map_err(|e| failed(e.to_string()))?;
-        let mut encoder = png::Encoder::new(BufWriter::new(file), self.size[0], self.size[1]);
+        let failed = |error: std::io::Error| PictureError::Write { path: path.to_owned(), reason: error.to_string() };
+        std::fs::write(path, self.png()?).map_err(failed)
+    }
+
+    /// Returns the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// [`PictureError::Encode`].
+    pub fn png(&self) -> Result<Vec<u8>, PictureError> {
+        let failed = |error: png::EncodingError| PictureError::Encode(error.to_string());
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.size[0], self.size[1]);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
-        let mut writer = encoder.write_header().map_err(|e| failed(e.to_string()))?;
-        writer.write_image_data(&self.rgba).map_err(|e| failed(e.to_string()))?;
-        writer.finish().map_err(|e| failed(e.to_string()))
+        let mut writer = encoder.write_header().map_err(failed)?;
+        writer.write_image_data(&self.rgba).map_err(failed)?;
+        writer.finish().map_err(failed)?;
+        Ok(bytes)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Computing time by stage.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 /// Time spent in each stage of an iteration or a time step.
 ///

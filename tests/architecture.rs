@@ -30,6 +30,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("study", &["export", "study"]),
     ("plot", &["plot"]),
     ("render", &["render"]),
+    ("platform", &["app/platform"]),
     ("language", &["app/language"]),
     ("task", &["app/task"]),
     ("session", &["app/session"]),

@@ -1,8 +1,9 @@
 //! Actions that panel, keys and drawers request from the lab.
 
-use crate::app::view_options::{CurvePlot, Toggle};
 use std::path::PathBuf;
 
+use crate::app::platform::IS_PAGE;
+use crate::app::view_options::{CurvePlot, Toggle};
 use crate::scene::{IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::figure::Figure;
@@ -77,6 +78,8 @@ pub(crate) enum Action {
     Copy,
     /// Copy the scene as a Rust program.
     CopyRust,
+    /// Copy a link to the web page with the scene in it.
+    CopyLink,
     /// Start (`true`) or cancel (`false`) the speed–accuracy study.
     Measure(bool),
     /// Show the card with this number, from 0, and load its scene.
@@ -85,6 +88,17 @@ pub(crate) enum Action {
     Apply(Box<Scene>, u32),
     /// Cancel the background solve of a large model, and keep the previous model.
     Cancel,
+}
+
+impl Action {
+    /// Returns `true` if the action exists here: a web page has links but no recordings, a desktop the reverse.
+    pub(crate) fn is_available(&self) -> bool {
+        match self {
+            Self::Record | Self::RecordScene => !IS_PAGE,
+            Self::CopyLink => IS_PAGE,
+            _ => true,
+        }
+    }
 }
 
 /// File format of a figure.

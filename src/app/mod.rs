@@ -13,6 +13,7 @@ mod language;
 mod modes;
 mod offscreen;
 mod panel;
+mod platform;
 mod readout;
 mod session;
 mod shell;
@@ -33,6 +34,8 @@ pub use panel::PANEL_WIDTH;
 pub use session::recovery::{Recovery, Unsaved};
 pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
+#[cfg(target_arch = "wasm32")]
+pub use window::page::open_page;
 pub use window::{Display, NoDisplay, opens_in_background, run};
 
 /// Error if all numbered file names are taken.

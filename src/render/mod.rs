@@ -74,16 +74,16 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// Creates a device without a window.
+    /// Creates a device without a window. Not for web pages, which cannot wait for a device.
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`], [`RenderError::NoDevice`].
     pub fn headless() -> Result<Self, RenderError> {
-        Self::first_of_backends(|backends| {
+        pollster::block_on(Self::first_of_backends(async |backends| {
             let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
             descriptor.backends = backends;
-            Self::request(&wgpu::Instance::new(descriptor), None)
-        })
+            Self::request(&wgpu::Instance::new(descriptor), None).await
+        }))
     }
 
     /// Tries the system's native graphics API first, and OpenGL only if that fails, because probing OpenGL takes time
@@ -91,16 +91,16 @@ impl Gpu {
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`] with all backends tried, or any other error of `attempt`.
-    pub fn first_of_backends<T>(
-        mut attempt: impl FnMut(wgpu::Backends) -> Result<T, RenderError>,
+    pub async fn first_of_backends<T>(
+        mut attempt: impl AsyncFnMut(wgpu::Backends) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
-        let wanted = wgpu::Backends::from_env().map_or_else(
-            || vec![wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12, wgpu::Backends::GL],
-            |backends| vec![backends],
-        );
+        let wanted = match wgpu::Backends::from_env() {
+            Some(backends) => vec![backends],
+            None => Self::backends().await,
+        };
         let mut tried = Vec::new();
         for backends in wanted {
-            match attempt(backends) {
+            match attempt(backends).await {
                 Err(RenderError::NoAdapter { tried: reason }) => tried.push(reason),
                 other => return other,
             }
@@ -108,25 +108,40 @@ impl Gpu {
         Err(RenderError::NoAdapter { tried: tried.join("; then ") })
     }
 
+    /// Returns the backends of this system in the order in which they are tried.
+    #[cfg(not(target_arch = "wasm32"))]
+    async fn backends() -> Vec<wgpu::Backends> {
+        vec![wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12, wgpu::Backends::GL]
+    }
+
+    /// Returns the backend of this browser. There is only one, because a canvas keeps its first kind of context.
+    #[cfg(target_arch = "wasm32")]
+    async fn backends() -> Vec<wgpu::Backends> {
+        let has_webgpu = wgpu::util::is_browser_webgpu_supported().await;
+        vec![if has_webgpu { wgpu::Backends::BROWSER_WEBGPU } else { wgpu::Backends::GL }]
+    }
+
     /// Creates a device on the best adapter for a surface: hardware is preferred to software.
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`], [`RenderError::NoDevice`].
-    pub fn request(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self, RenderError> {
+    pub async fn request(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self, RenderError> {
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             compatible_surface: surface,
             ..Default::default()
         };
-        let adapter = pollster::block_on(instance.request_adapter(&options))
-            .map_err(|error| RenderError::NoAdapter { tried: error.to_string() })?;
+        let adapter = instance.request_adapter(&options).await;
+        let adapter = adapter.map_err(|error| RenderError::NoAdapter { tried: error.to_string() })?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("warpbeam"),
             // Limits that software OpenGL also supports, except for the texture size, which is the adapter's.
             required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
             .map_err(|error| RenderError::NoDevice { adapter: adapter.get_info().name, reason: error.to_string() })?;
         Ok(Self { adapter, device, queue })
     }

@@ -49,7 +49,7 @@ const MESHES: &[(&str, &str)] = &[
 ];
 
 /// Returns the text of a mesh file of a built-in scene.
-pub(super) fn mesh(file: &str) -> Option<&'static str> {
+pub(crate) fn mesh(file: &str) -> Option<&'static str> {
     MESHES.iter().find(|(name, _)| *name == file).map(|(_, text)| *text)
 }
 

@@ -27,7 +27,7 @@ pub use load_path::{
 };
 pub use motion::MotionStudy;
 pub use progress::{Extent, Observer, Progress, StudyError};
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub(crate) use reference::MOST_CERTIFIED;
 pub use reference::{ProbeReference, Reference, ReferenceSource};
 pub use scaling::{Exponents, MemoryMeter, Scaling, ScalingPoint};

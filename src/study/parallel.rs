@@ -2,14 +2,6 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
-use std::time::Duration;
-
-use rayon::prelude::*;
-
-/// Interval of calls of an observer while no item is finished.
-const ASK: Duration = Duration::from_millis(50);
 
 /// Cancellation flag, polled by long work.
 #[derive(Debug, Default)]
@@ -25,11 +17,19 @@ impl CalledOff {
 /// Processes all items on all cores, and returns the results in order. `observe` is called on the calling thread with
 /// the number of finished items, and can cancel the rest: items not started then give `None`, and running ones see the
 /// flag.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn map<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T, &CalledOff) -> R + Sync,
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Vec<Option<R>> {
+    use std::sync::mpsc::{self, RecvTimeoutError};
+    use std::time::Duration;
+
+    use rayon::prelude::*;
+
+    /// Interval of calls of an observer while no item is finished.
+    const ASK: Duration = Duration::from_millis(50);
     let cancelled = CalledOff::default();
     let (sender, receiver) = mpsc::channel();
     let one = |sender: &mut mpsc::Sender<()>, item: &T| {
@@ -41,7 +41,7 @@ pub fn map<T: Sync, R: Send>(
         let _ = sender.send(());
         Some(result)
     };
-    thread::scope(|scope| {
+    std::thread::scope(|scope| {
         // Items are split one by one, because they are few and long compared with the overhead of a task.
         let worker = scope.spawn(|| items.par_iter().with_max_len(1).map_with(sender, one).collect());
         let mut done = 0;
@@ -59,8 +59,24 @@ pub fn map<T: Sync, R: Send>(
     })
 }
 
+/// Processes all items one after the other, because a web page has no threads. `observe` is called with the number of
+/// finished items, and can cancel the rest, which then give `None`.
+#[cfg(target_arch = "wasm32")]
+pub fn map<T: Sync, R: Send>(
+    items: &[T],
+    work: impl Fn(&T, &CalledOff) -> R + Sync,
+    mut observe: impl FnMut(usize) -> ControlFlow<()>,
+) -> Vec<Option<R>> {
+    let cancelled = CalledOff::default();
+    let one = |(done, item)| observe(done).is_continue().then(|| work(item, &cancelled));
+    items.iter().enumerate().map(one).collect()
+}
+
 #[cfg(test)]
 mod tests {
+    use std::thread;
+    use std::time::Duration;
+
     use super::*;
 
     #[test]

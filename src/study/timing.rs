@@ -1,7 +1,7 @@
 //! Timing of iterations from rest: medians over repetitions after warm-up, by stage.
 
 use std::ops::RangeInclusive;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;

@@ -1,7 +1,7 @@
 //! Images of a lab without a window.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use egui_wgpu::ScreenDescriptor;
 

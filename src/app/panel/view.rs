@@ -118,8 +118,9 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             ),
             ("Copy as TOML", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
             ("Copy as Rust", "Copy a Rust program that builds the scene and solves it (Shift+C)", Action::CopyRust),
+            ("Copy link", "Copy the address of this page with the whole scene in it (U)", Action::CopyLink),
         ] {
-            if ui.button(tr(name)).on_hover_text(tr(tip)).clicked() {
+            if action.is_available() && ui.button(tr(name)).on_hover_text(tr(tip)).clicked() {
                 actions.push(action);
             }
         }

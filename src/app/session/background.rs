@@ -1,7 +1,7 @@
 //! Background solve of large models, one at a time. The last snapshot stays on display; edits change the requested
 //! scene, which the next solve uses.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use crate::app::session::document::Document;
 use crate::app::session::undo::Version;

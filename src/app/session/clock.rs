@@ -1,7 +1,7 @@
 //! Real-time clock of a motion: the number of time steps that are due depends on the elapsed time, not on the frame
 //! rate.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use crate::format::two_digits;
 

@@ -1,12 +1,12 @@
 //! Origin of the scene: a built-in scene, or a file that can be read, written, and changed by other programs.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use thiserror::Error;
 
-use crate::scene::{self, Scene, SceneError, Source};
+use crate::app::platform::files;
+use crate::scene::{Scene, SceneError, Source};
 
 /// Name of a scene's file or built-in scene, and the scene as it is stored there.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +42,7 @@ impl Document {
     /// # Errors
     /// [`SceneError`].
     pub(crate) fn open(source: Source) -> Result<Self, SceneError> {
-        let original = scene::open(&source)?;
+        let original = files::open(&source)?;
         Ok(Self::new(source, original))
     }
 
@@ -79,7 +79,7 @@ impl Document {
             mesh.file = whole.to_owned();
         }
         let toml = scene.to_toml()?;
-        write_whole(path, toml.as_bytes()).map_err(|reason| SaveError::File { path: path.to_owned(), reason })?;
+        files::save(path, toml.as_bytes()).map_err(|reason| SaveError::File { path: path.to_owned(), reason })?;
         Ok(Self::new(Source { name: path.to_owned(), assignments: Vec::new() }, scene))
     }
 }
@@ -87,68 +87,4 @@ impl Document {
 /// Returns the time of the last change of a file.
 fn written(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).and_then(|m| m.modified()).ok()
-}
-
-/// Writes a file under a temporary name in the same folder and then renames it, so that readers see the old content or
-/// the new content, never a part.
-///
-/// # Errors
-/// Error of the operating system; the previous content is unchanged.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    replace_file(path, bytes, true)
-}
-
-/// Writes a file as [`write_whole`] does, but without waiting for the disk: the file survives a crash of the program,
-/// but not of the machine.
-///
-/// # Errors
-/// Error of the operating system; the previous content is unchanged.
-pub(crate) fn write_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    replace_file(path, bytes, false)
-}
-
-fn replace_file(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
-    // A symbolic link stays; the file that it points to is written.
-    let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let name = path.file_name().ok_or(std::io::ErrorKind::InvalidInput)?;
-    let mut temporary = std::ffi::OsString::from(".");
-    temporary.push(name);
-    temporary.push(format!(".{}.part", std::process::id()));
-    let temporary = path.with_file_name(temporary);
-    let write = || {
-        let mut file = std::fs::File::create(&temporary)?;
-        file.write_all(bytes)?;
-        if syncs {
-            file.sync_all()?;
-        }
-        if let Ok(before) = std::fs::metadata(&path) {
-            file.set_permissions(before.permissions())?;
-        }
-        drop(file);
-        std::fs::rename(&temporary, &path)
-    };
-    write().inspect_err(|_| drop(std::fs::remove_file(&temporary)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_scene_that_cannot_be_written_leaves_the_file_as_it_was() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
-        write_whole(&path, b"one").unwrap();
-        write_whole(&path, b"two").unwrap();
-        assert_eq!(std::fs::read(&path).unwrap(), b"two");
-        // A folder with the same name makes writing fail.
-        let taken = folder.path().join("taken");
-        std::fs::create_dir_all(taken.join("inside")).unwrap();
-        assert!(write_whole(&taken, b"three").is_err());
-        assert!(write_whole(&folder.path().join("nowhere/scene.toml"), b"three").is_err());
-        // No temporary file remains.
-        let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
-        names.sort();
-        assert_eq!(names, ["scene.toml", "taken"]);
-    }
 }

@@ -6,12 +6,13 @@
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::app::session::document::{Document, write_without_sync};
+use crate::app::platform::files;
+use crate::app::session::document::Document;
 use crate::scene::{Scene, SceneError, Source};
 
 /// Largest number of windows that are open or have crashed.
@@ -64,7 +65,7 @@ fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
         original: document.original.to_toml().map_err(io::Error::other)?,
         scene: scene.to_toml().map_err(io::Error::other)?,
     };
-    write_without_sync(file, toml::to_string(&copy).map_err(io::Error::other)?.as_bytes())
+    files::save_without_sync(file, toml::to_string(&copy).map_err(io::Error::other)?.as_bytes())
 }
 
 impl Unsaved {

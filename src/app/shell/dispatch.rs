@@ -68,7 +68,7 @@ impl Lab {
             Action::Drop(path) => self.depart(ctx, Departure::Open(Source { name: path, assignments: Vec::new() })),
             Action::Reload => self.open(ctx, self.source().clone()),
             Action::Save => self.save_here(ctx),
-            Action::SaveAs => self.ask_where_to_save(),
+            Action::SaveAs => self.ask_where_to_save(ctx),
             Action::Undo | Action::Redo => {
                 let (is_possible, edit) = match action {
                     Action::Undo => (self.can_undo(), Edit::Undo),
@@ -169,6 +169,7 @@ impl Lab {
             Action::RecordScene => requests.push(Request::RecordScene),
             Action::Copy => self.copy(ctx),
             Action::CopyRust => self.copy_rust(ctx),
+            Action::CopyLink => self.copy_link(ctx),
             Action::Measure(true) => {
                 // A full study of a motion takes many minutes.
                 let is_quick = self.lesson.is_some() || self.desk.session.is_motion();

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use crate::app::action::Action;
 use crate::app::language::{fill, tr, translated};
+use crate::app::platform::{IS_PAGE, files, page};
 use crate::app::session::document::SaveError;
 use crate::app::session::{Edit, EditError};
 use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question};
 use crate::app::shell::messages::banner;
-use crate::scene::Source;
+use crate::scene::{Source, registry};
 
 impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.
@@ -29,7 +30,7 @@ impl Lab {
         Ok(())
     }
 
-    /// Saves the scene to a file, and shows a message.
+    /// Saves the scene to a file, and shows a message of success.
     ///
     /// # Errors
     /// [`SaveError`]; no message is shown.
@@ -43,9 +44,14 @@ impl Lab {
     /// Saves the scene to its file; if it has none, shows the file dialog.
     pub(super) fn save_here(&mut self, ctx: &egui::Context) {
         let Some(path) = self.desk.session.document().path().map(Path::to_owned) else {
-            return self.ask_where_to_save();
+            return self.ask_where_to_save(ctx);
         };
-        match self.save(ctx, &path) {
+        self.save_there(ctx, &path);
+    }
+
+    /// Saves the scene to a file, and shows a message.
+    fn save_there(&mut self, ctx: &egui::Context, path: &Path) {
+        match self.save(ctx, path) {
             Ok(()) => self.after_save(ctx),
             Err(reason) => {
                 self.question = Question::None;
@@ -54,11 +60,15 @@ impl Lab {
         }
     }
 
-    pub(super) fn ask_where_to_save(&mut self) {
+    /// Shows the dialog for the name of the file. A web page downloads the scene instead.
+    pub(super) fn ask_where_to_save(&mut self, ctx: &egui::Context) {
         let document = self.desk.session.document();
         let name = document.path().and_then(Path::file_name).and_then(|name| name.to_str());
         let name = name.map_or_else(|| format!("{}.toml", document.source.name.display()), str::to_owned);
         let name = if name == "-.toml" { "scene.toml".to_owned() } else { name };
+        if IS_PAGE {
+            return self.save_there(ctx, Path::new(&name));
+        }
         self.dialog = Some(FileDialog::new(Purpose::Save, document.path(), &name));
     }
 
@@ -100,7 +110,7 @@ impl Lab {
     pub(super) fn check_files(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         let (dropped, is_back) = ctx.input(|i| {
             let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
-            (dropped, i.events.contains(&egui::Event::WindowFocused(true)))
+            (dropped.or_else(files::arrived), i.events.contains(&egui::Event::WindowFocused(true)))
         });
         actions.extend(dropped.map(Action::Drop));
         let session = &mut self.desk.session;
@@ -128,6 +138,21 @@ impl Lab {
             Ok(toml) => {
                 ctx.copy_text(format!("# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}"));
                 self.say(ctx, tr("Scene copied as TOML").to_owned());
+            }
+            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
+        }
+    }
+
+    /// Copies the address of the web page with the scene in it.
+    pub(super) fn copy_link(&mut self, ctx: &egui::Context) {
+        let scene = self.scene();
+        if scene.mesh.as_ref().is_some_and(|mesh| registry::mesh(&mesh.file).is_none()) {
+            return self.say(ctx, tr("A link has no room for a mesh file; save the scene instead").to_owned());
+        }
+        match scene.to_toml() {
+            Ok(toml) => {
+                ctx.copy_text(page::link(&toml));
+                self.say(ctx, tr("Link copied").to_owned());
             }
             Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
         }

@@ -3,7 +3,7 @@
 use egui::{Align2, Context};
 
 use crate::app::language::tr;
-use crate::app::shell::shortcuts::SHORTCUTS;
+use crate::app::shell::shortcuts::shortcuts;
 
 /// Keys that belong to a mode or to the control with the focus.
 const HERE: &[(&str, &str)] = &[
@@ -37,7 +37,7 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
             egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
-                for shortcut in SHORTCUTS {
+                for shortcut in shortcuts() {
                     ui.strong(shortcut.text());
                     ui.label(tr(shortcut.does));
                     ui.end_row();

@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use etcetera::BaseStrategy as _;
 use serde::{Deserialize, Serialize};
 
 use crate::app::ThemeChoice;
 use crate::app::language::Language;
-use crate::app::session::document::write_whole;
+use crate::app::platform;
 use crate::app::view_options::Drawer;
 use crate::simulation::Field;
 
@@ -56,14 +55,13 @@ impl Settings {
     /// Returns the path of this user's settings; `None` if the system has no folder for them.
     #[must_use]
     pub fn file() -> Option<PathBuf> {
-        let folder = etcetera::choose_base_strategy().ok()?.config_dir();
-        Some(folder.join("warpbeam").join("settings.toml"))
+        platform::settings::file()
     }
 
     /// Reads the settings from a file; returns the defaults if there is none, or if it cannot be read.
     #[must_use]
     pub fn load(file: &Path) -> Self {
-        let text = match std::fs::read_to_string(file) {
+        let text = match platform::settings::read(file) {
             Ok(text) => text,
             Err(error) => {
                 if error.kind() != std::io::ErrorKind::NotFound {
@@ -83,11 +81,8 @@ impl Settings {
     /// # Errors
     /// Error of the operating system.
     pub fn save(&self, file: &Path) -> std::io::Result<()> {
-        if let Some(folder) = file.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
         let toml = toml::to_string(self).map_err(std::io::Error::other)?;
-        write_whole(file, toml.as_bytes())
+        platform::settings::write(file, &toml)
     }
 
     /// Returns the size of the window, points.

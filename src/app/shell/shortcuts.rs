@@ -33,8 +33,13 @@ impl Shortcut {
     }
 }
 
-/// All shortcuts, in the order of the help.
-pub(crate) const SHORTCUTS: &[Shortcut] = &[
+/// Returns the shortcuts that exist here, in the order of the help.
+pub(crate) fn shortcuts() -> impl Iterator<Item = &'static Shortcut> {
+    SHORTCUTS.iter().filter(|shortcut| (shortcut.act)().is_available())
+}
+
+/// All shortcuts.
+const SHORTCUTS: &[Shortcut] = &[
     key(Key::Space, "Run or pause", || Action::ToggleRun),
     key(Key::N, "One iteration, or one time step", || Action::Step),
     key(Key::Comma, "In motion: pause, and go back by a frame", || Action::Back),
@@ -65,6 +70,7 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     with(Modifiers::SHIFT, Key::V, "Record the scene from its start as a GIF; again: stop", || Action::RecordScene),
     key(Key::C, "Copy the scene as TOML, with the command that solves it", || Action::Copy),
     with(Modifiers::SHIFT, Key::C, "Copy the scene as a Rust program", || Action::CopyRust),
+    key(Key::U, "Copy the address of this page with the whole scene in it", || Action::CopyLink),
     with(Modifiers::COMMAND, Key::O, "Open a scene file", || Action::OpenFile),
     with(Modifiers::COMMAND, Key::S, "Save the scene", || Action::Save),
     with(COMMAND_SHIFT, Key::S, "Save the scene to another file", || Action::SaveAs),
@@ -91,6 +97,6 @@ pub(crate) fn actions(ctx: &Context) -> Vec<Action> {
             })
         };
         let is_free = |s: &&Shortcut| !(focused && s.key == Key::Space);
-        SHORTCUTS.iter().filter(is_pressed).filter(is_free).map(|s| (s.act)()).collect()
+        shortcuts().filter(is_pressed).filter(is_free).map(|s| (s.act)()).collect()
     })
 }

@@ -3,6 +3,7 @@
 use egui::{Context, Event, Id, Key, Modal, RichText};
 
 use crate::app::language::{fill, tr};
+use crate::app::platform::{IS_PAGE, files};
 use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
@@ -61,6 +62,7 @@ impl Lab {
         match departure {
             Departure::Close => self.closes = true,
             Departure::Open(source) => self.open(ctx, source),
+            Departure::AskForFile if IS_PAGE => files::choose(),
             Departure::AskForFile => {
                 self.dialog = Some(FileDialog::new(Purpose::Open, self.desk.session.document().path(), ""))
             }

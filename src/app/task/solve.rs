@@ -1,7 +1,7 @@
 //! Background solve of a large model: request, progress and result.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use crate::app::task::quality::Quality;
 use crate::app::task::thread::{Reporter, Task, Update};

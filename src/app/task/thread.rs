@@ -5,8 +5,9 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
-use std::thread;
 use std::time::Duration;
+
+use crate::app::platform;
 
 /// Time between two polls of a background task.
 pub(crate) const POLL: Duration = Duration::from_millis(50);
@@ -51,7 +52,7 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
         let (sender, receiver) = channel();
         let is_cancelled = Arc::new(AtomicBool::new(false));
         let reporter = Reporter { sender, is_cancelled: is_cancelled.clone() };
-        thread::Builder::new().name(name.to_owned()).spawn(move || {
+        platform::work::start(name, move || {
             let done = work(&reporter);
             let _ = reporter.sender.send(Message::Done(done));
         })?;
@@ -111,6 +112,8 @@ impl<P, T> Reporter<P, T> {
 
 #[cfg(test)]
 mod tests {
+    use std::thread;
+
     use super::*;
 
     /// Starts a task that counts until it is cancelled.

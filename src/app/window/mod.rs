@@ -1,19 +1,22 @@
 //! Window: receives winit events and draws frames. At rest no frames are drawn.
 
 mod clicks;
-mod clipboard;
+#[cfg(target_arch = "wasm32")]
+pub(crate) mod page;
+mod report;
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use egui::ViewportId;
 use egui_wgpu::ScreenDescriptor;
 use thiserror::Error;
 use winit::application::ApplicationHandler;
-use winit::dpi::LogicalSize;
 use winit::event::{StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
 use winit::window::{Window, WindowId};
 
 use crate::app::language::{fill, translated};
@@ -21,12 +24,13 @@ use crate::app::offscreen::painter::Stage;
 use crate::app::offscreen::record::{LiveRecording, pointer};
 use crate::app::offscreen::recorder::{Recorder, RecorderError};
 use crate::app::offscreen::shot::picture;
+use crate::app::platform::clipboard::Clipboard;
+use crate::app::platform::{self, IS_PAGE};
 use crate::app::session::recovery::Recovery;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MOST_UNKNOWNS;
 use crate::app::task::thread::POLL;
-use crate::app::window::clipboard::Clipboard;
 use crate::app::{AppError, NoName, ThemeChoice, free_name};
 use crate::render::{Gpu, RenderError};
 use crate::scene::{Scene, Source, registry};
@@ -84,9 +88,19 @@ pub fn opens_in_background(scene: &Scene) -> bool {
 /// # Errors
 /// [`AppError`]: no adapter, or no window.
 pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Simulation>) -> Result<(), AppError> {
+    let settings = Settings::file().as_deref().map(Settings::load).unwrap_or_default();
+    run_with(display, (source, scene, simulation), settings, None)
+}
+
+/// Opens the window with these settings, and with this card of Learn, from 1.
+fn run_with(
+    display: Display,
+    (source, scene, simulation): (Source, Scene, Option<Simulation>),
+    settings: Settings,
+    card: Option<usize>,
+) -> Result<(), AppError> {
     let first_picture = source.name.to_str() == Some(registry::DEFAULT);
     let file = Settings::file();
-    let settings = file.as_deref().map(Settings::load).unwrap_or_default();
     let ctx = egui::Context::default();
     let lab = match simulation {
         Some(simulation) => Some(Lab::new(source, scene, simulation)),
@@ -97,7 +111,7 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
     };
     lab.set_settings(&ctx, settings.clone());
     lab.set_easing(true);
-    let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
+    let folder = file.as_deref().and_then(Path::parent).filter(|_| !IS_PAGE).map(|folder| folder.join("unsaved"));
     let recovery = folder.and_then(|folder| match Recovery::open(&folder) {
         Ok((recovery, left)) => {
             left.into_iter().for_each(|left| lab.offer(left));
@@ -108,16 +122,19 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
             None
         }
     });
-    if first_picture {
-        lab.introduce();
+    match card {
+        Some(card) => lab.show_card(card),
+        None if first_picture => lab.introduce(),
+        None => {}
     }
-    let mut app = App {
+    let app = App {
         lab,
         ctx,
         settings,
         settings_file: file,
         recovery,
         open: None,
+        opening: Rc::default(),
         recording: None,
         scene_recording: None,
         start: Instant::now(),
@@ -125,7 +142,8 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
         wake: None,
         error: None,
     };
-    display.0.run_app(&mut app).map_err(|e| AppError::Window(e.to_string()))?;
+    let ended = platform::start::run(display.0, app).map_err(|e| AppError::Window(e.to_string()))?;
+    let Some(mut app) = ended else { return Ok(()) };
     if let Some(text) = app.recording.as_ref().and_then(LiveRecording::wait) {
         // The window that would show the message is closed.
         eprintln!("warpbeam: {text}");
@@ -143,6 +161,8 @@ struct App {
     /// Copy of unsaved edits; `None` if the system has no folder for it.
     recovery: Option<Recovery>,
     open: Option<OpenWindow>,
+    /// Window that has been opened and is taken over by the next event.
+    opening: Rc<RefCell<Option<Result<OpenWindow, AppError>>>>,
     /// Recording of the window.
     recording: Option<LiveRecording>,
     /// Recording of the scene from its start.
@@ -175,23 +195,19 @@ struct OpenWindow {
 const MAX_FAILURES: u32 = 10;
 
 impl OpenWindow {
-    fn new(event_loop: &ActiveEventLoop, lab: &Lab, ctx: &egui::Context, size: [f32; 2]) -> Result<Self, AppError> {
-        let attributes = Window::default_attributes()
-            .with_title(lab.title())
-            .with_inner_size(first_size(event_loop, size))
-            .with_min_inner_size(SMALLEST);
-        let window = Arc::new(event_loop.create_window(attributes).map_err(|e| AppError::Window(e.to_string()))?);
-        let (instance, surface, gpu) = Gpu::first_of_backends(|backends| {
-            let display = Box::new(event_loop.owned_display_handle());
+    async fn new(window: Arc<Window>, display: OwnedDisplayHandle, ctx: egui::Context) -> Result<Self, AppError> {
+        let (instance, surface, gpu) = Gpu::first_of_backends(async |backends| {
+            let display = Box::new(display.clone());
             let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
             descriptor.backends = backends;
             let instance = wgpu::Instance::new(descriptor);
             let surface = instance.create_surface(window.clone()).map_err(|e| RenderError::NoAdapter {
                 tried: format!("{backends:?}: no surface for the window: {e}"),
             })?;
-            let gpu = Gpu::request(&instance, Some(&surface))?;
+            let gpu = Gpu::request(&instance, Some(&surface)).await?;
             Ok((instance, surface, gpu))
-        })?;
+        })
+        .await?;
         let capabilities = surface.get_capabilities(&gpu.adapter);
         let format = egui_wgpu::preferred_framebuffer_format(&capabilities.formats)
             .map_err(|e| RenderError::NoAdapter { tried: format!("{}: {e}", gpu.describe()) })?;
@@ -203,7 +219,7 @@ impl OpenWindow {
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &configuration);
         let input = egui_winit::State::new(
-            ctx.clone(),
+            ctx,
             ViewportId::ROOT,
             &window,
             Some(window.scale_factor() as f32),
@@ -262,20 +278,6 @@ impl OpenWindow {
     }
 }
 
-/// Smallest size of the window, points: all controls can still be reached.
-const SMALLEST: LogicalSize<f64> = LogicalSize::new(480.0, 360.0);
-
-/// Returns the size of a new window, points: the wanted size, but at most nine tenths of the screen.
-fn first_size(event_loop: &ActiveEventLoop, wanted: [f32; 2]) -> LogicalSize<f64> {
-    const SHARE: f64 = 0.9;
-    let wanted = LogicalSize::new(f64::from(wanted[0]), f64::from(wanted[1]));
-    let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
-    monitor.filter(|m| m.size().width > 0 && m.size().height > 0).map_or(wanted, |monitor| {
-        let screen = monitor.size().to_logical::<f64>(monitor.scale_factor());
-        LogicalSize::new(wanted.width.min(SHARE * screen.width), wanted.height.min(SHARE * screen.height))
-    })
-}
-
 impl App {
     /// Makes the iterations of one frame, draws it, and schedules the next frame that egui requests.
     fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<(), AppError> {
@@ -294,6 +296,8 @@ impl App {
         let mut input = open.input.take_egui_input(&open.window);
         let mut events = std::mem::take(&mut self.later);
         events.append(&mut input.events);
+        open.clipboard.paste(&mut events);
+        platform::page::join_touches(&mut events);
         self.later = clicks::after_first(&mut events);
         input.events = events;
         let mut requests = Vec::new();
@@ -342,15 +346,21 @@ impl App {
         open.window.pre_present_notify();
         open.gpu.queue.present(texture);
         open.stage.free_textures(&mut output.textures_delta);
-        open.window.set_title(&self.lab.title());
+        platform::page::set_title(&open.window, &self.lab.title());
+        platform::page::drawn(|frames| report::json(&self.lab, frames));
 
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
         let delay = delay.min(self.keep_unsaved());
+        if IS_PAGE {
+            // A page is closed without notice.
+            self.keep_settings();
+        }
         self.schedule(if self.later.is_empty() { delay } else { Duration::ZERO });
         for request in requests {
             match request {
                 Request::Screenshot => self.screenshot(screen.pixels_per_point),
                 Request::DiscardCopy => self.recovery.iter_mut().for_each(Recovery::discard_left),
+                Request::Record | Request::RecordScene if IS_PAGE => {}
                 Request::Record => self.record(now),
                 Request::RecordScene => self.record_scene(),
                 Request::Close => self.close(event_loop),
@@ -361,6 +371,20 @@ impl App {
             self.say(text);
         }
         Ok(())
+    }
+
+    /// Takes over the window once its graphics device is there.
+    fn take_window(&mut self, event_loop: &ActiveEventLoop) {
+        let opened = self.opening.borrow_mut().take();
+        match opened {
+            Some(Ok(open)) => {
+                self.lab.set_adapter(open.gpu.describe());
+                open.window.request_redraw();
+                self.open = Some(open);
+            }
+            Some(Err(error)) => self.quit(event_loop, Some(error)),
+            None => {}
+        }
     }
 
     /// Stores a copy of unsaved edits; returns the delay until the next attempt.
@@ -454,6 +478,10 @@ impl App {
 
     fn screenshot(&mut self, pixels_per_point: f32) {
         let Some(open) = &self.open else { return };
+        const NAME: &str = "warpbeam.png";
+        if platform::page::save_frame(&open.window, NAME) {
+            return self.lab.say(&self.ctx, fill!("Saved %{file}", file = NAME));
+        }
         let size = [open.configuration.width, open.configuration.height];
         let saved = free_name("png").map_err(ScreenshotError::from).and_then(|path| {
             let picture = picture(&open.gpu, &mut self.lab, size, pixels_per_point, self.ctx.theme())?;
@@ -480,6 +508,9 @@ impl App {
     }
 
     fn quit(&mut self, event_loop: &ActiveEventLoop, error: Option<AppError>) {
+        if let Some(error) = &error {
+            platform::page::fail(&error.to_string());
+        }
         self.error = self.error.take().or(error);
         if let (Some(recording), Some(open)) = (&mut self.recording, &self.open) {
             recording.stop(&open.gpu, self.start.elapsed().as_secs_f64());
@@ -504,14 +535,19 @@ impl ApplicationHandler for App {
         if self.open.is_some() {
             return;
         }
-        match OpenWindow::new(event_loop, &self.lab, &self.ctx, self.settings.size()) {
-            Ok(open) => {
-                self.lab.set_adapter(open.gpu.describe());
-                open.window.request_redraw();
-                self.open = Some(open);
-            }
-            Err(error) => self.quit(event_loop, Some(error)),
-        }
+        let attributes = Window::default_attributes().with_title(self.lab.title());
+        let attributes = platform::start::window(attributes, event_loop, self.settings.size());
+        let window = match event_loop.create_window(attributes) {
+            Ok(window) => Arc::new(window),
+            Err(error) => return self.quit(event_loop, Some(AppError::Window(error.to_string()))),
+        };
+        let (opening, display, ctx) = (self.opening.clone(), event_loop.owned_display_handle(), self.ctx.clone());
+        platform::graphics::open(async move {
+            let opened = OpenWindow::new(window.clone(), display, ctx).await;
+            *opening.borrow_mut() = Some(opened);
+            window.request_redraw();
+        });
+        self.take_window(event_loop);
     }
 
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
@@ -522,6 +558,7 @@ impl ApplicationHandler for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        self.take_window(event_loop);
         let Some(open) = &mut self.open else { return };
         open.clipboard.before(&event, &mut open.input);
         let wants = open.input.on_window_event(&open.window, &event);
@@ -558,6 +595,10 @@ impl ApplicationHandler for App {
         if wants.repaint {
             open.window.request_redraw();
         }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, (): ()) {
+        self.open.iter().for_each(|open| open.window.request_redraw());
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {

@@ -2,7 +2,7 @@
 //! them.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use egui::{
     Align2, Color32, ComboBox, Context, FontId, Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2,

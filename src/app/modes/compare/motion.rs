@@ -1,7 +1,7 @@
 //! Comparison of two to four integrators, elements or meshes in motion side by side: one load, one clock, one camera,
 //! one colour range.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use egui::{Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 use nalgebra::Vector2;

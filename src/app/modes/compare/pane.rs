@@ -2,7 +2,7 @@
 //! large ones are solved in the background.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use egui::{Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;

@@ -9,11 +9,11 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, PlotResponse, Points, 
 use thiserror::Error;
 
 use crate::app::language::{fill, tr};
+use crate::app::platform::files;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{marker, segments, still};
 use crate::app::{NoName, free_name};
-use crate::export::{ExportError, write_text};
 use crate::picture::PictureError;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 
@@ -22,8 +22,8 @@ use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 pub(crate) enum SaveError {
     #[error(transparent)]
     NoName(#[from] NoName),
-    #[error(transparent)]
-    Export(#[from] ExportError),
+    #[error("{path}: {reason}", path = .path.display())]
+    File { path: PathBuf, reason: std::io::Error },
     #[error(transparent)]
     Picture(#[from] PictureError),
 }
@@ -31,12 +31,15 @@ pub(crate) enum SaveError {
 /// Saves a figure in the current folder under the first free name, and returns its path.
 pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveError> {
     let path = free_name(file.extension())?;
-    match file {
-        FigureFile::Csv => write_text(&path, &figure.csv())?,
-        FigureFile::Svg => write_text(&path, &crate::plot::figure(figure).svg())?,
-        FigureFile::Png => crate::plot::figure(figure).picture()?.write_png(&path)?,
+    let bytes = match file {
+        FigureFile::Csv => figure.csv().into_bytes(),
+        FigureFile::Svg => crate::plot::figure(figure).svg().into_bytes(),
+        FigureFile::Png => crate::plot::figure(figure).picture()?.png()?,
+    };
+    match files::save(&path, &bytes) {
+        Ok(()) => Ok(path),
+        Err(reason) => Err(SaveError::File { path, reason }),
     }
-    Ok(path)
 }
 
 /// Parts of a figure in the window: the plot, and the table to its right.

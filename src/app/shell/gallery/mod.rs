@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
-use std::sync::mpsc::TryRecvError;
 
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
@@ -15,7 +14,7 @@ use self::thumbnail_task::ThumbnailTask;
 use crate::app::action::Action;
 use crate::app::language::tr;
 use crate::app::readout::Readout;
-use crate::app::task::thread::POLL;
+use crate::app::task::thread::{POLL, Update};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::scene::{Analysis, Scene, registry};
 
@@ -70,13 +69,13 @@ impl Gallery {
     fn poll(&mut self, ctx: &Context) {
         if matches!(self.work, Work::NotBegun) {
             // If the thread cannot be started, the gallery shows names and descriptions only.
-            self.work = ThumbnailTask::start().map_or(Work::Ended, Work::Running);
+            self.work = thumbnail_task::start().map_or(Work::Ended, Work::Running);
         }
         while let Work::Running(task) = &self.work {
             match task.poll() {
-                Ok((id, thumbnail)) => _ = self.thumbnails.insert(id, thumbnail),
-                Err(TryRecvError::Empty) => return ctx.request_repaint_after(POLL),
-                Err(TryRecvError::Disconnected) => self.work = Work::Ended,
+                Update::Progress((id, thumbnail)) => _ = self.thumbnails.insert(id, thumbnail),
+                Update::None => return ctx.request_repaint_after(POLL),
+                Update::Done(()) | Update::Died => self.work = Work::Ended,
             }
         }
     }

@@ -33,6 +33,9 @@ impl Clipboard {
         }
     }
 
+    /// Adds text that arrives later than its key to the events of a frame: here it arrives with the key.
+    pub(crate) fn paste(&mut self, _: &mut Vec<egui::Event>) {}
+
     /// Passes text copied in a frame to the system clipboard.
     pub(crate) fn after(&mut self, output: &PlatformOutput) {
         let Some(system) = &mut self.system else { return };

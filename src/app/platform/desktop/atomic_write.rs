@@ -1,0 +1,68 @@
+//! Files that are written whole: readers never see a part.
+
+use std::io::Write as _;
+use std::path::Path;
+
+/// Writes a file under a temporary name in the same folder and then renames it, so that readers see the old content or
+/// the new content, never a part.
+///
+/// # Errors
+/// Error of the operating system; the previous content is unchanged.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    replace_file(path, bytes, true)
+}
+
+/// Writes a file as [`write_whole`] does, but without waiting for the disk: the file survives a crash of the program,
+/// but not of the machine.
+///
+/// # Errors
+/// Error of the operating system; the previous content is unchanged.
+pub(crate) fn write_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    replace_file(path, bytes, false)
+}
+
+fn replace_file(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
+    // A symbolic link stays; the file that it points to is written.
+    let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let name = path.file_name().ok_or(std::io::ErrorKind::InvalidInput)?;
+    let mut temporary = std::ffi::OsString::from(".");
+    temporary.push(name);
+    temporary.push(format!(".{}.part", std::process::id()));
+    let temporary = path.with_file_name(temporary);
+    let write = || {
+        let mut file = std::fs::File::create(&temporary)?;
+        file.write_all(bytes)?;
+        if syncs {
+            file.sync_all()?;
+        }
+        if let Ok(before) = std::fs::metadata(&path) {
+            file.set_permissions(before.permissions())?;
+        }
+        drop(file);
+        std::fs::rename(&temporary, &path)
+    };
+    write().inspect_err(|_| drop(std::fs::remove_file(&temporary)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_that_cannot_be_written_leaves_the_file_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        write_whole(&path, b"one").unwrap();
+        write_whole(&path, b"two").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"two");
+        // A folder with the same name makes writing fail.
+        let taken = folder.path().join("taken");
+        std::fs::create_dir_all(taken.join("inside")).unwrap();
+        assert!(write_whole(&taken, b"three").is_err());
+        assert!(write_whole(&folder.path().join("nowhere/scene.toml"), b"three").is_err());
+        // No temporary file remains.
+        let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        assert_eq!(names, ["scene.toml", "taken"]);
+    }
+}

@@ -1,0 +1,13 @@
+//! Desktop: files on disk, the system clipboard, a window of its own.
+
+mod atomic_write;
+pub(crate) mod clipboard;
+pub(crate) mod files;
+pub(crate) mod graphics;
+pub(crate) mod page;
+pub(crate) mod settings;
+pub(crate) mod start;
+pub(crate) mod work;
+
+/// `true` if the program runs on a web page.
+pub(crate) const IS_PAGE: bool = false;

@@ -1,0 +1,28 @@
+//! Web page around the window: on a desktop there is none.
+
+use winit::window::Window;
+
+/// Shows the title of the window.
+pub(crate) fn set_title(window: &Window, title: &str) {
+    window.set_title(title);
+}
+
+/// Saves the drawn frame as an image; returns `false` if the program has to draw it again for that.
+pub(crate) fn save_frame(_: &Window, _: &str) -> bool {
+    false
+}
+
+/// Tells the page that a frame has been drawn. `report` returns the state of the window as JSON; it receives the number
+/// of frames.
+pub(crate) fn drawn(_report: impl FnOnce(u64) -> String) {}
+
+/// Does nothing: the fingers on a touch screen belong to one device.
+pub(crate) fn join_touches(_: &mut [egui::Event]) {}
+
+/// Shows an error in place of the window; a program prints it instead.
+pub(crate) fn fail(_: &str) {}
+
+/// Returns the address of the page with a scene in it.
+pub(crate) fn link(_: &str) -> String {
+    String::new()
+}

@@ -1,0 +1,35 @@
+//! Window and event loop.
+
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::error::EventLoopError;
+use winit::event_loop::{ActiveEventLoop, EventLoop};
+use winit::window::WindowAttributes;
+
+/// Smallest size of the window, points: all controls can still be reached.
+const SMALLEST: LogicalSize<f64> = LogicalSize::new(480.0, 360.0);
+
+/// Returns the attributes of a window of this size, points.
+pub(crate) fn window(attributes: WindowAttributes, event_loop: &ActiveEventLoop, size: [f32; 2]) -> WindowAttributes {
+    attributes.with_inner_size(first_size(event_loop, size)).with_min_inner_size(SMALLEST)
+}
+
+/// Returns the size of a new window, points: the wanted size, but at most nine tenths of the screen.
+fn first_size(event_loop: &ActiveEventLoop, wanted: [f32; 2]) -> LogicalSize<f64> {
+    const SHARE: f64 = 0.9;
+    let wanted = LogicalSize::new(f64::from(wanted[0]), f64::from(wanted[1]));
+    let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
+    monitor.filter(|m| m.size().width > 0 && m.size().height > 0).map_or(wanted, |monitor| {
+        let screen = monitor.size().to_logical::<f64>(monitor.scale_factor());
+        LogicalSize::new(wanted.width.min(SHARE * screen.width), wanted.height.min(SHARE * screen.height))
+    })
+}
+
+/// Runs the event loop; returns the application when the window is closed.
+///
+/// # Errors
+/// Error of the window system.
+pub(crate) fn run<A: ApplicationHandler>(event_loop: EventLoop<()>, mut app: A) -> Result<Option<A>, EventLoopError> {
+    event_loop.run_app(&mut app)?;
+    Ok(Some(app))
+}

@@ -1,0 +1,134 @@
+//! Files that a user chooses or drops on the page, and downloads. A page has no folder: files are known by their names.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::{JsFuture, spawn_local};
+use web_sys::{Blob, File, FileList, HtmlAnchorElement, HtmlInputElement, Url};
+
+use crate::app::platform::web::page;
+use crate::mesh::Mesh;
+use crate::model::Invalid;
+use crate::scene::{self, Scene, SceneError, Source};
+
+/// Files received from the user.
+#[derive(Default)]
+struct Store {
+    /// Text of each file by its name.
+    texts: BTreeMap<String, String>,
+    /// Scene file to be opened next.
+    arrived: Option<PathBuf>,
+}
+
+thread_local! {
+    static STORE: RefCell<Store> = RefCell::default();
+}
+
+/// Opens a built-in scene, or a scene file that the user has chosen, with its mesh file.
+///
+/// # Errors
+/// [`SceneError`].
+pub(crate) fn open(source: &Source) -> Result<Scene, SceneError> {
+    let text = |name: &str| STORE.with_borrow(|store| store.texts.get(name).cloned());
+    let Some(toml) = source.name.to_str().and_then(text).filter(|_| source.built_in().is_none()) else {
+        return scene::open(source);
+    };
+    let mut scene = Scene::from_toml(&toml)?;
+    let Some(mesh) = &mut scene.mesh else { return Ok(scene) };
+    let name = Path::new(&mesh.file).file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let Some(read) = text(name) else {
+        // The meshes of the built-in scenes are part of the library.
+        let message = format!("{}: expected the mesh file together with its scene file", mesh.file);
+        let invalid = Invalid::new("mesh.file", message);
+        let missing = SceneError::Invalid { file: Some(source.name.clone()), line: None, invalid };
+        return Scene::from_toml_in(&toml, Path::new("")).map_err(|_| missing);
+    };
+    mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&read));
+    mesh.text = Some(read.into());
+    Ok(scene)
+}
+
+/// Adds the text of a scene that came with the page's address, and returns its name.
+pub(crate) fn add(name: &str, text: String) -> PathBuf {
+    STORE.with_borrow_mut(|store| store.texts.insert(name.to_owned(), text));
+    PathBuf::from(name)
+}
+
+/// Offers a file as a download.
+///
+/// # Errors
+/// The browser refuses it.
+pub(crate) fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("warpbeam");
+    if let Some(text) = str::from_utf8(bytes).ok().filter(|_| name.ends_with(".toml")) {
+        // A saved scene can be opened again.
+        add(name, text.to_owned());
+    }
+    let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(bytes));
+    let blob = Blob::new_with_u8_array_sequence(&parts);
+    blob.and_then(|blob| download(name, &blob)).map_err(|error| std::io::Error::other(page::words(&error)))
+}
+
+/// A page keeps no copies of unsaved edits.
+///
+/// # Errors
+/// Always.
+pub(crate) fn save_without_sync(_: &Path, _: &[u8]) -> std::io::Result<()> {
+    Err(std::io::ErrorKind::Unsupported.into())
+}
+
+/// Offers data as a download.
+///
+/// # Errors
+/// The browser refuses it.
+pub(super) fn download(name: &str, data: &Blob) -> Result<(), JsValue> {
+    let document = page::document().ok_or("no document")?;
+    let address = Url::create_object_url_with_blob(data)?;
+    let link: HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
+    link.set_href(&address);
+    link.set_download(name);
+    link.click();
+    // The download begins after this event; its address is needed until then.
+    let revoke = Closure::once_into_js(move || drop(Url::revoke_object_url(&address)));
+    page::later(&revoke, 10_000);
+    Ok(())
+}
+
+/// Asks the browser for scene files.
+pub(crate) fn choose() {
+    let Some(document) = page::document() else { return };
+    let input = document.create_element("input").ok().and_then(|input| input.dyn_into::<HtmlInputElement>().ok());
+    let Some(input) = input else { return };
+    input.set_type("file");
+    input.set_multiple(true);
+    input.set_accept(".toml,.msh");
+    let own = input.clone();
+    let chosen = Closure::once_into_js(move || own.files().iter().for_each(receive));
+    input.set_onchange(Some(chosen.unchecked_ref()));
+    input.click();
+}
+
+/// Reads chosen or dropped files; the first scene file among them is opened.
+pub(super) fn receive(list: &FileList) {
+    let files: Vec<File> = (0..list.length()).filter_map(|i| list.get(i)).collect();
+    spawn_local(async move {
+        let mut scene = None;
+        for file in files {
+            let name = file.name();
+            let Some(text) = JsFuture::from(file.text()).await.ok().and_then(|text| text.as_string()) else { continue };
+            if scene.is_none() && name.ends_with(".toml") {
+                scene = Some(PathBuf::from(&name));
+            }
+            STORE.with_borrow_mut(|store| store.texts.insert(name, text));
+        }
+        STORE.with_borrow_mut(|store| store.arrived = scene);
+        page::wake();
+    });
+}
+
+/// Returns a file chosen in the browser or dropped on the page.
+pub(crate) fn arrived() -> Option<PathBuf> {
+    STORE.with_borrow_mut(|store| store.arrived.take())
+}

@@ -1,0 +1,12 @@
+//! Web page: chosen files instead of a folder, downloads, local storage, a canvas as the window.
+
+pub(crate) mod clipboard;
+pub(crate) mod files;
+pub(crate) mod graphics;
+pub(crate) mod page;
+pub(crate) mod settings;
+pub(crate) mod start;
+pub(crate) mod work;
+
+/// `true` if the program runs on a web page.
+pub(crate) const IS_PAGE: bool = true;

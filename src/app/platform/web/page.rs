@@ -1,0 +1,196 @@
+//! Page around the window: its address, its title, its messages, and the report that tests read.
+
+use std::cell::{Cell, RefCell};
+
+use base64::Engine as _;
+use base64::prelude::BASE64_URL_SAFE_NO_PAD;
+use miniz_oxide::deflate::compress_to_vec;
+use miniz_oxide::inflate::decompress_to_vec_with_limit;
+use wasm_bindgen::prelude::*;
+use web_sys::{Blob, Document, DragEvent, HtmlCanvasElement, UrlSearchParams};
+use winit::event_loop::EventLoopProxy;
+use winit::platform::web::WindowExtWebSys as _;
+use winit::window::Window;
+
+use crate::app::platform::web::files;
+
+/// Level of the compression of scenes in links, of 10.
+const LEVEL: u8 = 9;
+/// Largest text of a scene in a link, bytes.
+const MOST: usize = 1 << 20;
+/// Begin of the fragment of an address that holds a scene.
+const FRAGMENT: &str = "scene=";
+
+thread_local! {
+    /// Wakes the event loop.
+    static PROXY: RefCell<Option<EventLoopProxy<()>>> = RefCell::default();
+    /// Number of frames drawn.
+    static FRAMES: Cell<u64> = const { Cell::new(0) };
+    /// State of the window after the last frame, JSON.
+    static REPORT: RefCell<String> = RefCell::default();
+}
+
+/// Request in the address of the page.
+#[derive(Debug, Default)]
+pub(crate) struct Address {
+    /// Name of a built-in scene.
+    pub scene: Option<String>,
+    /// TOML text of a scene, or the reason for which the link has none.
+    pub toml: Option<Result<String, String>>,
+    /// Language of the window.
+    pub language: Option<String>,
+    /// Number of a card of Learn, from 1.
+    pub card: Option<usize>,
+}
+
+impl Address {
+    /// Reads the address of the page.
+    pub(crate) fn read() -> Self {
+        let Some(window) = web_sys::window() else { return Self::default() };
+        let location = window.location();
+        let search = location.search().unwrap_or_default();
+        let parameters = UrlSearchParams::new_with_str(&search).ok();
+        let parameter = |name: &str| parameters.as_ref().and_then(|parameters| parameters.get(name));
+        let fragment = location.hash().unwrap_or_default();
+        Self {
+            scene: parameter("scene"),
+            toml: fragment.strip_prefix('#').and_then(|text| text.strip_prefix(FRAGMENT)).map(decode),
+            language: parameter("lang"),
+            card: parameter("card").and_then(|card| card.parse().ok()),
+        }
+    }
+}
+
+/// Returns `true` on a page, and `false` in a worker.
+pub(crate) fn has_window() -> bool {
+    web_sys::window().is_some()
+}
+
+/// Returns the language that the browser prefers, such as `zh-CN`.
+pub(crate) fn language() -> Option<String> {
+    web_sys::window()?.navigator().language()
+}
+
+/// Returns the text of a scene in a link.
+fn decode(packed: &str) -> Result<String, String> {
+    let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed).map_err(|error| error.to_string())?;
+    let text = decompress_to_vec_with_limit(&bytes, MOST).map_err(|error| error.to_string())?;
+    String::from_utf8(text).map_err(|error| error.to_string())
+}
+
+/// Returns the address of the page with a scene in it.
+pub(crate) fn link(toml: &str) -> String {
+    let location = web_sys::window().map(|window| window.location());
+    let part = |part: Option<Result<String, JsValue>>| part.and_then(Result::ok).unwrap_or_default();
+    let origin = part(location.as_ref().map(web_sys::Location::origin));
+    let path = part(location.as_ref().map(web_sys::Location::pathname));
+    let packed = BASE64_URL_SAFE_NO_PAD.encode(compress_to_vec(toml.as_bytes(), LEVEL));
+    format!("{origin}{path}#{FRAGMENT}{packed}")
+}
+
+/// Returns the document of the page; `None` in a worker.
+pub(super) fn document() -> Option<Document> {
+    web_sys::window()?.document()
+}
+
+/// Returns the canvas of the page.
+pub(super) fn canvas() -> Option<HtmlCanvasElement> {
+    document()?.get_element_by_id("warpbeam")?.dyn_into().ok()
+}
+
+/// Receives dropped files, answers requests for a report, and wakes the event loop from now on.
+pub(super) fn listen(proxy: EventLoopProxy<()>) {
+    PROXY.set(Some(proxy));
+    let Some(document) = document() else { return };
+    let over = Closure::<dyn FnMut(DragEvent)>::new(|event: DragEvent| event.prevent_default());
+    let dropped = Closure::<dyn FnMut(DragEvent)>::new(|event: DragEvent| {
+        event.prevent_default();
+        event.data_transfer().and_then(|data| data.files()).iter().for_each(files::receive);
+    });
+    document.set_ondragover(Some(over.as_ref().unchecked_ref()));
+    document.set_ondrop(Some(dropped.as_ref().unchecked_ref()));
+    let report = Closure::<dyn FnMut() -> String>::new(|| REPORT.with_borrow(String::clone));
+    set("report", report.as_ref());
+    // They live as long as the page.
+    over.forget();
+    dropped.forget();
+    report.forget();
+}
+
+/// Wakes the event loop.
+pub(super) fn wake() {
+    PROXY.with_borrow(|proxy| proxy.iter().for_each(|proxy| _ = proxy.send_event(())));
+}
+
+/// Calls a function after a delay, ms.
+pub(super) fn later(function: &JsValue, delay: i32) {
+    if let Some(window) = web_sys::window() {
+        let function = function.unchecked_ref();
+        let _ = window.set_timeout_with_callback_and_timeout_and_arguments_0(function, delay);
+    }
+}
+
+/// Shows the title of the page.
+pub(crate) fn set_title(_: &Window, title: &str) {
+    if let Some(document) = document().filter(|document| document.title() != title) {
+        document.set_title(title);
+    }
+}
+
+/// Saves the drawn frame as an image; returns `false` if the program has to draw it again for that.
+pub(crate) fn save_frame(window: &Window, name: &str) -> bool {
+    let name = name.to_owned();
+    let done = Closure::once_into_js(move |blob: Option<Blob>| {
+        if let Some(Err(error)) = blob.map(|blob| files::download(&name, &blob)) {
+            log::warn!("no picture: {}", words(&error));
+        }
+    });
+    window.canvas().is_some_and(|canvas| canvas.to_blob(done.unchecked_ref()).is_ok())
+}
+
+/// Tells the page that a frame has been drawn. `report` returns the state of the window as JSON; it receives the number
+/// of frames.
+pub(crate) fn drawn(report: impl FnOnce(u64) -> String) {
+    let frames = FRAMES.get() + 1;
+    FRAMES.set(frames);
+    REPORT.set(report(frames));
+    if frames == 1 {
+        call("ready", &[]);
+    }
+}
+
+/// Gives all fingers the same device. winit makes each finger a device of its own, and gestures in egui have one
+/// device.
+pub(crate) fn join_touches(events: &mut [egui::Event]) {
+    for event in events {
+        if let egui::Event::Touch { device_id, .. } = event {
+            *device_id = egui::TouchDeviceId(0);
+        }
+    }
+}
+
+/// Shows a message in place of the window.
+pub(crate) fn fail(message: &str) {
+    call("fail", &[message.into()]);
+}
+
+/// Calls a function of the page's object `warpbeam`.
+fn call(name: &str, arguments: &[JsValue]) {
+    let object = js_sys::Reflect::get(&js_sys::global(), &"warpbeam".into());
+    let function = object.and_then(|object| js_sys::Reflect::get(&object, &name.into()));
+    if let Some(function) = function.ok().and_then(|function| function.dyn_into::<js_sys::Function>().ok()) {
+        let _ = function.apply(&JsValue::UNDEFINED, &arguments.iter().collect());
+    }
+}
+
+/// Sets a function of the page's object `warpbeam`.
+fn set(name: &str, function: &JsValue) {
+    if let Ok(object) = js_sys::Reflect::get(&js_sys::global(), &"warpbeam".into()) {
+        let _ = js_sys::Reflect::set(&object, &name.into(), function);
+    }
+}
+
+/// Returns the message of an error of the browser.
+pub(super) fn words(error: &JsValue) -> String {
+    error.dyn_ref::<js_sys::Error>().map_or_else(|| format!("{error:?}"), |error| String::from(error.message()))
+}

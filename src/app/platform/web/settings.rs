@@ -1,0 +1,36 @@
+//! Settings in the local storage of the browser.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use web_sys::Storage;
+
+use crate::app::platform::web::page;
+
+/// Returns the name of the settings.
+pub(crate) fn file() -> Option<PathBuf> {
+    storage().map(|_| PathBuf::from("warpbeam.settings"))
+}
+
+/// Reads the settings.
+///
+/// # Errors
+/// There are none.
+pub(crate) fn read(file: &Path) -> io::Result<String> {
+    let text = storage().zip(file.to_str()).and_then(|(storage, name)| storage.get_item(name).ok().flatten());
+    text.ok_or_else(|| io::ErrorKind::NotFound.into())
+}
+
+/// Writes the settings.
+///
+/// # Errors
+/// The browser refuses them.
+pub(crate) fn write(file: &Path, text: &str) -> io::Result<()> {
+    let (storage, name) = storage().zip(file.to_str()).ok_or(io::ErrorKind::Unsupported)?;
+    storage.set_item(name, text).map_err(|error| io::Error::other(page::words(&error)))
+}
+
+/// Returns the local storage; `None` if the browser is set to keep nothing.
+fn storage() -> Option<Storage> {
+    web_sys::window()?.local_storage().ok().flatten()
+}

@@ -1,0 +1,16 @@
+//! Work that a page does between two frames, because it has no threads.
+
+use std::io;
+
+use wasm_bindgen::prelude::*;
+
+use crate::app::platform::web::page;
+
+/// Starts `work` after the current frame.
+///
+/// # Errors
+/// None.
+pub(crate) fn start(_: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
+    page::later(&Closure::once_into_js(work), 0);
+    Ok(())
+}

@@ -1,0 +1,55 @@
+//! Report of the window's state, which tests of the web page read.
+
+use serde_json::{Value, json};
+
+use crate::app::shell::lab::Lab;
+use crate::scene::Load;
+
+/// Returns the state of the window as JSON. `frames` is the number of frames drawn. Positions are in points from the
+/// upper left corner of the window.
+pub(super) fn json(lab: &Lab, frames: u64) -> String {
+    let (scene, simulation) = (lab.scene(), lab.simulation());
+    let probes = scene.probes.iter().map(|probe| {
+        let u = simulation.probe(&probe.name).map(|u| [number(u.x), number(u.y)]);
+        json!({ "name": probe.name, "u": u })
+    });
+    let loads = scene.loads.iter().map(|load| match load {
+        Load::Force { force, .. } => json!({ "force": force.map(number) }),
+        Load::Moment { moment, .. } => json!({ "moment": number(*moment) }),
+        Load::Gravity { acceleration, .. } => json!({ "gravity": acceleration.map(number) }),
+    });
+    let tips = lab.arrow_tips().into_iter().map(|(load, at)| json!({ "load": load, "x": at.x, "y": at.y }));
+    let (study, is_measuring) = lab.study();
+    let view = lab.view_rect();
+    json!({
+        "frames": frames,
+        "title": lab.title(),
+        "scene": scene.name,
+        "language": lab.language(),
+        "status": simulation.status().id(),
+        "iterations": simulation.iterations(),
+        "residual": number(simulation.residual()),
+        "unknowns": simulation.system().dofs(),
+        "probes": probes.collect::<Vec<_>>(),
+        "loads": loads.collect::<Vec<_>>(),
+        "motion": simulation.motion().map(|motion| json!({
+            "time": number(simulation.state().time()),
+            "steps": motion.counts().steps,
+            "energy_drift": number(motion.ledger().drift()),
+        })),
+        "card": lab.card().map(|(card, _)| card),
+        "cards": lab.card().map(|(_, cards)| cards),
+        "points": study.map(|study| study.measurements.len()),
+        "is_measuring": is_measuring,
+        "is_computing": lab.is_computing(),
+        "arrow_tips": tips.collect::<Vec<_>>(),
+        "scale": number(lab.camera().scale),
+        "view": [view.left(), view.top(), view.right(), view.bottom()],
+    })
+    .to_string()
+}
+
+/// Returns a number, or `null` if it is not finite.
+fn number(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
