@@ -146,9 +146,9 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         for (kind, history) in motions {
             let points = thinned(history, |s| [s.time, s.ledger.total()]);
             let (name, color) = if motions.len() == 1 {
-                (tr("sum").to_owned(), sum)
+                (tr("total").to_owned(), sum)
             } else {
-                (fill!("sum, %{integrator}", integrator = tr(kind.id())), palette.integrator(*kind))
+                (fill!("total, %{integrator}", integrator = tr(kind.id())), palette.integrator(*kind))
             };
             plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(2.5));
         }
