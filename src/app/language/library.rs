@@ -19,6 +19,7 @@ const SENTENCES: &[&str] = &[
     "a time step failed even when shortened to %{n} s: %{error}",
     "the motion exploded: the time step is %{n} s, the critical one about %{critical} s; shorten the time step",
     "%{error}; lower the load",
+    "%{file}: expected the mesh file together with its scene file",
     // Reference solutions.
     "%{reference} (its own error at most %{own} %); beam theory differs by %{off} %",
     "%{reference} (its own error at most %{own} %)",

@@ -7,7 +7,7 @@ use wasm_bindgen_futures::{JsFuture, spawn_local};
 use winit::event::{ElementState, WindowEvent};
 use winit::keyboard::{Key, ModifiersState};
 
-use crate::app::platform::web::page;
+use crate::app::platform::web::browser;
 
 thread_local! {
     /// Text that the browser has handed over, to be pasted.
@@ -54,7 +54,7 @@ impl Clipboard {
                 let written = clipboard.write_text(text);
                 spawn_local(async move {
                     if let Err(error) = JsFuture::from(written).await {
-                        log::warn!("not copied: {}", page::words(&error));
+                        log::warn!("not copied: {}", browser::message(&error));
                     }
                 });
             }
@@ -68,7 +68,7 @@ fn read() {
     spawn_local(async move {
         if let Some(text) = JsFuture::from(clipboard.read_text()).await.ok().and_then(|text| text.as_string()) {
             PASTED.set(Some(text));
-            page::wake();
+            browser::wake();
         }
     });
 }

@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{Blob, File, FileList, HtmlAnchorElement, HtmlInputElement, Url};
 
-use crate::app::platform::web::page;
+use crate::app::platform::web::browser;
 use crate::mesh::Mesh;
 use crate::model::Invalid;
 use crate::scene::{self, Scene, SceneError, Source};
@@ -40,7 +40,7 @@ pub(crate) fn open(source: &Source) -> Result<Scene, SceneError> {
     let name = Path::new(&mesh.file).file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let Some(read) = text(name) else {
         // The meshes of the built-in scenes are part of the library.
-        let message = format!("{}: expected the mesh file together with its scene file", mesh.file);
+        let message = format!("{file}: expected the mesh file together with its scene file", file = mesh.file);
         let invalid = Invalid::new("mesh.file", message);
         let missing = SceneError::Invalid { file: Some(source.name.clone()), line: None, invalid };
         return Scene::from_toml_in(&toml, Path::new("")).map_err(|_| missing);
@@ -68,7 +68,7 @@ pub(crate) fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     }
     let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(bytes));
     let blob = Blob::new_with_u8_array_sequence(&parts);
-    blob.and_then(|blob| download(name, &blob)).map_err(|error| std::io::Error::other(page::words(&error)))
+    blob.and_then(|blob| download(name, &blob)).map_err(|error| std::io::Error::other(browser::message(&error)))
 }
 
 /// A page keeps no copies of unsaved edits.
@@ -84,7 +84,7 @@ pub(crate) fn save_without_sync(_: &Path, _: &[u8]) -> std::io::Result<()> {
 /// # Errors
 /// The browser refuses it.
 pub(super) fn download(name: &str, data: &Blob) -> Result<(), JsValue> {
-    let document = page::document().ok_or("no document")?;
+    let document = browser::document().ok_or("no document")?;
     let address = Url::create_object_url_with_blob(data)?;
     let link: HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
     link.set_href(&address);
@@ -92,13 +92,13 @@ pub(super) fn download(name: &str, data: &Blob) -> Result<(), JsValue> {
     link.click();
     // The download begins after this event; its address is needed until then.
     let revoke = Closure::once_into_js(move || drop(Url::revoke_object_url(&address)));
-    page::later(&revoke, 10_000);
+    browser::later(&revoke, 10_000);
     Ok(())
 }
 
 /// Asks the browser for scene files.
 pub(crate) fn choose() {
-    let Some(document) = page::document() else { return };
+    let Some(document) = browser::document() else { return };
     let input = document.create_element("input").ok().and_then(|input| input.dyn_into::<HtmlInputElement>().ok());
     let Some(input) = input else { return };
     input.set_type("file");
@@ -124,7 +124,7 @@ pub(super) fn receive(list: &FileList) {
             STORE.with_borrow_mut(|store| store.texts.insert(name, text));
         }
         STORE.with_borrow_mut(|store| store.arrived = scene);
-        page::wake();
+        browser::wake();
     });
 }
 

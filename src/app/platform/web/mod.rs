@@ -1,5 +1,6 @@
 //! Web page: chosen files instead of a folder, downloads, local storage, a canvas as the window.
 
+mod browser;
 pub(crate) mod clipboard;
 pub(crate) mod files;
 pub(crate) mod graphics;

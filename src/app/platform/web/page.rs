@@ -7,12 +7,12 @@ use base64::prelude::BASE64_URL_SAFE_NO_PAD;
 use miniz_oxide::deflate::compress_to_vec;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use wasm_bindgen::prelude::*;
-use web_sys::{Blob, Document, DragEvent, HtmlCanvasElement, UrlSearchParams};
+use web_sys::{Blob, DragEvent, UrlSearchParams};
 use winit::event_loop::EventLoopProxy;
 use winit::platform::web::WindowExtWebSys as _;
 use winit::window::Window;
 
-use crate::app::platform::web::files;
+use crate::app::platform::web::{browser, files};
 
 /// Level of the compression of scenes in links, of 10.
 const LEVEL: u8 = 9;
@@ -22,8 +22,6 @@ const MOST: usize = 1 << 20;
 const FRAGMENT: &str = "scene=";
 
 thread_local! {
-    /// Wakes the event loop.
-    static PROXY: RefCell<Option<EventLoopProxy<()>>> = RefCell::default();
     /// Number of frames drawn.
     static FRAMES: Cell<u64> = const { Cell::new(0) };
     /// State of the window after the last frame, JSON.
@@ -88,20 +86,10 @@ pub(crate) fn link(toml: &str) -> String {
     format!("{origin}{path}#{FRAGMENT}{packed}")
 }
 
-/// Returns the document of the page; `None` in a worker.
-pub(super) fn document() -> Option<Document> {
-    web_sys::window()?.document()
-}
-
-/// Returns the canvas of the page.
-pub(super) fn canvas() -> Option<HtmlCanvasElement> {
-    document()?.get_element_by_id("warpbeam")?.dyn_into().ok()
-}
-
 /// Receives dropped files, answers requests for a report, and wakes the event loop from now on.
 pub(super) fn listen(proxy: EventLoopProxy<()>) {
-    PROXY.set(Some(proxy));
-    let Some(document) = document() else { return };
+    browser::set_proxy(proxy);
+    let Some(document) = browser::document() else { return };
     let over = Closure::<dyn FnMut(DragEvent)>::new(|event: DragEvent| event.prevent_default());
     let dropped = Closure::<dyn FnMut(DragEvent)>::new(|event: DragEvent| {
         event.prevent_default();
@@ -117,22 +105,9 @@ pub(super) fn listen(proxy: EventLoopProxy<()>) {
     report.forget();
 }
 
-/// Wakes the event loop.
-pub(super) fn wake() {
-    PROXY.with_borrow(|proxy| proxy.iter().for_each(|proxy| _ = proxy.send_event(())));
-}
-
-/// Calls a function after a delay, ms.
-pub(super) fn later(function: &JsValue, delay: i32) {
-    if let Some(window) = web_sys::window() {
-        let function = function.unchecked_ref();
-        let _ = window.set_timeout_with_callback_and_timeout_and_arguments_0(function, delay);
-    }
-}
-
 /// Shows the title of the page.
 pub(crate) fn set_title(_: &Window, title: &str) {
-    if let Some(document) = document().filter(|document| document.title() != title) {
+    if let Some(document) = browser::document().filter(|document| document.title() != title) {
         document.set_title(title);
     }
 }
@@ -142,7 +117,7 @@ pub(crate) fn save_frame(window: &Window, name: &str) -> bool {
     let name = name.to_owned();
     let done = Closure::once_into_js(move |blob: Option<Blob>| {
         if let Some(Err(error)) = blob.map(|blob| files::download(&name, &blob)) {
-            log::warn!("no picture: {}", words(&error));
+            log::warn!("no picture: {}", browser::message(&error));
         }
     });
     window.canvas().is_some_and(|canvas| canvas.to_blob(done.unchecked_ref()).is_ok())
@@ -188,9 +163,4 @@ fn set(name: &str, function: &JsValue) {
     if let Ok(object) = js_sys::Reflect::get(&js_sys::global(), &"warpbeam".into()) {
         let _ = js_sys::Reflect::set(&object, &name.into(), function);
     }
-}
-
-/// Returns the message of an error of the browser.
-pub(super) fn words(error: &JsValue) -> String {
-    error.dyn_ref::<js_sys::Error>().map_or_else(|| format!("{error:?}"), |error| String::from(error.message()))
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use web_sys::Storage;
 
-use crate::app::platform::web::page;
+use crate::app::platform::web::browser;
 
 /// Returns the name of the settings.
 pub(crate) fn file() -> Option<PathBuf> {
@@ -27,7 +27,7 @@ pub(crate) fn read(file: &Path) -> io::Result<String> {
 /// The browser refuses them.
 pub(crate) fn write(file: &Path, text: &str) -> io::Result<()> {
     let (storage, name) = storage().zip(file.to_str()).ok_or(io::ErrorKind::Unsupported)?;
-    storage.set_item(name, text).map_err(|error| io::Error::other(page::words(&error)))
+    storage.set_item(name, text).map_err(|error| io::Error::other(browser::message(&error)))
 }
 
 /// Returns the local storage; `None` if the browser is set to keep nothing.

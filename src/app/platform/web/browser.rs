@@ -1,0 +1,45 @@
+//! Browser: its document, its timer, its errors, and the event loop that they wake.
+
+use std::cell::RefCell;
+
+use wasm_bindgen::prelude::*;
+use web_sys::{Document, HtmlCanvasElement};
+use winit::event_loop::EventLoopProxy;
+
+thread_local! {
+    /// Wakes the event loop.
+    static PROXY: RefCell<Option<EventLoopProxy<()>>> = RefCell::default();
+}
+
+/// Sets the event loop that [`wake`] wakes.
+pub(super) fn set_proxy(proxy: EventLoopProxy<()>) {
+    PROXY.set(Some(proxy));
+}
+
+/// Returns the document of the page; `None` in a worker.
+pub(super) fn document() -> Option<Document> {
+    web_sys::window()?.document()
+}
+
+/// Returns the canvas of the page.
+pub(super) fn canvas() -> Option<HtmlCanvasElement> {
+    document()?.get_element_by_id("warpbeam")?.dyn_into().ok()
+}
+
+/// Wakes the event loop.
+pub(super) fn wake() {
+    PROXY.with_borrow(|proxy| proxy.iter().for_each(|proxy| _ = proxy.send_event(())));
+}
+
+/// Calls a function after a delay, ms.
+pub(super) fn later(function: &JsValue, delay: i32) {
+    if let Some(window) = web_sys::window() {
+        let function = function.unchecked_ref();
+        let _ = window.set_timeout_with_callback_and_timeout_and_arguments_0(function, delay);
+    }
+}
+
+/// Returns the message of an error of the browser.
+pub(super) fn message(error: &JsValue) -> String {
+    error.dyn_ref::<js_sys::Error>().map_or_else(|| format!("{error:?}"), |error| String::from(error.message()))
+}
