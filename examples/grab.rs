@@ -16,7 +16,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Drags the tip. Returns its largest distance from the pointer in the last quarter, m, and the largest force, N.
+/// Drags the tip. Returns its largest distance from the pointer in the last quarter of the frames, m, and the
+/// largest force of all frames, N.
 pub fn drag() -> Result<(f64, f64), Box<dyn Error>> {
     let scene = Scene::beam(2.0, 0.2)
         .with_cells(16, 1)

@@ -13,7 +13,7 @@ use crate::simulation::{Field, Simulation};
 
 /// Reason why a result was not written.
 ///
-/// See [`write`].
+/// See [`write()`].
 #[derive(Debug, Error)]
 pub enum ExportError {
     /// The file name has an unknown extension.

@@ -46,7 +46,7 @@ pub fn support_stiffness(
     forces: &mut Forces,
     workspace: &mut Workspace,
 ) -> Option<f64> {
-    /// Step of the central differences, as a fraction of the motion; their error is about its square.
+    /// Step of the central differences, as a fraction of the support's displacement; their relative error is about H².
     const H: f64 = 1e-4;
     let (system, supports) = (problem.system(), problem.supports());
     let (mesh, pattern) = (system.mesh(), system.pattern());

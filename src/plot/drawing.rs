@@ -65,7 +65,7 @@ pub(super) fn solid(width: f64) -> Stroke {
     Stroke { width, dashes: &[] }
 }
 
-/// Part of a text that is at its place.
+/// Point of a text that lies at the given position.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Anchor {
     Start,

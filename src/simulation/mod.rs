@@ -664,7 +664,7 @@ impl Simulation {
         &self.body.problem
     }
 
-    /// Returns the equations without numerical values: mesh, elements, sparsity.
+    /// Returns the parts of the equations that do not depend on the state and the material: mesh, elements, sparsity.
     #[doc(hidden)]
     #[must_use]
     pub fn system(&self) -> &Arc<System> {

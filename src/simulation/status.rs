@@ -12,7 +12,7 @@ pub enum Status {
     /// Not finished.
     #[default]
     Running,
-    /// The residual is below the tolerance, or within its rounding error; see [`crate::Simulation::residual_floor`].
+    /// The residual is below the tolerance, or within its rounding error; see [`crate::Equilibrium::residual_floor`].
     Converged,
     /// The number of iterations was reached after which the scene accepts the result:
     /// [`crate::scene::SolverSettings::accept_after`].

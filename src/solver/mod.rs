@@ -137,9 +137,9 @@ fn operations(symbolic: &SymbolicCholesky<usize>) -> [f64; 2] {
 
 /// Computes [`Factor::price`] from the sparsity, not from measured times.
 fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
-    // Overhead of small columns and fronts, and cost of an operation of a factorization relative to one of a back
-    // substitution, which is limited by memory bandwidth: fitted to beams, simplicial with 100 to 1 200 unknowns,
-    // supernodal with 40 to 33 000.
+    // `least`: overhead of columns and fronts, in back substitutions; `operation`: cost of an operation of the
+    // factorization relative to one of a back substitution, which is limited by memory bandwidth. Fitted to beams:
+    // simplicial with 100 to 1 200 unknowns, supernodal with 40 to 33 000.
     let (least, operation) = match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(_) => (4.2, 0.9),
         SymbolicCholeskyRaw::Supernodal(_) => (1.5, 0.25),

@@ -58,7 +58,7 @@ impl std::fmt::Display for Jump {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Bifurcation {
-    /// Load factor, accurate to a thousandth.
+    /// Load factor, with a relative error of at most 0.001.
     pub factor: f64,
     /// Numbers of negative eigenvalues of the exact tangent below and beyond it: 0 where the path is stable.
     pub unstable_modes: [usize; 2],

@@ -199,7 +199,7 @@ fn the_scene_parser_reads_or_refuses_any_text() {
     });
 }
 
-/// Any text is read as a number in any unit, or is refused; a scene reads the same number.
+/// For any text and unit, the parser returns a number or an error; a scene file with that text gives the same number.
 #[test]
 fn units_are_read_or_refused() {
     let words = [

@@ -39,7 +39,7 @@ pub(crate) struct Palette {
     pub error: Color32,
     /// Background of error messages.
     pub error_chip: Color32,
-    /// Outlines of the reference solution and, `rest`, of the body at rest.
+    /// Outline of the reference solution (`exact`), and of the body at rest (`rest`).
     pub exact: Color32,
     pub rest: Color32,
     pub support: Color32,

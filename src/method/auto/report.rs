@@ -26,7 +26,7 @@ pub enum Decision {
     Unchanged,
     /// Linear theory.
     Linear,
-    /// Corotated steps, all with an old factor.
+    /// Every corotated step reused the factorization of an earlier solve.
     OldFactor,
     /// Corotated steps with a new factor.
     NewFactor,

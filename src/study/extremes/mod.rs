@@ -144,7 +144,8 @@ pub struct Entry {
     pub iterations: u32,
     /// Relative residual at the end.
     pub residual: f64,
-    /// Bound of the residual's rounding error, if the solve has ended at it; see [`Simulation::residual_floor`].
+    /// Bound of the residual's rounding error, if the solve has ended at it; see
+    /// [`crate::Equilibrium::residual_floor`].
     pub residual_floor: Option<f64>,
     /// Displacement of the tip over the length, or of the first probe over the size, in the last finite state.
     pub tip: Vector2<f64>,

@@ -233,7 +233,7 @@ pub struct MotionStudy {
     pub duration: f64,
     /// Duration of the scene, s.
     pub scene_duration: f64,
-    /// Cells of the mesh nearest to the scene's own, on which integrators are compared.
+    /// Cells along and across of the studied mesh that is closest to the scene's own; integrators are compared on it.
     pub own_mesh: Option<[u32; 2]>,
     /// Reference solution.
     pub reference: MotionReference,

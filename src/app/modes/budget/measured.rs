@@ -119,7 +119,7 @@ impl Choice {
         }
     }
 
-    /// Returns the name of the setting.
+    /// Returns the label of the measured setting: element, mesh and method.
     pub(crate) fn text(&self) -> String {
         match self {
             Self::Rest(m) => translated(&m.setting.to_string()),

@@ -22,7 +22,7 @@ use crate::method::METHODS;
 use crate::scene::{Analysis, Scene, limits};
 use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
 
-/// Study of the lab's scene, and the limits for its settings.
+/// State of Budget: the study of the scene, and the largest error and time that a setting may have.
 #[derive(Debug, Default)]
 pub(crate) struct Budget {
     background: Option<Background>,

@@ -89,7 +89,7 @@ impl Curve {
     }
 }
 
-/// Returns the path of a displacement that leaves the axes, else its larger component, which shows an error best.
+/// Returns the default plot: the path (u_x, u_y) if both components are large, else the larger component over the load.
 pub(crate) fn usual(displacements: impl Iterator<Item = Vector2<f64>> + Clone) -> CurvePlot {
     if leaves_the_axes(displacements.clone()) {
         CurvePlot::Path

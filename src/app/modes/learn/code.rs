@@ -18,7 +18,8 @@ struct Line {
     indent: u8,
     /// Text in the markup of [`formula`].
     code: &'static str,
-    /// Returns the numbers of the line for a simulation and the selected triangle; `None` if a step skips the line.
+    /// Formats the values that this line of the displayed code computes for the selected triangle; `None` for a line
+    /// without values.
     numbers: Option<fn(&Simulation, usize) -> String>,
 }
 
