@@ -58,7 +58,7 @@ impl std::fmt::Display for Jump {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Bifurcation {
-    /// Load factor, with a relative error of at most 0.001.
+    /// Load factor, within 0.001 of the full load.
     pub factor: f64,
     /// Numbers of negative eigenvalues of the exact tangent below and beyond it: 0 where the path is stable.
     pub unstable_modes: [usize; 2],
