@@ -11,7 +11,7 @@ use crate::solver::SolverError;
 use crate::state::State;
 
 /// Reason why a step failed.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[derive(Clone, Copy, Debug, Error, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum StepError {
     /// The factorization failed.
@@ -31,7 +31,7 @@ pub enum StepError {
 /// Reason why a motion cannot continue.
 ///
 /// See [`Motion`](crate::Motion) for an example.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[derive(Clone, Copy, Debug, Error, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum StopReason {
     /// A step failed even at the smallest length.
@@ -81,7 +81,7 @@ impl Solves {
 /// Counts of operations since the start.
 ///
 /// See [`Motion`](crate::Motion) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct Counts {
     /// Time steps.

@@ -10,7 +10,7 @@ use crate::state::State;
 use crate::timings::{Timings, timed};
 
 /// Reason why an iteration produced no new state.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum IterationError {
     /// The factorization failed.

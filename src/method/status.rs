@@ -7,7 +7,7 @@ use crate::format::{count, number, two_digits};
 use crate::state::{State, largest};
 
 /// Reason why an iteration stopped before it converged.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Reason {
     /// The iteration limit was reached.

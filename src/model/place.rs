@@ -12,7 +12,7 @@ use crate::format::number;
 /// Whole edge or single point.
 ///
 /// See [`Scene::beam`](crate::Scene::beam) for an example.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Place {
     /// Named edge: `left`, `right`, `bottom`, `top`, or a name of the mesh file.
     Edge(String),

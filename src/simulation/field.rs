@@ -10,7 +10,7 @@ use crate::stress::{ErrorEstimate, Local, NodalStress, visit_points};
 /// Quantity with a value at every quadrature point, and recovered at every node.
 ///
 /// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Field {
     /// Von Mises stress of the Cauchy stress, Pa.

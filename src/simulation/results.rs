@@ -53,7 +53,7 @@ pub struct Reaction {
 /// Reaction of one support on the body.
 ///
 /// See [`Simulation::solution`](crate::Simulation::solution) for an example.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct SupportReaction {
     /// Place of the support.

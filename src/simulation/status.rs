@@ -6,7 +6,7 @@ use crate::method::Reason;
 /// Status of a simulation.
 ///
 /// See [`Simulation`](crate::Simulation) for an example.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Status {
     /// Not finished.

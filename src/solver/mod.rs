@@ -18,7 +18,7 @@ use thiserror::Error;
 pub(crate) mod lanczos;
 
 /// Reason why there is no factor.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum SolverError {
     /// The matrix is not positive definite, or not finite.
     #[error("the stiffness matrix is not positive definite")]

@@ -54,7 +54,7 @@ impl Effort {
 }
 
 /// Point of a scene that is not at a node of the mesh.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MovedPoint {
     /// Table of the scene that names the point: `load.0`, `support.1`.

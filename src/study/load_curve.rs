@@ -11,7 +11,7 @@ use crate::scene::{MethodKind, Place, Scene};
 use crate::simulation::{Simulation, Status};
 
 /// Load factor with its deflections.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sample {
     /// Load factor, relative to the scene's load.
     pub factor: f64,
@@ -34,7 +34,7 @@ impl Sample {
 }
 
 /// Load at which the error of linear theory exceeds a limit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Departure {
     /// Limit, percent of the exact displacement.
     pub percent: f64,
@@ -43,7 +43,7 @@ pub struct Departure {
 }
 
 /// Result of a method at full load.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MethodPoint {
     /// Method.
     pub method: MethodKind,
@@ -56,7 +56,7 @@ pub struct MethodPoint {
 }
 
 /// Load–deflection curve of a cantilever scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LoadCurve {
     /// Samples from zero load to beyond the full load.
     pub samples: Vec<Sample>,

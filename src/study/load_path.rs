@@ -14,7 +14,7 @@ use crate::simulation::{Simulation, Status, SupportReaction, supports_power};
 use crate::state::{State, largest};
 
 /// Equilibrium on the path.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct PathState {
     /// Load factor of the scene's loads and prescribed displacements.
@@ -29,7 +29,7 @@ pub struct PathState {
 }
 
 /// Jump of the body away from the path.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Jump {
     /// Last load factor with an equilibrium near the previous ones.
     pub factor: f64,
@@ -55,7 +55,7 @@ impl std::fmt::Display for Jump {
 }
 
 /// Critical point on the path, at which the exact tangent is singular and another path crosses this one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct Bifurcation {
     /// Load factor, within 0.001 of the full load.
@@ -94,7 +94,7 @@ impl std::fmt::Display for Bifurcation {
 }
 
 /// Reason why a path ends before the full load.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum PathEndReason {
     /// There is no equilibrium nearby, stable or not.
@@ -106,7 +106,7 @@ pub enum PathEndReason {
 }
 
 /// End of a path before the full load.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct PathEnd {
     /// Load factor.
@@ -127,7 +127,7 @@ impl std::fmt::Display for PathEnd {
 }
 
 /// Critical points of the load path that ends at an equilibrium.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct PathSummary {
     /// First jump on the path, if any.
@@ -147,7 +147,7 @@ impl PathSummary {
 }
 
 /// Load path of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct LoadPath {
     /// Title of the scene.

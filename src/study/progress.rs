@@ -94,7 +94,7 @@ pub type Observer<'a> = &'a mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
 /// Extent of a study.
 ///
 /// See [`Study::new`](crate::Study::new) for an example.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Extent {
     /// Coarser meshes only.
     Quick,

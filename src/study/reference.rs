@@ -16,7 +16,7 @@ use crate::scene::{Analysis, MethodKind, Place, Scene};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
 
 /// Origin of a reference solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum ReferenceSource {
     /// The geometrically exact beam.
@@ -50,7 +50,7 @@ impl std::fmt::Display for ReferenceSource {
 }
 
 /// Reference displacement of a probe.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct ProbeReference {
     /// Displacement, m.
@@ -91,7 +91,7 @@ impl std::fmt::Display for ProbeReference {
 /// Reference solution of a scene.
 ///
 /// See [`Reference::of`](crate::Reference::of) for an example.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct Reference {
     /// Reference of every probe of the scene; `None` if the probe does not move, or no bound of the error is known.

@@ -23,7 +23,7 @@ use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
 
 /// Parameters varied in the study.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Setting {
     /// Element.
     pub element: ElementKind,
@@ -74,7 +74,7 @@ pub(super) fn cells_text(cells: Option<[u32; 2]>) -> String {
 
 /// Error of a result and its parts, percent of the reference's displacement. The parts are lengths of displacements:
 /// their sum is an upper bound of the total.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ErrorSplit {
     /// Distance from the reference solution.
     pub total: f64,
@@ -98,7 +98,7 @@ impl ErrorSplit {
 /// Measured time and error of a setting.
 ///
 /// See [`Study::new`](crate::Study::new) for an example.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Measurement {
     /// Setting.
     pub setting: Setting,
@@ -145,7 +145,7 @@ impl Measurement {
 /// Speed–accuracy study of a scene.
 ///
 /// See [`Study::new`](crate::Study::new) for an example.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Study {
     /// Name of the scene.
     pub scene: String,

@@ -2,7 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::app::task::lazy::{Lazy, Watch};
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::lazy::{Fact, Lazy, Watch};
+use crate::app::task::sent_scene::SentScene;
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::scene::{DynamicsSettings, Scene, SolverSettings};
@@ -10,43 +13,60 @@ use crate::simulation::Simulation;
 use crate::study::{Effort, LoadCurve, LoadPath, PathSummary, Reference};
 
 /// Load–displacement curve of a scene.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum Curve {
     /// Load curve of a cantilever, and its scene.
-    Beam(Box<(LoadCurve, Scene)>),
+    Beam(Box<(LoadCurve, SentScene)>),
     /// Load path of any other scene at rest, and its scene.
-    Path(Box<(LoadPath, Scene)>),
+    Path(Box<(LoadPath, SentScene)>),
 }
 
-impl Curve {
-    fn of(scene: &Scene) -> Option<Self> {
-        let path = || Some(Self::Path(Box::new((LoadPath::of(scene)?, scene.clone()))));
-        let beam = LoadCurve::new(scene).map(|curve| Self::Beam(Box::new((curve, scene.clone()))));
-        beam.or_else(path)
-    }
+/// Facts: the kinds of results of a scene.
+macro_rules! facts {
+    ($($(#[$about:meta])* $kind:ident = $name:literal: $value:ty, $compute:expr;)*) => {$(
+        $(#[$about])*
+        #[derive(Debug)]
+        pub(crate) struct $kind;
+
+        impl Fact for $kind {
+            const NAME: &'static str = $name;
+            type Value = $value;
+
+            fn compute(scene: &Scene, watch: Watch<'_>) -> Option<$value> {
+                let compute: fn(&Scene, Watch<'_>) -> Option<$value> = $compute;
+                compute(scene, watch)
+            }
+        }
+    )*};
+}
+
+facts! {
+    /// Reference solution that errors are measured against.
+    ReferenceFact = "reference": Reference, find_reference;
+    /// Load–displacement curve.
+    CurveFact = "curve": Curve, |scene, _| curve(scene);
+    /// Jumps of the body on the load path that starts at rest.
+    JumpFact = "jump": PathSummary, |scene, _| LoadPath::summary_of(scene);
+    /// Lowest natural frequency, Hz.
+    FrequencyFact = "frequency": f64, |scene, _| natural_frequency(scene);
+}
+
+fn curve(scene: &Scene) -> Option<Curve> {
+    let own = || SentScene(scene.clone());
+    let path = || Some(Curve::Path(Box::new((LoadPath::of(scene)?, own()))));
+    LoadCurve::new(scene).map(|curve| Curve::Beam(Box::new((curve, own())))).or_else(path)
 }
 
 /// Results of the current scene; each is `None` until it has been computed.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Facts {
     /// Reference solution that errors are measured against.
-    pub reference: Lazy<Reference>,
-    pub curve: Lazy<Curve>,
+    pub reference: Lazy<ReferenceFact>,
+    pub curve: Lazy<CurveFact>,
     /// Jumps of the body on the load path that starts at rest.
-    pub jump: Lazy<PathSummary>,
+    pub jump: Lazy<JumpFact>,
     /// Lowest natural frequency, Hz.
-    pub frequency: Lazy<f64>,
-}
-
-impl Default for Facts {
-    fn default() -> Self {
-        Self {
-            reference: Lazy::new(find_reference),
-            curve: Lazy::new(|scene, _| Curve::of(scene)),
-            jump: Lazy::new(|scene, _| LoadPath::summary_of(scene)),
-            frequency: Lazy::new(|scene, _| natural_frequency(scene)),
-        }
-    }
+    pub frequency: Lazy<FrequencyFact>,
 }
 
 impl Facts {

@@ -1,36 +1,67 @@
 //! Value that is computed in the background and invalidated by edits.
 
+use std::fmt::Debug;
+use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use crate::app::task::thread::{Task, Update};
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::sent_scene::SentScene;
+use crate::app::task::thread::{Data, Reporter, Task, Update, Work};
 use crate::scene::Scene;
 
 /// Callback that receives the fraction done; it breaks to cancel.
 pub(crate) type Watch<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
-/// Function that computes the value of a scene; `None` if the scene has none.
-pub(crate) type Compute<T> = fn(&Scene, Watch<'_>) -> Option<T>;
+/// Kind of value of a scene that is computed in the background.
+pub(crate) trait Fact: Debug + 'static {
+    /// Name of the computation.
+    const NAME: &'static str;
+    type Value: Data + Debug;
+
+    /// Computes the value of a scene; `None` if the scene has none.
+    fn compute(scene: &Scene, watch: Watch<'_>) -> Option<Self::Value>;
+}
+
+/// Request for a value.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct FactWork<F>(SentScene, PhantomData<fn() -> F>);
+
+impl<F: Fact> Work for FactWork<F> {
+    const NAME: &'static str = F::NAME;
+    type Progress = f64;
+    type Output = Option<F::Value>;
+
+    fn run(self, reporter: &Reporter<f64, Self::Output>) -> Self::Output {
+        F::compute(&self.0.0, &mut |done| reporter.report(done))
+    }
+}
+
+/// Running computation of a value.
+type FactTask<F> = Task<f64, Option<<F as Fact>::Value>>;
 
 /// Value of a scene, computed in the background; a scene may have none.
 #[derive(Debug)]
-pub(crate) struct Lazy<T> {
-    compute: Compute<T>,
+pub(crate) struct Lazy<F: Fact> {
     /// Fraction of the current computation that is done.
     done: f64,
     /// Value of the current scene: `None` until it has been computed, `Some(None)` if the scene has none.
-    value: Option<Option<T>>,
+    value: Option<Option<F::Value>>,
     /// Value of the previous scene.
-    previous: Option<T>,
+    previous: Option<F::Value>,
     /// Running computation, and `true` if it is for the current scene. Only one thread runs at a time, so that edits do
     /// not pile up.
-    running: Option<(Task<f64, Option<T>>, bool)>,
+    running: Option<(FactTask<F>, bool)>,
 }
 
-impl<T: Send + 'static> Lazy<T> {
-    pub(crate) fn new(compute: Compute<T>) -> Self {
-        Self { compute, done: 0.0, value: None, previous: None, running: None }
+impl<F: Fact> Default for Lazy<F> {
+    fn default() -> Self {
+        Self { done: 0.0, value: None, previous: None, running: None }
     }
+}
 
+impl<F: Fact> Lazy<F> {
     /// Invalidates the value after an edit of the scene.
     pub(crate) fn invalidate(&mut self) {
         self.previous = self.value.take().unwrap_or_else(|| self.previous.take());
@@ -66,9 +97,8 @@ impl<T: Send + 'static> Lazy<T> {
             self.running = None;
         }
         if self.value.is_none() {
-            let (compute, scene) = (self.compute, scene.clone());
             self.done = 0.0;
-            match Task::start("lazy value", move |reporter| compute(&scene, &mut |done| reporter.report(done))) {
+            match Task::run(FactWork::<F>(SentScene(scene.clone()), PhantomData)) {
                 Ok(task) => self.running = Some((task, true)),
                 Err(_) => self.value = Some(None),
             }
@@ -84,18 +114,18 @@ impl<T: Send + 'static> Lazy<T> {
     /// Computes the value, and waits for it.
     pub(crate) fn wait(&mut self, scene: &Scene) {
         if self.value.is_none() {
-            self.value = Some((self.compute)(scene, &mut |_| ControlFlow::Continue(())));
+            self.value = Some(F::compute(scene, &mut |_| ControlFlow::Continue(())));
             self.running = None;
         }
     }
 
     /// Returns the value, if it has been computed and the scene has one.
-    pub(crate) fn get(&self) -> Option<&T> {
+    pub(crate) fn get(&self) -> Option<&F::Value> {
         self.value.as_ref().and_then(Option::as_ref)
     }
 
     /// Returns the value, or the previous scene's value until it has been computed.
-    pub(crate) fn latest(&self) -> Option<&T> {
+    pub(crate) fn latest(&self) -> Option<&F::Value> {
         self.value.as_ref().map_or(self.previous.as_ref(), Option::as_ref)
     }
 
@@ -109,10 +139,22 @@ impl<T: Send + 'static> Lazy<T> {
 mod tests {
     use super::*;
 
+    #[derive(Debug)]
+    struct Length;
+
+    impl Fact for Length {
+        const NAME: &'static str = "length";
+        type Value = f64;
+
+        fn compute(scene: &Scene, _: Watch<'_>) -> Option<f64> {
+            scene.beam.as_ref().map(|beam| beam.length)
+        }
+    }
+
     #[test]
     fn the_previous_value_stays_until_the_next_is_known() {
         let scene = Scene::beam(2.0, 1.0);
-        let mut length = Lazy::new(|scene: &Scene, _| scene.beam.as_ref().map(|beam| beam.length));
+        let mut length = Lazy::<Length>::default();
         length.wait(&scene);
         assert_eq!((length.get(), length.latest()), (Some(&2.0), Some(&2.0)));
         length.invalidate();

@@ -2,5 +2,6 @@
 
 pub(crate) mod lazy;
 pub(crate) mod quality;
+pub(crate) mod sent_scene;
 pub(crate) mod solve;
 pub(crate) mod thread;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use web_time::{Duration, Instant};
 
+use crate::app::platform::IS_PAGE;
 use crate::app::task::quality::Quality;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::assembly::System;
@@ -11,10 +12,11 @@ use crate::scene::{Analysis, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 
-/// Largest number of unknowns of a model that is meshed and solved between two frames.
-pub(crate) const MOST_UNKNOWNS: u64 = 16_000;
+/// Largest number of unknowns of a model that is meshed and solved between two frames. On a web page that is every model:
+/// a model in a worker could not be displayed, because it is not data.
+pub(crate) const MOST_UNKNOWNS: u64 = if IS_PAGE { u64::MAX } else { 16_000 };
 /// Largest number of unknowns of a model that is solved between two frames in a pane of Compare, which shows several.
-pub(crate) const MOST_PANE_UNKNOWNS: u64 = 4000;
+pub(crate) const MOST_PANE_UNKNOWNS: u64 = if IS_PAGE { u64::MAX } else { 4000 };
 
 /// Time between two snapshots while a model is solved.
 const SNAPSHOT: Duration = Duration::from_millis(100);

@@ -1,17 +1,21 @@
-//! Background thread with progress and cancellation.
+//! Background thread, or worker of a web page, with progress and cancellation.
 
 use std::io;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Duration;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 use crate::app::platform;
 
 /// Time between two polls of a background task.
 pub(crate) const POLL: Duration = Duration::from_millis(50);
 
+#[derive(Serialize, Deserialize)]
 enum Message<P, T> {
     Progress(P),
     Done(T),
@@ -30,16 +34,34 @@ pub(crate) enum Update<P, T> {
     Died,
 }
 
+/// Data that a web page can send to a worker, or receive from it.
+pub(crate) trait Data: Serialize + DeserializeOwned + Send + 'static {}
+
+impl<T: Serialize + DeserializeOwned + Send + 'static> Data for T {}
+
+/// Work whose request, progress and result are data. It runs in a thread, or in a worker of a web page.
+pub(crate) trait Work: Data {
+    /// Name of the work, which a worker knows it by.
+    const NAME: &'static str;
+    type Progress: Data;
+    type Output: Data;
+
+    fn run(self, reporter: &Reporter<Self::Progress, Self::Output>) -> Self::Output;
+}
+
 /// Work in a background thread that reports its progress as `P` and ends with a `T`. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct Task<P, T> {
     receiver: Receiver<Message<P, T>>,
     is_cancelled: Arc<AtomicBool>,
+    /// Worker of a web page that does the work.
+    worker: Option<platform::work::Worker>,
 }
 
 /// Interface of a task for its thread.
 pub(crate) struct Reporter<P, T> {
-    sender: Sender<Message<P, T>>,
+    /// Sends a message; returns `false` if there is no receiver.
+    send: Box<dyn Fn(Message<P, T>) -> bool + Send>,
     is_cancelled: Arc<AtomicBool>,
 }
 
@@ -51,12 +73,13 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
     pub(crate) fn start(name: &str, work: impl FnOnce(&Reporter<P, T>) -> T + Send + 'static) -> io::Result<Self> {
         let (sender, receiver) = channel();
         let is_cancelled = Arc::new(AtomicBool::new(false));
-        let reporter = Reporter { sender, is_cancelled: is_cancelled.clone() };
+        let send = Box::new(move |message| sender.send(message).is_ok());
+        let reporter = Reporter { send, is_cancelled: is_cancelled.clone() };
         platform::work::start(name, move || {
             let done = work(&reporter);
-            let _ = reporter.sender.send(Message::Done(done));
+            (reporter.send)(Message::Done(done));
         })?;
-        Ok(Self { receiver, is_cancelled })
+        Ok(Self { receiver, is_cancelled, worker: None })
     }
 
     /// Returns the next update without waiting for it.
@@ -74,11 +97,58 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
     }
 }
 
+impl<P: Data, T: Data> Task<P, T> {
+    /// Starts work whose request and results are data.
+    ///
+    /// # Errors
+    /// The system cannot start another thread.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn run<W: Work<Progress = P, Output = T>>(work: W) -> io::Result<Self> {
+        Self::start(W::NAME, move |reporter| work.run(reporter))
+    }
+
+    /// Starts work in a worker.
+    ///
+    /// # Errors
+    /// The browser cannot start another worker.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn run<W: Work<Progress = P, Output = T>>(work: W) -> io::Result<Self> {
+        let (sender, receiver) = channel();
+        let receive = move |bytes: &[u8]| {
+            let Some(message) = platform::work::decode::<Message<P, T>>(bytes) else { return true };
+            let is_done = matches!(message, Message::Done(_));
+            let _ = sender.send(message);
+            is_done
+        };
+        let worker = platform::work::send(W::NAME, &platform::work::encode(&work), receive)?;
+        Ok(Self { receiver, is_cancelled: Arc::new(AtomicBool::new(false)), worker: Some(worker) })
+    }
+}
+
 impl<P, T> Task<P, T> {
-    /// Asks the thread to end with the result that it has.
+    /// Asks the thread to end with the result that it has. A worker ends without a result.
     pub(crate) fn cancel(&self) {
         self.is_cancelled.store(true, Ordering::Relaxed);
+        self.worker.iter().for_each(platform::work::Worker::end);
     }
+
+    /// Returns `true` if the task has been cancelled.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.is_cancelled.load(Ordering::Relaxed)
+    }
+}
+
+/// Does work in a worker, and sends its reports and its result to the page.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn serve<W: Work>(request: &[u8]) {
+    let Some(work) = platform::work::decode::<W>(request) else { return platform::work::post(&[]) };
+    let send = Box::new(|message| {
+        platform::work::post(&platform::work::encode::<Message<W::Progress, W::Output>>(&message));
+        true
+    });
+    let reporter = Reporter { send, is_cancelled: Arc::new(AtomicBool::new(false)) };
+    let done = work.run(&reporter);
+    (reporter.send)(Message::Done(done));
 }
 
 impl<P, T> Drop for Task<P, T> {
@@ -100,7 +170,7 @@ impl<P, T> Reporter<P, T> {
     /// Reports progress; breaks if the task is cancelled.
     pub(crate) fn report(&self, progress: P) -> ControlFlow<()> {
         // If the task was dropped, there is no receiver.
-        let is_received = self.sender.send(Message::Progress(progress)).is_ok();
+        let is_received = (self.send)(Message::Progress(progress));
         if is_received && !self.is_cancelled() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 

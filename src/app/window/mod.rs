@@ -4,6 +4,8 @@ mod clicks;
 #[cfg(target_arch = "wasm32")]
 pub(crate) mod page;
 mod report;
+#[cfg(target_arch = "wasm32")]
+mod worker;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ use crate::app::language::Language;
 use crate::app::platform::page::{self, Address};
 use crate::app::platform::{self, files};
 use crate::app::shell::settings::Settings;
-use crate::app::window::{Display, opens_in_background, run_with};
+use crate::app::window::{Display, opens_in_background, run_with, worker};
 use crate::scene::{Scene, Source, registry};
 use crate::simulation::Simulation;
 
@@ -15,7 +15,7 @@ const SHARED: &str = "shared.toml";
 pub fn open_page() {
     console_error_panic_hook::set_once();
     if !page::has_window() {
-        return;
+        return worker::listen();
     }
     if let Err(message) = open(Address::read()) {
         page::fail(&message);

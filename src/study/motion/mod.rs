@@ -31,7 +31,7 @@ mod report;
 pub const REAL_TIME: f64 = 1e3;
 
 /// Parameters varied in the study.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MotionSetting {
     /// Element.
@@ -111,7 +111,7 @@ fn step_text(step: f64) -> String {
 
 /// Error of the first probe's path and its parts: largest distances at common times, percent of the size of the
 /// reference's path. The total is at most the sum of the parts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct PathError {
     /// Distance from the reference.
@@ -136,7 +136,7 @@ impl PathError {
 }
 
 /// End of a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Ending {
     /// At the end of the studied time.
     Finished,
@@ -193,7 +193,7 @@ impl EnergyBehaviour {
 }
 
 /// Measured time, error and energy drift of a setting.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MotionMeasurement {
     /// Setting.
@@ -224,7 +224,7 @@ impl MotionMeasurement {
 }
 
 /// Speed–accuracy study of a motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MotionStudy {
     /// Name of the scene.

@@ -17,7 +17,7 @@ use crate::study::reference::system_of;
 use crate::study::trade::mesh_text;
 
 /// Reference path of the first probe.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MotionReference {
     /// Time between two points of [`Self::path`], s.

@@ -12,7 +12,7 @@ use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
 use crate::study::{Demand, Measurement, MotionStudy, Study};
 
 /// Study of a body at rest or of a motion.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Measured {
     Rest(Study),
     Motion(MotionStudy),

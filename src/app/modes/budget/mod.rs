@@ -1,7 +1,7 @@
 //! Mode Budget: error against time of all settings measured on this machine, and the settings within given limits.
 
 pub(crate) mod measured;
-mod study_task;
+pub(crate) mod study_task;
 
 use crate::app::session::facts::without_settings;
 use crate::app::widgets::plot::{X_AXIS, marker, segments};

@@ -1,9 +1,11 @@
 //! Study in the background.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::app::modes::budget::measured::Measured;
-use crate::app::task::thread::{Reporter, Task, Update};
+use crate::app::task::sent_scene::SentScene;
+use crate::app::task::thread::{Reporter, Task, Update, Work};
 use crate::scene::{Analysis, Scene};
 use crate::study::{Extent, MotionStudy, Progress, Study, StudyError};
 
@@ -12,20 +14,35 @@ use crate::study::{Extent, MotionStudy, Progress, Study, StudyError};
 pub(crate) enum BackgroundError {
     #[error("no thread for the study: {0}")]
     NoThread(#[from] std::io::Error),
-    #[error(transparent)]
-    Study(#[from] StudyError),
+    #[error("{0}")]
+    Study(String),
     #[error("the study ended unexpectedly")]
     Died,
 }
 
 /// Progress report of a study.
-#[derive(Debug)]
-enum StudyProgress {
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) enum StudyProgress {
     Now(f32, String),
     SoFar(Measured),
 }
 
-type Done = Result<Measured, StudyError>;
+/// Measurements, or the reason why there are none; `None` for a cancelled study.
+type Done = Result<Measured, Option<String>>;
+
+/// Request for a study.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct StudyWork(SentScene, Extent);
+
+impl Work for StudyWork {
+    const NAME: &'static str = "study";
+    type Progress = StudyProgress;
+    type Output = Done;
+
+    fn run(self, reporter: &Reporter<StudyProgress, Done>) -> Done {
+        study(&self.0.0, self.1, reporter).map_err(|error| (error != StudyError::Cancelled).then(|| error.to_string()))
+    }
+}
 
 /// State of a study after a poll.
 #[derive(Debug)]
@@ -51,7 +68,7 @@ impl Background {
     /// # Errors
     /// [`BackgroundError::NoThread`].
     pub(crate) fn start(scene: Scene, extent: Extent) -> Result<Self, BackgroundError> {
-        let task = Task::start("study", move |reporter| work(&scene, extent, reporter))?;
+        let task = Task::run(StudyWork(SentScene(scene), extent))?;
         Ok(Self { task, fraction: 0.0, now: String::new() })
     }
 
@@ -75,16 +92,17 @@ impl Background {
                     *study = Some(done);
                     return StudyState::Ended(Ok(()));
                 }
-                Update::Done(Err(StudyError::Cancelled)) => return StudyState::Ended(Ok(())),
-                Update::Done(Err(error)) => return StudyState::Ended(Err(error.into())),
+                Update::Done(Err(None)) => return StudyState::Ended(Ok(())),
+                Update::Done(Err(Some(error))) => return StudyState::Ended(Err(BackgroundError::Study(error))),
                 Update::None => return StudyState::Running,
+                Update::Died if self.task.is_cancelled() => return StudyState::Ended(Ok(())),
                 Update::Died => return StudyState::Ended(Err(BackgroundError::Died)),
             }
         }
     }
 }
 
-fn work(scene: &Scene, extent: Extent, reporter: &Reporter<StudyProgress, Done>) -> Done {
+fn study(scene: &Scene, extent: Extent, reporter: &Reporter<StudyProgress, Done>) -> Result<Measured, StudyError> {
     let observe = |progress: Progress<'_>, so_far: Option<&Study>| {
         reporter.report(match so_far {
             Some(study) => StudyProgress::SoFar(Measured::Rest(study.clone())),

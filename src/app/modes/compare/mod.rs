@@ -39,7 +39,7 @@ mod grid;
 mod motion;
 mod pane;
 mod setting;
-mod trace;
+pub(crate) mod trace;
 
 pub(crate) use grid::PaneInput;
 pub(crate) use motion::MotionCompare;

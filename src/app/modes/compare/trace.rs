@@ -11,7 +11,7 @@ use crate::app::language::{fill, percent, tr};
 use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::modes::explore::load_curve::{axes, displacement_text, pair, quantities, usual};
 use crate::app::session::facts::without_settings;
-use crate::app::task::lazy::Lazy;
+use crate::app::task::lazy::{Fact, Lazy, Watch};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::CurvePlot;
 use crate::exact_beam::error_percent;
@@ -98,7 +98,7 @@ pub(super) struct Trace {
     family: Option<Scene>,
     direction: Option<[f64; 2]>,
     series: Vec<(PaneSetting, Vec<Dot>)>,
-    exact: Lazy<Vec<Exact>>,
+    exact: Lazy<ExactLine>,
     /// Last exact curve.
     line: Vec<Exact>,
     /// Reference solutions for the loads so far; they may differ from the exact beam, because they solve plane
@@ -111,7 +111,7 @@ pub(super) struct Trace {
 }
 
 /// Load, and displacement of the first probe in the exact solution under it, m.
-type Exact = (f64, Vector2<f64>);
+pub(crate) type Exact = (f64, Vector2<f64>);
 
 impl Default for Trace {
     fn default() -> Self {
@@ -120,12 +120,25 @@ impl Default for Trace {
             family: None,
             direction: None,
             series: Vec::new(),
-            exact: Lazy::new(|scene, _| exact_line(scene)),
+            exact: Lazy::default(),
             line: Vec::new(),
             references: Vec::new(),
             reach: 0.0,
             usual: None,
         }
+    }
+}
+
+/// Curve of the exact beam.
+#[derive(Debug)]
+pub(crate) struct ExactLine;
+
+impl Fact for ExactLine {
+    const NAME: &'static str = "exact-line";
+    type Value = Vec<Exact>;
+
+    fn compute(scene: &Scene, _: Watch<'_>) -> Option<Vec<Exact>> {
+        exact_line(scene)
     }
 }
 

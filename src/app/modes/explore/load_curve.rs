@@ -83,8 +83,8 @@ impl Curve {
 
     fn figure(&self, shown: CurvePlot) -> Figure {
         match self {
-            Self::Beam(of) => beam(&of.0, &of.1, shown),
-            Self::Path(of) => path(&of.0, &of.1, shown),
+            Self::Beam(of) => beam(&of.0, &of.1.0, shown),
+            Self::Path(of) => path(&of.0, &of.1.0, shown),
         }
     }
 }

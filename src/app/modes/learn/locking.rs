@@ -11,8 +11,8 @@ use crate::simulation::{Simulation, Status, probe_results};
 use crate::study::Reference;
 
 /// Error of an element on the scene's cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ElementError {
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct ElementError {
     pub element: ElementKind,
     /// Number of free unknowns.
     pub unknowns: usize,

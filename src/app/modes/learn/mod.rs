@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::readout::Readout;
-use crate::app::task::lazy::{Compute, Lazy};
+use crate::app::task::lazy::{Fact, Lazy, Watch};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Mode, Toggle};
 use crate::app::widgets::number_field::Messages;
@@ -64,16 +64,16 @@ pub(crate) enum Needs {
 
 /// Result of a scene, computed in the background.
 #[derive(Debug)]
-struct Known<T> {
-    lazy: Lazy<T>,
+struct Known<F: Fact> {
+    lazy: Lazy<F>,
     /// Returns the part of the scene that the result depends on.
     key: fn(&Scene) -> Scene,
     of: Option<Scene>,
 }
 
-impl<T: Send + 'static> Known<T> {
-    fn new(find: Compute<T>, key: fn(&Scene) -> Scene) -> Self {
-        Self { lazy: Lazy::new(find), key, of: None }
+impl<F: Fact> Known<F> {
+    fn new(key: fn(&Scene) -> Scene) -> Self {
+        Self { lazy: Lazy::default(), key, of: None }
     }
 
     fn follow(&mut self, scene: &Scene) {
@@ -82,6 +82,32 @@ impl<T: Send + 'static> Known<T> {
             self.lazy.invalidate();
             self.of = Some(key);
         }
+    }
+}
+
+/// Spectral radius ρ of the warped iteration at the equilibrium.
+#[derive(Debug)]
+pub(crate) struct Rho;
+
+impl Fact for Rho {
+    const NAME: &'static str = "rho";
+    type Value = f64;
+
+    fn compute(scene: &Scene, _: Watch<'_>) -> Option<f64> {
+        fixed_point_rho(scene)
+    }
+}
+
+/// Errors of all elements.
+#[derive(Debug)]
+pub(crate) struct ElementErrors;
+
+impl Fact for ElementErrors {
+    const NAME: &'static str = "element-errors";
+    type Value = Vec<ElementError>;
+
+    fn compute(scene: &Scene, _: Watch<'_>) -> Option<Vec<ElementError>> {
+        locking::errors(scene)
     }
 }
 
@@ -95,8 +121,8 @@ pub(crate) struct Learn {
     rotation_part: f64,
     /// Largest error in the table of the trade-off, percent.
     asked: f64,
-    rho: Known<f64>,
-    errors: Known<Vec<ElementError>>,
+    rho: Known<Rho>,
+    errors: Known<ElementErrors>,
     messages: Messages,
     /// Highlighted line of the pseudocode, from 0.
     pub line: usize,
@@ -168,19 +194,13 @@ impl Learn {
             picked: 6,
             rotation_part: 1.0,
             asked: 1.0,
-            rho: Known::new(
-                |scene, _| fixed_point_rho(scene),
-                |scene| Scene { solver: SolverSettings::default(), ..scene.clone() },
-            ),
-            errors: Known::new(
-                |scene, _| locking::errors(scene),
-                |scene| {
-                    let mut scene = Scene { solver: SolverSettings::default(), ..scene.clone() };
-                    let first = scene.elements().next().unwrap_or_default();
-                    scene.set_element(first);
-                    scene
-                },
-            ),
+            rho: Known::new(|scene| Scene { solver: SolverSettings::default(), ..scene.clone() }),
+            errors: Known::new(|scene| {
+                let mut scene = Scene { solver: SolverSettings::default(), ..scene.clone() };
+                let first = scene.elements().next().unwrap_or_default();
+                scene.set_element(first);
+                scene
+            }),
             messages: Messages::new(),
             line: 0,
             shown_line: 0,

@@ -10,3 +10,14 @@ use std::thread;
 pub(crate) fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
     thread::Builder::new().name(name.to_owned()).spawn(work).map(drop)
 }
+
+/// Worker of a web page: on a desktop there is none.
+#[derive(Debug)]
+pub(crate) enum Worker {}
+
+impl Worker {
+    /// Ends the work.
+    pub(crate) fn end(&self) {
+        match *self {}
+    }
+}

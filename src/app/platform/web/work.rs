@@ -1,10 +1,22 @@
-//! Work that a page does between two frames, because it has no threads.
+//! Background work on a page: workers with an instance of the module of their own, which receive requests and send results
+//! as data. Work that is not data is done between two frames.
 
+use std::cell::RefCell;
+use std::fmt::{self, Debug, Formatter};
 use std::io;
+use std::rc::Rc;
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
+use web_sys::{DedicatedWorkerGlobalScope, ErrorEvent, MessageEvent, WorkerOptions, WorkerType};
 
 use crate::app::platform::web::browser;
+
+thread_local! {
+    /// Workers that wait for a request.
+    static IDLE: RefCell<Vec<web_sys::Worker>> = RefCell::default();
+}
 
 /// Starts `work` after the current frame.
 ///
@@ -13,4 +25,119 @@ use crate::app::platform::web::browser;
 pub(crate) fn start(_: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
     browser::later(&Closure::once_into_js(work), 0);
     Ok(())
+}
+
+/// Returns data as bytes (CBOR).
+pub(crate) fn encode<T: Serialize>(data: &T) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    match ciborium::into_writer(data, &mut bytes) {
+        Ok(()) => bytes,
+        // The receiver refuses an empty message.
+        Err(_) => Vec::new(),
+    }
+}
+
+/// Returns the data of bytes; `None` if they are not of this type.
+pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+    ciborium::from_reader(bytes).inspect_err(|error| log::error!("message of a worker: {error}")).ok()
+}
+
+/// Receiver of the messages of a worker. It returns `true` for the last message.
+type Receive = Rc<RefCell<Option<Box<dyn FnMut(&[u8]) -> bool>>>>;
+
+/// Worker with a request. Dropping it cancels the request.
+pub(crate) struct Worker {
+    /// `None` once the request is done or has failed.
+    worker: Rc<RefCell<Option<web_sys::Worker>>>,
+    receive: Receive,
+    _message: Closure<dyn FnMut(MessageEvent)>,
+    _error: Closure<dyn FnMut(ErrorEvent)>,
+}
+
+impl Worker {
+    /// Ends the work: the worker ends at once, without a result.
+    pub(crate) fn end(&self) {
+        self.worker.take().iter().for_each(web_sys::Worker::terminate);
+        // Without a receiver the task is known to have ended.
+        self.receive.take();
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+impl Debug for Worker {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str("worker")
+    }
+}
+
+/// Sends a request to a worker; `receive` is called with its messages.
+///
+/// # Errors
+/// The browser cannot start another worker.
+pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> bool + 'static) -> io::Result<Worker> {
+    let failed = |error: JsValue| io::Error::other(browser::message(&error));
+    let own = match IDLE.with_borrow_mut(Vec::pop) {
+        Some(worker) => worker,
+        None => create().map_err(failed)?,
+    };
+    let worker = Rc::new(RefCell::new(Some(own.clone())));
+    let receive: Receive = Rc::new(RefCell::new(Some(Box::new(receive))));
+    let message = {
+        let (worker, receive) = (worker.clone(), receive.clone());
+        Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
+            let bytes = js_sys::Uint8Array::new(&event.data()).to_vec();
+            let is_last = receive.borrow_mut().as_mut().is_none_or(|receive| receive(&bytes));
+            if is_last {
+                receive.take();
+                IDLE.with_borrow_mut(|idle| idle.extend(worker.take()));
+            }
+            browser::wake();
+        })
+    };
+    let error = {
+        let (worker, receive) = (worker.clone(), receive.clone());
+        Closure::<dyn FnMut(ErrorEvent)>::new(move |event: ErrorEvent| {
+            log::error!("a worker failed: {}", event.message());
+            worker.take().iter().for_each(web_sys::Worker::terminate);
+            receive.take();
+            browser::wake();
+        })
+    };
+    own.set_onmessage(Some(message.as_ref().unchecked_ref()));
+    own.set_onerror(Some(error.as_ref().unchecked_ref()));
+    let request = js_sys::Array::of2(&name.into(), &js_sys::Uint8Array::from(request));
+    own.post_message(&request).map_err(failed)?;
+    Ok(Worker { worker, receive, _message: message, _error: error })
+}
+
+/// Starts a worker with the module of this page.
+fn create() -> Result<web_sys::Worker, JsValue> {
+    let options = WorkerOptions::new();
+    options.set_type(WorkerType::Module);
+    let worker = web_sys::Worker::new_with_options("worker.js", &options)?;
+    worker.post_message(&wasm_bindgen::module())?;
+    Ok(worker)
+}
+
+/// Waits for requests in a worker: `serve` receives their names and their data.
+pub(crate) fn listen(serve: fn(&str, &[u8])) {
+    let work =
+        Closure::<dyn FnMut(String, js_sys::Uint8Array)>::new(move |name: String, request: js_sys::Uint8Array| {
+            serve(&name, &request.to_vec());
+        });
+    let _ = js_sys::Reflect::set(&js_sys::global(), &"warpbeam_work".into(), work.as_ref());
+    // It lives as long as the worker.
+    work.forget();
+}
+
+/// Sends a message from a worker to its page.
+pub(crate) fn post(bytes: &[u8]) {
+    if let Ok(worker) = js_sys::global().dyn_into::<DedicatedWorkerGlobalScope>() {
+        let _ = worker.post_message(&js_sys::Uint8Array::from(bytes));
+    }
 }

@@ -10,16 +10,16 @@ use egui::{
 };
 
 use self::thumbnail::Thumbnail;
-use self::thumbnail_task::ThumbnailTask;
+use self::thumbnail_task::{Made, ThumbnailWork};
 use crate::app::action::Action;
 use crate::app::language::tr;
 use crate::app::readout::Readout;
-use crate::app::task::thread::{POLL, Update};
+use crate::app::task::thread::{POLL, Task, Update};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::scene::{Analysis, Scene, registry};
 
-mod thumbnail;
-mod thumbnail_task;
+pub(crate) mod thumbnail;
+pub(crate) mod thumbnail_task;
 
 /// Size of a thumbnail, and height of its entry, points.
 const THUMBNAIL: egui::Vec2 = vec2(112.0, 68.0);
@@ -60,7 +60,7 @@ pub(crate) struct Gallery {
 enum Work {
     #[default]
     NotBegun,
-    Running(ThumbnailTask),
+    Running(Task<Made, ()>),
     Ended,
 }
 
@@ -69,11 +69,14 @@ impl Gallery {
     fn poll(&mut self, ctx: &Context) {
         if matches!(self.work, Work::NotBegun) {
             // If the thread cannot be started, the gallery shows names and descriptions only.
-            self.work = thumbnail_task::start().map_or(Work::Ended, Work::Running);
+            self.work = Task::run(ThumbnailWork).map_or(Work::Ended, Work::Running);
         }
         while let Work::Running(task) = &self.work {
             match task.poll() {
-                Update::Progress((id, thumbnail)) => _ = self.thumbnails.insert(id, thumbnail),
+                Update::Progress((number, thumbnail)) => {
+                    let built_in = registry::BUILT_IN.get(number);
+                    self.thumbnails.extend(built_in.map(|built_in| (built_in.id, thumbnail)));
+                }
                 Update::None => return ctx.request_repaint_after(POLL),
                 Update::Done(()) | Update::Died => self.work = Work::Ended,
             }

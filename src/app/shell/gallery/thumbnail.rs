@@ -5,6 +5,7 @@ use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Color32, Painter, Pos2, Rect, Shape as Painted, Stroke, vec2};
 use nalgebra::Vector2;
 
+use crate::app::task::sent_scene::SentScene;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::widgets::palette::Palette;
@@ -23,9 +24,9 @@ const WORK: usize = 400_000;
 const FEWEST_STEPS: usize = 8;
 
 /// Drawing of a scene.
-#[derive(Debug)]
-pub(super) struct Thumbnail {
-    scene: Scene,
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Thumbnail {
+    scene: SentScene,
     field: Field,
     /// Values of the field at both ends of the colour map.
     range: [f64; 2],
@@ -64,7 +65,16 @@ impl Thumbnail {
         let moved = shape.points().to_vec();
         let BodyMesh { values, range, .. } = shape;
         let DisplayGeometry { outline, triangles, .. } = drawing;
-        Some(Self { scene: scene.clone(), field: view.field, range, rest, moved, outline, triangles, values })
+        Some(Self {
+            scene: SentScene(scene.clone()),
+            field: view.field,
+            range,
+            rest,
+            moved,
+            outline,
+            triangles,
+            values,
+        })
     }
 
     /// Paints the thumbnail in the middle of `place`, as large as possible.
@@ -83,7 +93,7 @@ impl Thumbnail {
         let rest: Vec<Pos2> = self.rest.iter().map(to_window).collect();
         painter.extend(self.lines(&rest, Stroke::new(1.0, palette.rest)));
         painter.add(self.body(&moved, palette));
-        painter.extend(self.lines(&moved, Stroke::new(1.0, palette.solution(&self.scene))));
+        painter.extend(self.lines(&moved, Stroke::new(1.0, palette.solution(&self.scene.0))));
     }
 
     fn lines(&self, points: &[Pos2], stroke: Stroke) -> Vec<Painted> {
@@ -152,8 +162,8 @@ mod tests {
             );
             assert!(thumbnail.range[0] < thumbnail.range[1] && !thumbnail.outline.is_empty(), "{}", built_in.id);
             assert_eq!(thumbnail.triangles.len(), thumbnail.values.len());
-            if thumbnail.scene.analysis == Analysis::Static {
-                let mut solved = Simulation::new(&thumbnail.scene).unwrap();
+            if thumbnail.scene.0.analysis == Analysis::Static {
+                let mut solved = Simulation::new(&thumbnail.scene.0).unwrap();
                 solved.solve();
                 let furthest = solved.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
                 assert!((distance / furthest - 1.0).abs() < 1e-3, "{}: {distance} is not {furthest}", built_in.id);

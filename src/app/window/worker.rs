@@ -1,0 +1,38 @@
+//! Work that a worker of the web page can do.
+
+use crate::app::modes::budget::study_task::StudyWork;
+use crate::app::modes::compare::trace::ExactLine;
+use crate::app::modes::learn::{ElementErrors, Rho};
+use crate::app::platform;
+use crate::app::session::facts::{CurveFact, FrequencyFact, JumpFact, ReferenceFact};
+use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
+use crate::app::task::lazy::FactWork;
+use crate::app::task::thread::{Work, serve};
+
+/// Work by its name.
+type Entry = (&'static str, fn(&[u8]));
+
+const fn entry<W: Work>() -> Entry {
+    (W::NAME, serve::<W>)
+}
+
+const ENTRIES: [Entry; 9] = [
+    entry::<FactWork<ReferenceFact>>(),
+    entry::<FactWork<CurveFact>>(),
+    entry::<FactWork<JumpFact>>(),
+    entry::<FactWork<FrequencyFact>>(),
+    entry::<FactWork<ExactLine>>(),
+    entry::<FactWork<Rho>>(),
+    entry::<FactWork<ElementErrors>>(),
+    entry::<StudyWork>(),
+    entry::<ThumbnailWork>(),
+];
+
+/// Waits for requests of the page.
+pub(super) fn listen() {
+    platform::work::listen(|name, request| {
+        if let Some((_, serve)) = ENTRIES.iter().find(|(own, _)| *own == name) {
+            serve(request);
+        }
+    });
+}
