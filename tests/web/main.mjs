@@ -220,9 +220,11 @@ const TESTS = {
       const edited = await until((now) => settled(now) && JSON.stringify(now.loads) !== JSON.stringify(before.loads), "waited for the edit");
       await page.evaluate(() => navigator.clipboard.writeText(""));
       await page.keyboard.press("u");
-      await page.waitForFunction(async () => (await navigator.clipboard.readText()).includes("#scene="), null, { timeout: PATIENCE });
-      const link = await page.evaluate(() => navigator.clipboard.readText());
-      if (process.env.WEB_DEBUG) console.log(link);
+      let link = "";
+      for (const end = Date.now() + PATIENCE; !link.includes("#scene="); await page.waitForTimeout(50)) {
+        if (Date.now() > end) throw new Error(`waited for a link in vain: ${link}`);
+        link = await page.evaluate(() => navigator.clipboard.readText());
+      }
       if (link.length > 2000) throw new Error(`the link has ${link.length} characters`);
       await page.goto("about:blank");
       await open(link.slice(address.length));
