@@ -214,7 +214,7 @@ fn flatten(before: &[String], tree: &str, uses: &mut Vec<(Vec<String>, String)>)
             depth += i32::from(c == '{') - i32::from(c == '}');
             c == ',' && depth == 0
         });
-        // The closing brace of an inner group that was removed above is not needed.
+        // Closing braces, which end groups that were flattened before, leave empty parts.
         parts.filter(|part| !part.trim().is_empty()).for_each(|part| flatten(&before, part, uses));
         return;
     }

@@ -96,7 +96,7 @@ fn a_path_that_is_called_off_says_so() {
 /// The command `curve` names the critical load, draws it, and calls states beyond it unstable; so does `solve`.
 #[test]
 fn commands_name_the_critical_load() {
-    // Euler's load is 514 N.
+    // About twice Euler's load, which is 514 N.
     let set = ["column", "--set", "load.0.force=[-1043,0]"];
     let folder = tempfile::tempdir().unwrap();
     let picture = folder.path().join("path.svg");

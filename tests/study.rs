@@ -141,7 +141,7 @@ fn a_swing_is_studied() {
     }
     let front: Vec<_> = study.front().into_iter().map(pair).collect();
     assert!(front.len() > 2 && front.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 > w[1].1), "{front:?}");
-    // A setting that claims to be within an error is so, including the reference's own error.
+    // The error of the chosen setting and the reference's own error are together within the requested error.
     let chosen = study.fastest_within(10.0).unwrap();
     assert!(chosen.error.unwrap().bound() + own <= 10.0);
     assert!(study.fastest_within(0.5 * own).is_none());

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
-use web_time::{Duration, Instant};
+use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::memory::PeakMemory;

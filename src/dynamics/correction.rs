@@ -54,7 +54,7 @@ pub(crate) struct Accuracy {
     pub is_checked: bool,
 }
 
-/// Factor of an earlier matrix and its observed convergence.
+/// Factor of an earlier matrix, and the convergence observed with it.
 #[derive(Debug, Default)]
 struct Kept {
     /// Weights of its matrix; `None` if there is no usable factor.

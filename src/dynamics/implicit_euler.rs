@@ -28,8 +28,8 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     let spring_at_start = solver.mouse_spring_force(start);
     solver.problem.set_stage(start.time + h, &|pulse| pulse.mean(start.time, start.time + h));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
-    // A single solve loses least energy from the current state and with A alone; an iteration starts nearer to its
-    // result.
+    // A single solve loses least energy if it starts at the current state, with the matrix A without G.
+    // Several solves need fewer iterations from a predicted state.
     let from_start = solver.solves == Solves::Times(1);
     let tangent = if from_start {
         Tangent::WARPED

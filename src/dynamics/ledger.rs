@@ -113,7 +113,7 @@ impl Ledger {
         self.throughput += (self.total() - before).abs();
     }
 
-    /// Returns the sum of kinetic, elastic and potential energy, J.
+    /// Returns the sum of the kinetic energy, the elastic energy and the potential of the loads, J.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.potential

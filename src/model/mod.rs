@@ -251,7 +251,7 @@ pub enum MethodKind {
     /// Newton's method with the exact tangent.
     #[default]
     Newton,
-    /// The cheapest of these with the requested accuracy.
+    /// The cheapest of the other methods that reaches the requested accuracy.
     Auto,
 }
 

@@ -47,7 +47,7 @@ impl Decades {
         start + (end - start) * fraction.clamp(0.0, 1.0)
     }
 
-    /// Returns the places of the decades, and their numbers.
+    /// Returns the position and the label of every decade.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let decades = (self.from as i32..=self.to as i32).map(|e| 10f64.powi(e));
         decades.map(|value| (self.place(value), number(value))).collect()

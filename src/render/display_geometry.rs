@@ -17,9 +17,9 @@ pub(crate) struct DisplayGeometry {
     weights: Vec<f64>,
     /// Triangles, as indices of points.
     pub triangles: Vec<[u32; 3]>,
-    /// Index of the first quadrature point of each triangle's element, and the weights of the element's quadrature
-    /// points in the triangle's value.
+    /// Index of the first quadrature point of each triangle's element.
     value_of: Vec<u32>,
+    /// Weights of the element's quadrature points in each triangle's value.
     value_weights: Vec<f64>,
     /// Segments of the element sides, as indices of points.
     pub lines: Vec<[u32; 2]>,

@@ -739,8 +739,7 @@ impl Simulation {
     /// Returns the reaction of each support, in the scene's order.
     #[must_use]
     pub fn support_reactions(&self) -> Vec<SupportReaction> {
-        let kinematics = if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated };
-        support_reactions(&self.body.problem, &self.body.state, kinematics, self.forces())
+        support_reactions(&self.body.problem, &self.body.state, self.kinematics(), self.forces())
     }
 
     /// Returns `true` if the state is one of linear theory; otherwise strains are measured in the rotated frames of the

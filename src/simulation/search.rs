@@ -316,8 +316,12 @@ impl Search {
         &self.forces
     }
 
-    pub fn load_stepping(&self) -> (f64, u32) {
-        (self.method.load_factor(), self.method.load_steps())
+    pub fn load_factor(&self) -> f64 {
+        self.method.load_factor()
+    }
+
+    pub fn load_steps(&self) -> u32 {
+        self.method.load_steps()
     }
 
     pub fn auto_report(&self) -> Option<AutoReport> {

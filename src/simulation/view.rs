@@ -41,13 +41,13 @@ impl Equilibrium<'_> {
     /// Returns the load factor currently applied, relative to the full loads.
     #[must_use]
     pub fn load_factor(self) -> f64 {
-        self.search.load_stepping().0
+        self.search.load_factor()
     }
 
     /// Returns the number of load steps so far; 1 if the loads were applied at once.
     #[must_use]
     pub fn load_steps(self) -> u32 {
-        self.search.load_stepping().1
+        self.search.load_steps()
     }
 
     /// Returns the bound of the rounding error of [`Simulation::residual`], if a solve has ended within this bound but

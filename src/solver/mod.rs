@@ -137,7 +137,7 @@ fn operations(symbolic: &SymbolicCholesky<usize>) -> [f64; 2] {
 
 /// Computes [`Factor::price`] from the sparsity, not from measured times.
 fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
-    // `least`: overhead of columns and fronts, in back substitutions; `operation`: cost of an operation of the
+    // `least`: fixed cost of a factorization, in multiples of the cost of a back substitution; `operation`: cost of an operation of the
     // factorization relative to one of a back substitution, which is limited by memory bandwidth. Fitted to beams:
     // simplicial with 100 to 1 200 unknowns, supernodal with 40 to 33 000.
     let (least, operation) = match symbolic.raw() {

@@ -1,6 +1,7 @@
 //! Timing of iterations from rest: medians over repetitions after warm-up, by stage.
 
 use std::ops::RangeInclusive;
+
 use web_time::{Duration, Instant};
 
 use crate::simulation::{Simulation, Status};

@@ -5,9 +5,9 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use web_time::{Duration, Instant};
 
 use nalgebra::Vector2;
+use web_time::{Duration, Instant};
 
 use super::fine::{Effort, finest_element};
 use super::parallel::{self, CalledOff};

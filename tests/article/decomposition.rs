@@ -81,7 +81,8 @@ pub fn polar3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
     if largest == 0.0 {
         return Err(PolarError::Singular);
     }
-    // Matrices of ordinary size are not scaled, so that the numbers of iterations are the article's.
+    // Matrices whose entries are neither tiny nor huge are not scaled, so that the numbers of iterations are the
+    // article's.
     let mut r = of_ordinary_size(f);
     for iteration in 0..MAX_ITERATIONS {
         if orthogonality_error(&r) < ORTHOGONALITY {

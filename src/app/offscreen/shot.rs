@@ -1,9 +1,9 @@
 //! Images of a lab without a window.
 
 use std::path::Path;
-use web_time::{Duration, Instant};
 
 use egui_wgpu::ScreenDescriptor;
+use web_time::{Duration, Instant};
 
 use crate::app::language::Language;
 use crate::app::modes::compare::PaneSetting;

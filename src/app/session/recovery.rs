@@ -6,10 +6,10 @@
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
-use web_time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+use web_time::{Duration, Instant};
 
 use crate::app::platform::files;
 use crate::app::session::document::Document;

@@ -71,7 +71,7 @@ impl<F: Fact> Lazy<F> {
         }
     }
 
-    /// Forgets the value and the previous one.
+    /// Removes the value and the previous one.
     pub(crate) fn clear(&mut self) {
         self.invalidate();
         self.previous = None;

@@ -1,6 +1,7 @@
 //! Background solve of a large model: request, progress and result.
 
 use std::sync::Arc;
+
 use web_time::{Duration, Instant};
 
 use crate::app::platform::IS_PAGE;

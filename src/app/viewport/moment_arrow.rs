@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(arrow(0.0).moment_of(0.0), 0.0);
     }
 
-    /// One pixel along the arc of the opening moment is 1 to 2 % of it.
+    /// A drag by one pixel along the arc changes the moment by 1 to 2 % of that with which the scene opened.
     #[test]
     fn a_pixel_is_one_or_two_percent_of_the_moment() {
         let arrow = arrow(1e4);

@@ -11,11 +11,11 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
-use web_time::{Duration, Instant};
 
 use egui::ViewportId;
 use egui_wgpu::ScreenDescriptor;
 use thiserror::Error;
+use web_time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
@@ -362,7 +362,6 @@ impl App {
             match request {
                 Request::Screenshot => self.screenshot(screen.pixels_per_point),
                 Request::DiscardCopy => self.recovery.iter_mut().for_each(Recovery::discard_left),
-                Request::Record | Request::RecordScene if IS_PAGE => {}
                 Request::Record => self.record(now),
                 Request::RecordScene => self.record_scene(),
                 Request::Close => self.close(event_loop),

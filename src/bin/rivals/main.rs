@@ -106,7 +106,7 @@ struct Rival {
     own: Option<Moment>,
     /// Start of the time in which it stays within 1 % of the reference.
     reference: Option<Moment>,
-    /// Distance from the reference at the end, percent.
+    /// Distance from the reference at the end of the run, percent of the reference displacement.
     error_percent: f64,
     /// Error of the mesh: distance of its exact equilibrium from the reference, percent.
     mesh_error_percent: f64,

@@ -1,4 +1,4 @@
-//! Measurements of a study, of a body at rest or in motion, for the mode Budget.
+//! Measurements for the mode Budget: the study of a body at rest, or that of a motion.
 
 use crate::app::action::Action;
 use egui::Color32;

@@ -1,10 +1,9 @@
 //! Comparison of two to four integrators, elements or meshes in motion side by side: one load, one clock, one camera,
 //! one colour range.
 
-use web_time::Instant;
-
 use egui::{Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 use nalgebra::Vector2;
+use web_time::Instant;
 
 use super::grid::{self, Grid, PaneBody, PaneChange, PaneInput, Preset, grow};
 use super::setting::PANES;

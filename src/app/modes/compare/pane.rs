@@ -2,10 +2,10 @@
 //! large ones are solved in the background.
 
 use std::sync::Arc;
-use web_time::{Duration, Instant};
 
 use egui::{Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
+use web_time::{Duration, Instant};
 
 use super::setting::PaneSetting;
 use crate::app::session::has_mesh_of;

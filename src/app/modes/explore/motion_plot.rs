@@ -134,7 +134,7 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         ("energy input", put_in, |s| s.ledger.pulses + s.ledger.mouse_spring + s.ledger.edits),
     ];
     over_time(plot(&palette, "energy", (tr("time"), "s"), (tr("energy"), "J")), history).show(ui, |plot| {
-        // With several motions only the sums are shown, for comparison.
+        // With several motions only the total energy of each is shown, for comparison.
         let shown = if motions.len() == 1 { &kinds[..] } else { &[] };
         for (name, color, value) in shown {
             // Energies that are always zero have no line.

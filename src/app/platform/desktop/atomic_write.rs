@@ -8,16 +8,16 @@ use std::path::Path;
 ///
 /// # Errors
 /// Error of the operating system; the previous content is unchanged.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub(crate) fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     replace_file(path, bytes, true)
 }
 
-/// Writes a file as [`write_whole`] does, but without waiting for the disk: the file survives a crash of the program,
+/// Writes a file as [`save`] does, but without waiting for the disk: the file survives a crash of the program,
 /// but not of the machine.
 ///
 /// # Errors
 /// Error of the operating system; the previous content is unchanged.
-pub(crate) fn write_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub(crate) fn save_without_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     replace_file(path, bytes, false)
 }
 
@@ -52,14 +52,14 @@ mod tests {
     fn a_scene_that_cannot_be_written_leaves_the_file_as_it_was() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.toml");
-        write_whole(&path, b"one").unwrap();
-        write_whole(&path, b"two").unwrap();
+        save(&path, b"one").unwrap();
+        save(&path, b"two").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"two");
         // A folder with the same name makes writing fail.
         let taken = folder.path().join("taken");
         std::fs::create_dir_all(taken.join("inside")).unwrap();
-        assert!(write_whole(&taken, b"three").is_err());
-        assert!(write_whole(&folder.path().join("nowhere/scene.toml"), b"three").is_err());
+        assert!(save(&taken, b"three").is_err());
+        assert!(save(&folder.path().join("nowhere/scene.toml"), b"three").is_err());
         // No temporary file remains.
         let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();

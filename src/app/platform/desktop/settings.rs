@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use etcetera::BaseStrategy as _;
 
-use crate::app::platform::desktop::atomic_write::write_whole;
+use crate::app::platform::desktop::files;
 
 /// Returns the path of this user's settings; `None` if the system has no folder for them.
 pub(crate) fn file() -> Option<PathBuf> {
@@ -28,5 +28,5 @@ pub(crate) fn write(file: &Path, text: &str) -> std::io::Result<()> {
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder)?;
     }
-    write_whole(file, text.as_bytes())
+    files::save(file, text.as_bytes())
 }
