@@ -74,7 +74,7 @@ fn a_wrong_displacement_of_the_right_length_is_seen_as_wrong() {
     assert!((linear.norm() - exact.norm()).abs() < 1e-3 * exact.norm(), "{linear} {exact}");
     assert!((linear - exact).norm() > 0.12 * exact.norm());
     // The table has both displacements, and the measure of the error.
-    assert_eq!(label(&harness, "exact: "), "exact: (-0.274, -2.13) m");
+    assert_eq!(label(&harness, "reference: "), "reference: (-0.274, -2.13) m");
     assert_eq!(label(&harness, &format!("{setting}: ")), format!("{setting}: (0, -2.14) m, 13 %"));
     assert!(label(&harness, "force 553 N").ends_with("(u_x, u_y) of tip |Δu|/|u|"));
 

@@ -245,8 +245,6 @@ const NOT_SHOWN: &[&str] = &[
     "no document",
     "# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}",
     "English",
-    "message of a worker: {error}",
-    "a worker failed: {}",
     "Noto Sans SC",
     "probe values",
     "load curve",
@@ -277,7 +275,7 @@ fn every_text_of_the_sources_is_in_the_catalogue() {
         for literal in literals(&std::fs::read_to_string(&path).unwrap()) {
             let mut rest = literal.as_str();
             let mut words = String::new();
-            // Placeholders of formats are removed.
+            // Removes the placeholders of format strings.
             while let Some((before, behind)) = rest.split_once('{') {
                 words.push_str(before);
                 rest = behind.split_once('}').map_or("", |(_, rest)| rest);
@@ -398,7 +396,7 @@ fn exploring_is_in_chinese() {
         press(&mut harness, fold);
         assert_chinese(&harness, fold);
     }
-    press(&mut harness, "why?");
+    press(&mut harness, "explain");
     press(&mut harness, "Fixed colour range");
     press(&mut harness, "Load curve");
     wait(&mut harness, |lab| !lab.is_computing());
@@ -440,7 +438,7 @@ fn scenes_of_every_kind_are_in_chinese() {
         press(&mut harness, "Details");
         press(&mut harness, "Load curve");
         wait(&mut harness, |lab| !lab.is_computing());
-        press(&mut harness, "why?");
+        press(&mut harness, "explain");
         assert_tips_are_chinese(&mut harness, id);
     }
 }
@@ -511,7 +509,7 @@ fn nothing_is_clipped_in_windows_of_any_size() {
         let mut harness = settled("article", size);
         let names =
             ["Run", "Step", "Reset", "Explore", "Learn", "Compare", "Budget", "Help", "Theme", "Language", "Panel"];
-        for name in names.into_iter().chain(["Load curve", "why?"]) {
+        for name in names.into_iter().chain(["Load curve", "explain"]) {
             let rect = harness.get_by_label(&zh(name)).rect();
             assert!(window.contains_rect(rect), "{size:?}: {name} at {rect:?} is clipped");
         }

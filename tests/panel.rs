@@ -208,7 +208,7 @@ fn inside_out_is_said() {
     type_into(&mut harness, "Force", "1e13");
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
     assert!(harness.query_by_label_contains(words).is_some(), "{:?}", texts(&harness));
-    harness.get_by_label("why?").click();
+    harness.get_by_label("explain").click();
     harness.run();
     assert!(harness.query_by_label_contains("no real body can have").is_some());
 }
@@ -419,13 +419,13 @@ fn remedies_are_one_click_away() {
 #[test]
 fn rho_beyond_one_beside_a_converged_bar_is_explained() {
     let mut harness = harness("article");
-    harness.get_by_label("why?").click();
+    harness.get_by_label("explain").click();
     harness.run();
     assert!(harness.query_by_label_contains("The forces balance").is_some());
     assert!(harness.query_by_label_contains("Stable: after a small push").is_some());
     pick(&mut harness, "Scene", "stretch");
     assert!(harness.query_by_label_contains("The forces balance").is_none(), "it explains the scene before");
-    harness.get_by_label("why?").click();
+    harness.get_by_label("explain").click();
     type_into(&mut harness, "Force", "500 kN");
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
     let rho = harness.state().simulation().equilibrium().unwrap().certificate().and_then(|c| c.fixed_point_rho);
@@ -473,7 +473,7 @@ fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
             "Theme",
             "Panel",
             "Load curve",
-            "why?",
+            "explain",
         ] {
             let node = harness.query_by_label(name);
             assert!(node.is_some() || ["Pause"].contains(&name), "{size:?}: no {name}");
@@ -704,7 +704,7 @@ fn the_view_follows_the_body_under_a_resting_pointer() {
     assert!(after.scale > 1.1 * before.scale, "{before:?} {after:?}");
 }
 
-/// Runs frames until `done`, with a short sleep after each, because a background task takes its own time.
+/// Runs frames until `done`, with a short sleep after each for background tasks; returns the number of frames.
 fn wait(harness: &mut Harness<'_, Lab>, what: &str, done: impl Fn(&Lab) -> bool) -> u32 {
     for frame in 0..6000 {
         if done(harness.state()) {

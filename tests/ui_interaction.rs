@@ -238,7 +238,7 @@ fn shift_snaps_the_direction_and_a_force_can_be_dragged_away_and_back() {
 #[test]
 fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
     let mut harness = harness("article");
-    // An arrow along the beam, whose tip is over the body.
+    // An arrow along the beam, inwards, so that its tip is over the body.
     let mut inwards = harness.state().scene().clone();
     inwards.set_force(LoadId::nth(0), [-2_000.0, 0.0]).unwrap();
     harness.state_mut().set_scene(inwards).unwrap();
@@ -1081,7 +1081,7 @@ fn the_card_of_a_point_is_of_one_deformation() {
         harness.get_by_label_contains("View: ").click();
         harness.run_steps(8);
         for (kind, values) in
-            [("recovered at the nodes", PointValues::Recovered), ("raw, of this element", PointValues::Raw)]
+            [("recovered at the nodes", PointValues::Recovered), ("element value, not smoothed", PointValues::Raw)]
         {
             assert!(harness.query_by_label(kind).is_some(), "{id}: {kind}");
             let card = card(&harness);
@@ -1175,7 +1175,7 @@ fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
     assert!(met > 0, "no arrow is over the bar");
 }
 
-/// The key Enter that selects another scene in the gallery does not answer the question that follows.
+/// Enter in the gallery opens another scene, and does not also answer the question about unsaved edits.
 #[test]
 fn enter_in_the_gallery_answers_no_question() {
     let mut harness = harness("cantilever");

@@ -76,8 +76,8 @@ pub(super) fn options(
         if input.scene.analysis == Analysis::Dynamic {
             ui.checkbox(&mut view.trail, tr("Trail")).on_hover_text(tr("Path of the tip (Y)"));
         } else {
-            let tip = "Outline of the exact solution, where it is known (X)";
-            ui.checkbox(&mut view.exact, tr("Exact")).on_hover_text(tr(tip));
+            let tip = "Outline of the reference solution, where it is known (X)";
+            ui.checkbox(&mut view.exact, tr("Reference")).on_hover_text(tr(tip));
             ui.checkbox(&mut view.ghost, tr("Linear")).on_hover_text(tr("Outline of the linear solution (G)"));
         }
         if ui.button(tr("Fit")).on_hover_text(tr("Show the whole body (F)")).clicked() {
@@ -94,7 +94,7 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     let field = name.split([',', '(', '，', '（']).next().unwrap_or(name).trim_end();
     let shown = [
         (view.rest_outline, "rest"),
-        (view.exact && !moves, "exact"),
+        (view.exact && !moves, "reference"),
         (view.ghost && !moves, "linear"),
         (view.trail && moves, "trail"),
     ];

@@ -374,7 +374,7 @@ impl Lab {
                     if diagnosis::is_stale(&input) && ui.button(tr("Step now")).clicked() {
                         actions.push(Action::Step);
                     }
-                    let why = ui.link(tr("why?"));
+                    let why = ui.link(tr("explain"));
                     if why.clicked() {
                         actions.push(Action::Toggle(Toggle::Why));
                     }

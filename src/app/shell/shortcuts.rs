@@ -50,7 +50,7 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::W, "Wireframe on or off", || Action::Toggle(Toggle::Wireframe)),
     key(Key::O, "Outline of the body at rest on or off", || Action::Toggle(Toggle::RestOutline)),
     key(Key::G, "Outline of the linear solution on or off", || Action::Toggle(Toggle::Ghost)),
-    key(Key::X, "Outline of the exact solution on or off", || Action::Toggle(Toggle::Exact)),
+    key(Key::X, "Outline of the reference solution on or off", || Action::Toggle(Toggle::Exact)),
     key(Key::Num1, "Colour: von Mises (Cauchy)", || Action::Color(Field::VonMises)),
     key(Key::Num2, "Colour: strain energy density", || Action::Color(Field::EnergyDensity)),
     key(Key::Num3, "Colour: largest strain", || Action::Color(Field::LargestStrain)),

@@ -19,10 +19,10 @@ use crate::format::{engineering, grouped, two_digits};
 use crate::scene::Scene;
 use crate::simulation::Motion;
 
-/// In a bar narrower than this, points, the numbers have no gauges.
-const GAUGES: f32 = 820.0;
+/// In a status bar narrower than this, points, the numbers have no bars.
+const BARS: f32 = 820.0;
 
-/// Number with its name and its gauge.
+/// Number with its name.
 struct Number {
     name: &'static str,
     value: String,
@@ -30,21 +30,14 @@ struct Number {
     word: Cow<'static, str>,
     tip: String,
     color: Color32,
-    gauge: Gauge,
-}
-
-enum Gauge {
-    None,
-    /// Number of filled blocks out of four.
-    Blocks(u32),
-    /// Filled fraction of the bar, and the fraction at which it has a mark.
-    Bar(f64, f64),
+    /// Ratio of the number to its limit, drawn as a bar with the limit in its middle.
+    ratio: Option<f64>,
 }
 
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &ViewOptions, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
-    let wide = ui.available_width() >= GAUGES;
+    let wide = ui.available_width() >= BARS;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let entries = match input.simulation.motion() {
@@ -76,8 +69,6 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
     let seconds = (times.total() - times.certify).as_secs_f64();
     let rho = rho(input);
     let reference = reference_text(input.reference);
-    let level = |decades: f64| decades.floor().clamp(0.0, 4.0) as u32;
-    let error = errors.own.map_or(0.0, |error| error.max(1e-9).log10() + 2.0);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let mut entries = vec![
         Number {
@@ -95,15 +86,15 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
                 reference = reference
             ),
             color: error_color(palette, errors.own),
-            gauge: Gauge::Blocks(level(error)),
+            ratio: None,
         },
         Number {
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
-            tip: tr("Computing time of the solve since the last change, without the check of stability").to_owned(),
+            tip: tr("Computing time of the one solve since the last change, without the check of stability; a repeated solve, as in Compare and Budget, is faster").to_owned(),
             color: palette.text,
-            gauge: Gauge::Blocks(level((1e6 * seconds).max(1.0).log10())),
+            ratio: None,
         },
     ];
     // Linear theory does not iterate.
@@ -111,7 +102,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
         entries.push(Number {
             name: "ρ",
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
-            word: Cow::default(),
+            word: rho.map_or(Cow::default(), |_| tr("per iteration").into()),
             tip: tr(
                 "Spectral radius of the warped iteration: each iteration multiplies the error by about ρ; above 1 it \
                  diverges",
@@ -122,7 +113,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
                 Some(_) => palette.text,
                 None => palette.secondary,
             },
-            gauge: Gauge::Bar(rho.map_or(0.0, |rho| 0.5 * rho), 0.5),
+            ratio: Some(rho.unwrap_or(0.0)),
         });
     }
     entries
@@ -140,15 +131,19 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Num
             word: Cow::default(),
             tip: fill!("Computing time of a time step, which simulates %{step}", step = engineering(step, "s")),
             color: if cost > step { palette.error } else { palette.text },
-            gauge: Gauge::Bar(0.5 * cost / step, 0.5),
+            ratio: Some(cost / step),
         },
         Number {
             name: "SPEED",
-            value: clock.factor().map_or_else(|| UNKNOWN.to_owned(), |factor| format!("× {}", fraction(factor))),
+            value: match clock.factor() {
+                Some(factor) => format!("× {}", fraction(factor)),
+                None if input.running => UNKNOWN.to_owned(),
+                None => tr("paused").to_owned(),
+            },
             word: if clock.lags() { tr("too slow").into() } else { Cow::default() },
             tip: tr("Simulated seconds per second; fewer than requested if the machine cannot keep up").to_owned(),
             color: if clock.lags() { palette.error } else { palette.text },
-            gauge: Gauge::None,
+            ratio: None,
         },
         Number {
             name: "DRIFT",
@@ -156,32 +151,27 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Num
             word: Cow::default(),
             tip: tr(DRIFT_TIP).to_owned(),
             color: if drift.abs() > 0.05 { palette.warning } else { palette.text },
-            gauge: Gauge::None,
+            ratio: None,
         },
     ]
 }
 
-/// Shows a name, its number and its gauge.
+/// Shows a name, its number, its bar and its remark.
 fn number(ui: &mut Ui, palette: &Palette, entry: Number, wide: bool) -> Response {
     const GAP: f32 = 6.0;
-    const BLOCK: egui::Vec2 = vec2(5.0, 13.0);
     const BAR: egui::Vec2 = vec2(56.0, 6.0);
-    let Number { name, value, word, tip, color, gauge } = entry;
+    let Number { name, value, word, tip, color, ratio } = entry;
+    let ratio = ratio.filter(|_| wide);
     let (name, word) = (tr(name), word.as_ref());
     let painter = ui.painter();
     let small = |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);
     let [title, after] = [name, word].map(small);
     let big = painter.layout_no_wrap(value.clone(), FontId::proportional(HEADLINE), color);
-    let gauge_width = match gauge {
-        _ if !wide => 0.0,
-        Gauge::None => 0.0,
-        Gauge::Blocks(_) => 4.0 * (BLOCK.x + 2.0) + GAP,
-        Gauge::Bar(..) => BAR.x + GAP,
-    };
+    let bar_width = ratio.map_or(0.0, |_| BAR.x + GAP);
     let after_width = if word.is_empty() { 0.0 } else { after.size().x + GAP };
     // A minimum width keeps what follows in place when the number of digits changes.
     let number_width = big.size().x.max(if wide { 62.0 } else { 0.0 });
-    let size = vec2(title.size().x + GAP + number_width + gauge_width + after_width, ui.spacing().interact_size.y);
+    let size = vec2(title.size().x + GAP + number_width + bar_width + after_width, ui.spacing().interact_size.y);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let middle = rect.center().y;
     let mut x = rect.left();
@@ -197,28 +187,15 @@ fn number(ui: &mut Ui, palette: &Palette, entry: Number, wide: bool) -> Response
     let title_width = title.size().x;
     put(title, title_width, false);
     put(big, number_width, true);
-    let (quiet, loud) = (palette.line, color);
-    match gauge {
-        Gauge::Blocks(full) if wide => {
-            for i in 0..4u8 {
-                let corner = pos2(x + f32::from(i) * (BLOCK.x + 2.0), middle - 0.5 * BLOCK.y);
-                let fill = if u32::from(i) < full { loud } else { quiet };
-                ui.painter().rect_filled(Rect::from_min_size(corner, BLOCK), 1.0, fill);
-            }
-        }
-        Gauge::Bar(part, mark) if wide => {
-            let bar = Rect::from_min_size(pos2(x, middle - 0.5 * BAR.y), BAR);
-            ui.painter().rect_filled(bar, 2.0, quiet);
-            let end = bar.left() + bar.width() * part.clamp(0.0, 1.0) as f32;
-            ui.painter().rect_filled(Rect::from_min_max(bar.min, pos2(end, bar.bottom())), 2.0, loud);
-            let at = bar.left() + bar.width() * mark as f32;
-            ui.painter().vline(at, bar.y_range().expand(4.0), Stroke::new(1.5, palette.secondary));
-        }
-        _ => {}
-    }
     if !word.is_empty() {
-        let at = pos2(rect.right() - after.size().x, middle - 0.5 * after.size().y);
-        ui.painter().galley(at, after, palette.secondary);
+        put(after, after_width - GAP, false);
+    }
+    if let Some(ratio) = ratio {
+        let bar = Rect::from_min_size(pos2(x, middle - 0.5 * BAR.y), BAR);
+        ui.painter().rect_filled(bar, 2.0, palette.line);
+        let end = bar.left() + bar.width() * (0.5 * ratio).clamp(0.0, 1.0) as f32;
+        ui.painter().rect_filled(Rect::from_min_max(bar.min, pos2(end, bar.bottom())), 2.0, color);
+        ui.painter().vline(bar.center().x, bar.y_range().expand(4.0), Stroke::new(1.5, palette.secondary));
     }
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} {value} {word}").trim_end()));
     response.on_hover_text(tip)

@@ -456,7 +456,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         lines.push((palette.method(MethodKind::Linear), Mark::Line, text));
     }
     if !overlay.exact.is_empty() {
-        lines.push((palette.exact, Mark::Dashes, tr("exact").to_owned()));
+        lines.push((palette.exact, Mark::Dashes, tr("reference").to_owned()));
     }
     if overlay.options.rest_outline {
         lines.push((palette.rest, Mark::Outline, tr("rest").to_owned()));

@@ -70,7 +70,9 @@ pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field:
                     "recovered at the nodes",
                     "Smoothed values: strain and rotation of the surrounding elements, fitted at the nodes",
                 ),
-                PointValues::Raw => ("raw, of this element", "Strain and rotation of the element itself, not smoothed"),
+                PointValues::Raw => {
+                    ("element value, not smoothed", "Strain and rotation of the element itself, not smoothed")
+                }
             };
             ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
             Grid::new("probe values").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {

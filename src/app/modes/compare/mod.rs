@@ -2,12 +2,12 @@
 //! them.
 
 use std::sync::Arc;
-use web_time::{Duration, Instant};
 
 use egui::{
     Align2, Color32, ComboBox, Context, FontId, Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2,
 };
 use nalgebra::Vector2;
+use web_time::{Duration, Instant};
 
 use self::grid::{Grid, PaneBody, PaneChange, Preset, grow};
 use self::pane::{Doing, Equations, FrameConditions};
@@ -524,7 +524,7 @@ impl Compare {
             x = place.right() + 16.0;
         };
         if view.exact {
-            entry("exact", Mark::Dashes, palette.exact);
+            entry("reference", Mark::Dashes, palette.exact);
         }
         if view.rest_outline {
             entry("rest", Mark::Outline, palette.rest);

@@ -326,13 +326,13 @@ impl Trace {
         };
         let exact_series = [
             series(tr("exact beam"), Ink::Exact, Mark::Line, false, exact(&self.line)),
-            series(tr("exact"), Ink::Exact, Mark::Plus, false, exact(&self.references)),
+            series(tr("reference"), Ink::Exact, Mark::Plus, false, exact(&self.references)),
         ];
         let mut all: Vec<FigureSeries> = exact_series.into_iter().filter(|s| !s.points.is_empty()).collect();
         let mut rows = Vec::new();
         if !all.is_empty() {
             let value = self.exact_at(axis.magnitude).map(pair).unwrap_or_default();
-            let (name, error) = (tr("exact").to_owned(), String::new());
+            let (name, error) = (tr("reference").to_owned(), String::new());
             rows.push(FigureRow { name, ink: Ink::Exact, mark: Mark::Line, value, error, is_bad: false });
         }
         let stretches = all.is_empty() && panes.iter().all(|p| p.setting.of(scene).method == Some(MethodKind::Linear));
@@ -341,7 +341,8 @@ impl Trace {
             let (Some(method), Some(element)) = (setting.method, setting.element) else { continue };
             let (name, ink, is_linear) = (setting.text(), Ink::Method(method), method == MethodKind::Linear);
             let dots: Vec<&Dot> = self.dots_of(setting).iter().filter(|dot| dot.load <= reach).collect();
-            // The solution of linear theory is proportional to a single load.
+            // Where the scene has one load, the solution of linear theory is proportional to it: one good point gives the
+            // whole line.
             if let Some(dot) = dots.iter().rfind(|dot| dot.good && dot.load > 0.0)
                 && is_linear
                 && !has_several_loads(scene)

@@ -135,15 +135,15 @@ fn clipped(line: &[[f64; 2]], [low, high]: [[f64; 2]; 2]) -> Option<Vec<[f64; 2]
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for i in 0..2 {
             let d = b[i] - a[i];
-            for (distance, speed) in [(a[i] - low[i], -d), (high[i] - a[i], d)] {
-                if speed == 0.0 {
+            for (distance, outward) in [(a[i] - low[i], -d), (high[i] - a[i], d)] {
+                if outward == 0.0 {
                     if distance < 0.0 {
                         to = -1.0;
                     }
-                } else if speed < 0.0 {
-                    from = from.max(distance / speed);
+                } else if outward < 0.0 {
+                    from = from.max(distance / outward);
                 } else {
-                    to = to.min(distance / speed);
+                    to = to.min(distance / outward);
                 }
             }
         }
@@ -252,7 +252,7 @@ fn head(ui: &mut Ui, columns: &Columns, figure: &Figure) {
         return;
     }
     let measure = fill!(
-        "%{error}: relative error of the displacement vector, compared with the exact one",
+        "%{error}: relative error of the displacement vector, compared with the reference solution",
         error = figure.error_name
     );
     response.on_hover_text(format!("{}\n{measure}", tr("Click in the plot to set the load")));
