@@ -13,6 +13,8 @@ const [dist, warpbeam, pictures, part = ""] = process.argv.slice(2);
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 // Position of the button that measures, points from the lower left corner of the view.
 const MEASURE = [42, 19];
+// Position of the field of the force in a window of this size.
+const FORCE = [1219, 170];
 const SIZE = { width: 1280, height: 800 };
 // Software rendering on a loaded machine is slow; no test passes or fails by its time below this limit.
 const PATIENCE = Number(process.env.WEB_PATIENCE ?? 180) * 1000;
@@ -105,6 +107,17 @@ async function difference(browser, [one, other]) {
   return share;
 }
 
+// Records the longest time that the page stands still.
+function watchPauses() {
+  let last = performance.now();
+  globalThis.longest = 0;
+  setInterval(() => {
+    const now = performance.now();
+    globalThis.longest = Math.max(globalThis.longest, now - last);
+    last = now;
+  }, 5);
+}
+
 const settled = (now) => now.status === "converged" && !now.is_computing;
 
 const TESTS = {
@@ -168,15 +181,7 @@ const TESTS = {
   async "the page goes on while a reference solution is sought"(browser) {
     // Its reference solution takes seconds.
     await onPage(browser, "?scene=shear&lang=en", async ({ page, until }) => {
-      await page.evaluate(() => {
-        let last = performance.now();
-        globalThis.longest = 0;
-        setInterval(() => {
-          const now = performance.now();
-          globalThis.longest = Math.max(globalThis.longest, now - last);
-          last = now;
-        }, 5);
-      });
+      await page.evaluate(watchPauses);
       const start = Date.now();
       await until((now) => now.is_computing, "waited for the search");
       await until((now) => !now.is_computing, "waited for the reference solution");
@@ -264,6 +269,75 @@ const TESTS = {
       await page.keyboard.press("s");
       equal((await picture).suggestedFilename(), "warpbeam.png", "name of the picture");
     });
+  },
+
+  async "dropped files are opened, a scene together with its mesh"(browser) {
+    const expected = native("solve", "cook", "--json");
+    const toml = readFileSync("assets/scenes/cook.toml", "utf8").replace("../meshes/cook.msh", "meshes/own.msh");
+    const mesh = readFileSync("assets/meshes/cook.msh", "utf8");
+    await onPage(browser, "?scene=article&lang=en", async ({ page, until }) => {
+      const drop = (files) =>
+        page.evaluate((files) => {
+          const data = new DataTransfer();
+          for (const [name, text] of files) data.items.add(new File([text], name));
+          const event = (type) => new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true });
+          // The browser would leave the page if these events were not handled.
+          const canvas = document.getElementById("warpbeam");
+          return ["dragover", "drop"].map((type) => canvas.dispatchEvent(event(type)) === false);
+        }, files);
+      const { title } = await until(settled, "waited for convergence");
+      equal(String(await drop([["own.toml", toml]])), "true,true", "handled events");
+      await page.waitForTimeout(500);
+      equal((await until(settled, "waited for the scene to stay")).title, title, "title after a scene without its mesh");
+      await drop([["own.msh", mesh], ["own.toml", toml]]);
+      const now = await until((now) => now.title.includes("own.toml") && settled(now), "waited for the dropped scene");
+      equal(now.unknowns, expected.dofs, "unknowns");
+      expected.probes.forEach((probe, i) => [0, 1].forEach((k) => near(now.probes[i].u[k], probe.u[k], 1e-9, `${probe.name}, component ${k}`)));
+    });
+  },
+
+  async "a number is pasted into a field"(browser) {
+    await onPage(browser, "?scene=article&lang=en", async ({ page, until, still }) => {
+      await still();
+      await page.evaluate(() => navigator.clipboard.writeText("20 kN"));
+      await page.mouse.click(...FORCE);
+      await page.waitForTimeout(500);
+      await page.keyboard.press("Control+a");
+      await page.keyboard.press("Control+v");
+      await page.waitForTimeout(500);
+      await page.keyboard.press("Enter");
+      await until((now) => Math.abs(Math.hypot(...now.loads[0].force) - 20e3) < 1e-6, "waited for the pasted force");
+    });
+  },
+
+  async "the canvas has the size and the pixels of the page"(_, backend) {
+    const ratio = 2;
+    // A ratio that is emulated in a page does not reach its observers of sizes.
+    const browser = await chromium.launch({ executablePath: CHROMIUM, args: [...BACKENDS[backend], `--force-device-scale-factor=${ratio}`] });
+    try {
+      await onPage(browser, "?scene=article&lang=en", async ({ page, context, until, still }) => {
+        const device = await context.newCDPSession(page);
+        const { windowId } = await device.send("Browser.getWindowForTarget");
+        for (const bounds of [{ width: 1000, height: 760 }, { width: 640, height: 900 }, { width: 1280, height: 800 }]) {
+          await device.send("Browser.setWindowBounds", { windowId, bounds });
+          await page.waitForFunction((width) => innerWidth === width, bounds.width, { timeout: PATIENCE });
+          const [width, height] = await page.evaluate(() => [innerWidth, innerHeight]);
+          // Any input ends the animation of the start.
+          await page.mouse.move(width / 2, height - 100);
+          const wanted = [ratio * width, ratio * height].join();
+          await page.waitForFunction((wanted) => { const { width, height } = document.getElementById("warpbeam"); return `${width},${height}` === wanted; }, wanted, { timeout: PATIENCE });
+          await until(({ view }) => view[2] <= width && view[3] <= height && view[3] > height - 200, "waited for the layout");
+          const { view, body } = await still();
+          const isInside = body[0] >= view[0] && body[1] >= view[1] && body[2] <= view[2] && body[3] <= view[3];
+          // The longer side of the body takes a good part of the view.
+          const share = Math.max((body[2] - body[0]) / (view[2] - view[0]), (body[3] - body[1]) / (view[3] - view[1]));
+          if (!isInside || share < 0.3) throw new Error(`${width} × ${height}: the body at ${body} in the view ${view}`);
+          await page.screenshot({ path: join(pictures, `ratio-2-${width}-${backend.replace(" ", "")}.png`) });
+        }
+      }, { viewport: null });
+    } finally {
+      await browser.close();
+    }
   },
 
   async "settings are kept"(browser) {

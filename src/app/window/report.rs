@@ -21,6 +21,12 @@ pub(super) fn json(lab: &Lab, frames: u64) -> String {
     let tips = lab.arrow_tips().into_iter().map(|(load, at)| json!({ "load": load, "x": at.x, "y": at.y }));
     let (study, is_measuring) = lab.study();
     let view = lab.view_rect();
+    let (camera, mesh) = (lab.camera(), simulation.mesh());
+    let mut body = egui::Rect::NOTHING;
+    for (x, u) in mesh.nodes().iter().zip(simulation.displacement()) {
+        let [right, down] = camera.to_view(x + u);
+        body.extend_with(view.center() + egui::vec2(right as f32, down as f32));
+    }
     json!({
         "frames": frames,
         "title": lab.title(),
@@ -45,6 +51,7 @@ pub(super) fn json(lab: &Lab, frames: u64) -> String {
         "arrow_tips": tips.collect::<Vec<_>>(),
         "scale": number(lab.camera().scale),
         "view": [view.left(), view.top(), view.right(), view.bottom()],
+        "body": [body.left(), body.top(), body.right(), body.bottom()],
     })
     .to_string()
 }
