@@ -11,7 +11,7 @@ use nalgebra::Vector2;
 use crate::simd::{LANES, Lanes, gather, zero_vector};
 
 /// Displacement of every node, m. Dereferences to the rounded values.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Displacement {
     rounded: Vec<Vector2<f64>>,
     /// Rounding error of `rounded`, at most half of its last digit.

@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, SimdBool, Vector2};
 use crate::simd::Number;
 
 /// Proper rotation of the plane, stored as cosine and sine; with SIMD `T`, one rotation per lane.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rotation<T = f64> {
     /// Cosine of the angle.
     pub c: T,

@@ -10,7 +10,7 @@ use crate::rotation::Rotation;
 /// of the elements.
 ///
 /// See [`Simulation::restore`](crate::Simulation::restore) for an example.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct State {
     /// u = x − X of every node, m.
     pub(crate) displacement: Displacement,

@@ -39,7 +39,7 @@ pub enum Change {
 }
 
 /// Nodal forces of a state, N.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Forces {
     /// f_int, internal force of the elements.
     pub(crate) internal: Vec<Vector2<f64>>,

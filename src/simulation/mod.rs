@@ -30,6 +30,7 @@ mod status;
 mod view;
 
 pub use self::motion::Moment;
+pub use self::search::Found;
 pub use self::view::{Equilibrium, Motion};
 pub use field::Field;
 pub use point::{PointState, PointValues};
@@ -270,6 +271,30 @@ impl Simulation {
         self.body.state.copy_from(state);
         self.begin();
         Ok(())
+    }
+
+    /// Returns the state and the results of a search, as data for [`Self::with_found`]; `None` for a motion.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn found(&self) -> Option<Found> {
+        match &self.process {
+            Process::Search(search) => Some(search.found(&self.body)),
+            Process::Motion(_) => None,
+        }
+    }
+
+    /// Returns a simulation with what a simulation of the same scene has found elsewhere. Nothing else is computed, and work
+    /// memory is allocated if the search is continued.
+    ///
+    /// # Errors
+    /// Same errors as [`Self::new`].
+    #[doc(hidden)]
+    pub fn with_found(scene: &Scene, system: Arc<System>, found: Found) -> Result<Self, SimulationError> {
+        let problem = Problem::new(scene, system)?;
+        let (search, state) = Search::of(scene, found);
+        let status = search.status().clone();
+        let body = Body { scene: scene.clone(), problem, state };
+        Ok(Self { body, process: Process::Search(Box::new(search)), status })
     }
 
     /// Returns to an earlier moment of this motion. Steps from there are the same as after [`Self::restore`]; energies

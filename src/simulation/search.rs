@@ -1,5 +1,7 @@
 //! Search for an equilibrium by iteration.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
 use crate::displacement::Displacement;
@@ -30,6 +32,35 @@ pub(super) struct Search {
     certificate: Option<Certificate>,
     timings: Timings,
     last_iteration: Timings,
+    /// Figures of the method, if the iterations were made by another instance of the search.
+    figures: Option<Figures>,
+}
+
+/// Figures that a method computes for display.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Figures {
+    kinematics: Kinematics,
+    load_factor: f64,
+    load_steps: u32,
+    step_ratio: Option<f64>,
+    auto_report: Option<AutoReport>,
+}
+
+/// State and results of a search, as data that can be sent to another instance of it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Found {
+    /// State that the search has reached.
+    pub state: State,
+    /// Number of iterations.
+    pub iterations: u32,
+    forces: Forces,
+    residual: f64,
+    floor: Option<f64>,
+    status: Status,
+    certificate: Option<Certificate>,
+    timings: Timings,
+    last_iteration: Timings,
+    figures: Figures,
 }
 
 fn tolerances(settings: &SolverSettings) -> Tolerances {
@@ -39,11 +70,20 @@ fn tolerances(settings: &SolverSettings) -> Tolerances {
 impl Search {
     /// Returns a search that starts from the current state.
     pub fn new(body: &mut Body) -> Result<Self, SolverError> {
-        let mut search = Self {
-            method: (body.scene.solver.method.entry().start)(),
-            previous: (body.state.displacement.clone(), body.state.edge_angles.clone()),
-            forces: Forces::new(body.state.displacement.len()),
-            workspace: Some(Workspace::new(body.problem.system())?),
+        let mut search = Self::unmeasured(&body.scene, Forces::new(body.state.displacement.len()));
+        search.workspace = Some(Workspace::new(body.problem.system())?);
+        search.previous = (body.state.displacement.clone(), body.state.edge_angles.clone());
+        search.restart(body, Restart::AtRest);
+        Ok(search)
+    }
+
+    /// Returns a search whose state has not been measured, without work memory.
+    fn unmeasured(scene: &Scene, forces: Forces) -> Self {
+        Self {
+            method: (scene.solver.method.entry().start)(),
+            previous: (Displacement::zeros(0), Vec::new()),
+            forces,
+            workspace: None,
             residual: 0.0,
             floor: None,
             iterations: 0,
@@ -51,9 +91,22 @@ impl Search {
             certificate: None,
             timings: Timings::default(),
             last_iteration: Timings::default(),
-        };
-        search.restart(body, Restart::AtRest);
-        Ok(search)
+            figures: None,
+        }
+    }
+
+    /// Returns the search of what another instance of it has found, and its state.
+    pub fn of(scene: &Scene, found: Found) -> (Self, State) {
+        let mut search = Self::unmeasured(scene, found.forces);
+        search.residual = found.residual;
+        search.floor = found.floor;
+        search.iterations = found.iterations;
+        search.status = found.status;
+        search.certificate = found.certificate;
+        search.timings = found.timings;
+        search.last_iteration = found.last_iteration;
+        search.figures = Some(found.figures);
+        (search, found.state)
     }
 
     /// Copies the search without its work memory, which is allocated again if the copy is continued.
@@ -70,7 +123,34 @@ impl Search {
             certificate: self.certificate,
             timings: self.timings,
             last_iteration: self.last_iteration,
+            figures: self.figures,
         }
+    }
+
+    /// Returns the state and the results as data.
+    pub fn found(&self, body: &Body) -> Found {
+        Found {
+            state: body.state.clone(),
+            iterations: self.iterations,
+            forces: self.forces.clone(),
+            residual: self.residual,
+            floor: self.floor,
+            status: self.status.clone(),
+            certificate: self.certificate,
+            timings: self.timings,
+            last_iteration: self.last_iteration,
+            figures: self.figures(),
+        }
+    }
+
+    fn figures(&self) -> Figures {
+        self.figures.unwrap_or_else(|| Figures {
+            kinematics: self.method.kinematics(),
+            load_factor: self.method.load_factor(),
+            load_steps: self.method.load_steps(),
+            step_ratio: self.method.step_ratio(),
+            auto_report: self.method.report(),
+        })
     }
 
     /// Takes the work memory out of the search, allocating it if necessary; the search ends if that fails.
@@ -136,6 +216,7 @@ impl Search {
         self.certificate = None;
         self.timings = Timings::default();
         self.last_iteration = Timings::default();
+        self.figures = None;
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         let mut unmeasured = Timings::default();
         if why == Restart::NewLoads {
@@ -169,6 +250,7 @@ impl Search {
             return;
         }
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
+        self.figures = None;
         let mut timings = Timings::default();
         let State { displacement, edge_angles, .. } = &body.state;
         self.previous.0.copy_from(displacement);
@@ -294,9 +376,9 @@ impl Search {
         }
         let made = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
         let Ok(made) = made else { return Certificate::default() };
+        let load_factor = self.load_factor();
         let workspace = self.workspace.insert(made);
-        let Self { forces, method, .. } = self;
-        let load_factor = method.load_factor();
+        let forces = &mut self.forces;
         let certificate = timed(&mut self.timings.certify, || Certificate {
             fixed_point_rho: fixed_point_rho(problem, state, load_factor, forces, workspace),
             stable: Some(is_stable(problem, state, load_factor, forces, workspace)),
@@ -309,7 +391,7 @@ impl Search {
     }
 
     pub fn kinematics(&self) -> Kinematics {
-        self.method.kinematics()
+        self.figures().kinematics
     }
 
     pub fn forces(&self) -> &Forces {
@@ -317,15 +399,15 @@ impl Search {
     }
 
     pub fn load_factor(&self) -> f64 {
-        self.method.load_factor()
+        self.figures().load_factor
     }
 
     pub fn load_steps(&self) -> u32 {
-        self.method.load_steps()
+        self.figures().load_steps
     }
 
     pub fn auto_report(&self) -> Option<AutoReport> {
-        self.method.report()
+        self.figures().auto_report
     }
 
     pub fn status(&self) -> &Status {
@@ -346,7 +428,7 @@ impl Search {
     }
 
     pub fn step_ratio(&self) -> Option<f64> {
-        self.method.step_ratio()
+        self.figures().step_ratio
     }
 
     pub fn last_iteration(&self) -> &Timings {

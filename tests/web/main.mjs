@@ -6,7 +6,7 @@ import { createReadStream, existsSync, mkdirSync, readFileSync, writeFileSync } 
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
 import { extname, join, normalize } from "node:path";
-import { gzipSync } from "node:zlib";
+import { deflateRawSync, gzipSync } from "node:zlib";
 
 const { chromium } = createRequire(join(process.env.WEB_MODULES ?? process.cwd(), "package.json"))("playwright-core");
 const [dist, warpbeam, pictures, part = ""] = process.argv.slice(2);
@@ -189,6 +189,42 @@ const TESTS = {
       console.log(`    the page stood still for at most ${longest.toFixed(0)} ms in a search of ${Date.now() - start} ms`);
       // The drawing in software takes part of this time.
       if (longest > 500) throw new Error(`the page stood still for ${longest} ms`);
+    });
+  },
+
+  async "a large model is solved in a worker"(browser) {
+    const file = join(pictures, "large.toml");
+    const unknowns = Number(process.env.WEB_UNKNOWNS ?? 20_000);
+    const rows = Math.round(Math.sqrt(unknowns / 20));
+    const toml = readFileSync("assets/scenes/article.toml", "utf8").replace(/cells = .*/, `cells = [${10 * rows}, ${rows}]`).replace('"warped"', '"newton"');
+    writeFileSync(file, toml);
+    const expected = native("solve", file, "--json");
+    const agrees = (now, expected) => {
+      equal(now.unknowns, expected.dofs, "unknowns");
+      equal(now.iterations, expected.iterations, "iterations");
+      expected.probes.forEach((probe, i) => [0, 1].forEach((k) => near(now.probes[i].u[k], probe.u[k], 1e-9, `${probe.name}, component ${k}`)));
+    };
+    const link = `?lang=en#scene=${deflateRawSync(toml).toString("base64url")}`;
+    await onPage(browser, link, async ({ page, until, still }) => {
+      await until((now) => now.unknowns === expected.dofs && settled(now), "waited for convergence");
+      const before = await still();
+      agrees(before, expected);
+      const [tip] = before.arrow_tips;
+      await page.evaluate(watchPauses);
+      await page.mouse.move(tip.x, tip.y);
+      await page.mouse.down();
+      await page.mouse.move(tip.x + 40, tip.y - 30, { steps: 5 });
+      await page.mouse.up();
+      await until((now) => JSON.stringify(now.loads) !== JSON.stringify(before.loads), "waited for another force");
+      const after = await until((now) => settled(now) && JSON.stringify(now.probes) !== JSON.stringify(before.probes), "waited for the new equilibrium");
+      const longest = await page.evaluate(() => globalThis.longest);
+      console.log(`    ${after.unknowns} unknowns: the page stood still for at most ${longest.toFixed(0)} ms`);
+      writeFileSync(file, toml.replace(/force = .*/, `force = [${after.loads[0].force}]`));
+      const moved = native("solve", file, "--json");
+      expected.probes.forEach((probe, i) => [0, 1].forEach((k) => near(after.probes[i].u[k], moved.probes[i].u[k], 1e-6, `${probe.name}, component ${k}`)));
+      // A solve that is cancelled by an undo ends with the state before it.
+      await page.keyboard.press("Control+z");
+      await until((now) => settled(now) && JSON.stringify(now.loads) === JSON.stringify(before.loads) && now.iterations > 0, "waited for the undo");
     });
   },
 

@@ -6,10 +6,9 @@ use web_time::Instant;
 use crate::app::session::document::Document;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
+use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
 use crate::app::task::quality::Quality;
-use crate::app::task::solve::{
-    BackgroundSolve, Bodies, MOST_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, SolveUpdate, Solved, Start,
-};
+use crate::app::task::solve::{Bodies, MOST_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, Solved, Start};
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::{Equilibrium, Simulation, Status};
@@ -271,6 +270,10 @@ impl Session {
                     Ok(solved) => self.receive(&solve, is_cancelled, *solved),
                     Err(rejected) => self.receive_rejection(&solve, is_cancelled, *rejected),
                 }
+            }
+            // A worker has ended before it had a model.
+            SolveUpdate::Died if self.background.work.solve().is_some_and(BackgroundSolve::is_cancelled) => {
+                self.background.work.take_solve();
             }
             SolveUpdate::Died => {
                 self.roll_back();

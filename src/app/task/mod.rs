@@ -1,7 +1,9 @@
 //! Background work: threads with progress and cancellation, lazily computed values, and the solve of a large model.
 
+pub(crate) mod background_solve;
 pub(crate) mod lazy;
 pub(crate) mod quality;
+pub(crate) mod remote_solve;
 pub(crate) mod sent_scene;
 pub(crate) mod solve;
 pub(crate) mod thread;

@@ -7,7 +7,7 @@ use crate::simulation::{Deformation, Simulation};
 use crate::stress::strain_warning;
 
 /// Quality of the last state that was evaluated.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Quality {
     of: Option<(Vec<Vector2<f64>>, Material)>,
     /// Estimated discretization error in the energy norm, percent.

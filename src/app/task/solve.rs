@@ -1,23 +1,21 @@
-//! Background solve of a large model: request, progress and result.
+//! Solve of a large model: request, progress and result.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use web_time::{Duration, Instant};
 
-use crate::app::platform::IS_PAGE;
 use crate::app::task::quality::Quality;
-use crate::app::task::thread::{Reporter, Task, Update};
 use crate::assembly::System;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 
-/// Largest number of unknowns of a model that is meshed and solved between two frames. On a web page that is every model:
-/// a model in a worker could not be displayed, because it is not data.
-pub(crate) const MOST_UNKNOWNS: u64 = if IS_PAGE { u64::MAX } else { 16_000 };
+/// Largest number of unknowns of a model that is meshed and solved between two frames.
+pub(crate) const MOST_UNKNOWNS: u64 = 16_000;
 /// Largest number of unknowns of a model that is solved between two frames in a pane of Compare, which shows several.
-pub(crate) const MOST_PANE_UNKNOWNS: u64 = if IS_PAGE { u64::MAX } else { 4000 };
+pub(crate) const MOST_PANE_UNKNOWNS: u64 = 4000;
 
 /// Time between two snapshots while a model is solved.
 const SNAPSHOT: Duration = Duration::from_millis(100);
@@ -35,9 +33,16 @@ pub(crate) struct Bodies {
 impl Bodies {
     /// Returns copies of both simulations to display while the solve goes on; `None` for a motion, which has no
     /// search.
-    fn snapshot(&self) -> Option<Self> {
+    pub(crate) fn snapshot(&self) -> Option<Self> {
         let linear = self.linear.as_ref().and_then(Simulation::equilibrium).map(Equilibrium::snapshot);
         Some(Self { simulation: self.simulation.equilibrium()?.snapshot(), linear })
+    }
+
+    /// Returns the display geometry of a new mesh.
+    pub(crate) fn geometry(&self) -> DisplayGeometry {
+        // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
+        let _ = self.simulation.system().recovery();
+        DisplayGeometry::new(self.simulation.system().mesh())
     }
 }
 
@@ -87,7 +92,7 @@ pub(crate) struct Snapshot {
 }
 
 /// Current phase of a solve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Phase {
     Meshing,
     LinearSolve,
@@ -96,8 +101,9 @@ pub(crate) enum Phase {
     Certifying,
 }
 
+/// Progress of a solve.
 #[derive(Debug)]
-enum Progress {
+pub(crate) enum Progress {
     Phase(Phase),
     Snapshot(Box<Snapshot>),
 }
@@ -117,90 +123,7 @@ pub(crate) struct Rejected {
     pub model: Option<(Bodies, Option<DisplayGeometry>)>,
 }
 
-type Outcome = Result<Box<Solved>, Box<Rejected>>;
-
-/// Update of a background solve.
-pub(crate) type SolveUpdate = Update<Box<Snapshot>, Outcome>;
-
-/// Solve in a background thread. Dropping it cancels it.
-#[derive(Debug)]
-pub(crate) struct BackgroundSolve {
-    task: Task<Progress, Outcome>,
-    scene: Scene,
-    is_new: bool,
-    /// `true` once the user has cancelled the solve: its snapshots and its result are not displayed.
-    is_discarded: bool,
-    phase: Phase,
-}
-
-impl BackgroundSolve {
-    /// Starts the thread.
-    ///
-    /// # Errors
-    /// The system cannot start another thread.
-    pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
-        let (scene, is_new) = (request.scene.clone(), matches!(request.model, Model::New));
-        let phase = if is_new { Phase::Meshing } else { Phase::Iterating(0) };
-        let task = Task::start("solve", move |reporter| run(request, reporter))?;
-        Ok(Self { task, scene, is_new, is_discarded: false, phase })
-    }
-
-    /// Returns the scene that is solved.
-    pub(crate) fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// Returns `true` if a new model is meshed.
-    pub(crate) fn is_new(&self) -> bool {
-        self.is_new
-    }
-
-    pub(crate) fn phase(&self) -> Phase {
-        self.phase
-    }
-
-    /// Cancels the solve, whose snapshots and result are not to be displayed.
-    pub(crate) fn discard(&mut self) {
-        self.is_discarded = true;
-        self.cancel();
-    }
-
-    /// Returns `true` if the snapshots and the result are not to be displayed.
-    pub(crate) fn is_discarded(&self) -> bool {
-        self.is_discarded
-    }
-
-    /// Cancels the solve; it ends with the model that it has.
-    pub(crate) fn cancel(&self) {
-        self.task.cancel();
-    }
-
-    /// Returns the next update without waiting for it.
-    pub(crate) fn poll(&mut self) -> SolveUpdate {
-        self.next(Task::poll)
-    }
-
-    /// Waits for the next update.
-    pub(crate) fn wait(&mut self) -> SolveUpdate {
-        self.next(Task::wait)
-    }
-
-    /// Returns the next update, and records the phases that are reported before it.
-    fn next(&mut self, update: fn(&Task<Progress, Outcome>) -> Update<Progress, Outcome>) -> SolveUpdate {
-        loop {
-            return match update(&self.task) {
-                Update::None => Update::None,
-                Update::Progress(Progress::Phase(phase)) => {
-                    self.phase = phase;
-                    continue;
-                }
-                Update::Progress(Progress::Snapshot(snapshot)) => Update::Progress(snapshot),
-                Update::Done(outcome) => Update::Done(outcome),
-                Update::Died => Update::Died,
-            };
-        }
-    }
-}
+pub(crate) type Outcome = Result<Box<Solved>, Box<Rejected>>;
 
 /// Records the residual of an iteration; a new solve starts a new list.
 pub(crate) fn note_residual(simulation: &Simulation, residuals: &mut Vec<f64>) {
@@ -211,7 +134,7 @@ pub(crate) fn note_residual(simulation: &Simulation, residuals: &mut Vec<f64>) {
 }
 
 /// Returns the scene with linear theory as the method.
-fn linear_scene(scene: &Scene) -> Scene {
+pub(crate) fn linear_scene(scene: &Scene) -> Scene {
     let solver = SolverSettings { method: MethodKind::Linear, ..scene.solver.clone() };
     Scene { solver, ..scene.clone() }
 }
@@ -252,14 +175,16 @@ impl Model {
     }
 }
 
-fn run(request: SolveRequest, reporter: &Reporter<Progress, Outcome>) -> Outcome {
+/// Solves; `report` breaks to cancel.
+///
+/// # Errors
+/// [`Rejected`].
+pub(crate) fn run(request: SolveRequest, report: &dyn Fn(Progress) -> ControlFlow<()>) -> Outcome {
     let SolveRequest { scene, model, start, iterations, mut residuals, is_displayed } = request;
     let needs_geometry = is_displayed && matches!(model, Model::New);
     let (mut bodies, mut geometry) = model.set_up(&scene)?;
     if needs_geometry {
-        // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
-        let _ = bodies.simulation.system().recovery();
-        geometry = Some(DisplayGeometry::new(bodies.simulation.system().mesh()));
+        geometry = Some(bodies.geometry());
     }
     match start {
         Start::Present => {}
@@ -269,7 +194,7 @@ fn run(request: SolveRequest, reporter: &Reporter<Progress, Outcome>) -> Outcome
     }
     if is_displayed && bodies.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {
         let known = bodies.linear.take();
-        if reporter.report(Progress::Phase(Phase::LinearSolve)).is_continue() {
+        if report(Progress::Phase(Phase::LinearSolve)).is_continue() {
             bodies.linear = solve_linear(&scene, bodies.simulation.system(), known);
         }
     }
@@ -277,7 +202,7 @@ fn run(request: SolveRequest, reporter: &Reporter<Progress, Outcome>) -> Outcome
     while bodies.simulation.motion().is_none()
         && *bodies.simulation.status() == Status::Running
         && iterations.is_none_or(|most| made < most)
-        && reporter.report(Progress::Phase(Phase::Iterating(bodies.simulation.iterations()))).is_continue()
+        && report(Progress::Phase(Phase::Iterating(bodies.simulation.iterations()))).is_continue()
     {
         bodies.simulation.step();
         note_residual(&bodies.simulation, &mut residuals);
@@ -287,13 +212,13 @@ fn run(request: SolveRequest, reporter: &Reporter<Progress, Outcome>) -> Outcome
             && let Some(bodies) = bodies.snapshot()
         {
             let snapshot = Snapshot { bodies, geometry: geometry.take(), residuals: residuals.clone() };
-            let _ = reporter.report(Progress::Snapshot(Box::new(snapshot)));
+            let _ = report(Progress::Snapshot(Box::new(snapshot)));
             shown = Some(Instant::now());
         }
     }
     let mut quality = None;
     let has_ended = bodies.simulation.motion().is_none() && *bodies.simulation.status() != Status::Running;
-    if is_displayed && has_ended && reporter.report(Progress::Phase(Phase::Certifying)).is_continue() {
+    if is_displayed && has_ended && report(Progress::Phase(Phase::Certifying)).is_continue() {
         bodies.simulation.certify();
         let mut own = Quality::default();
         own.follow(&bodies.simulation);

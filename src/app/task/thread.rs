@@ -91,6 +91,11 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
         }
     }
 
+    /// Returns the next update; waits for it if `waits` is `true`.
+    pub(crate) fn next(&self, waits: bool) -> Update<P, T> {
+        if waits { self.wait() } else { self.poll() }
+    }
+
     /// Waits for the next update.
     pub(crate) fn wait(&self) -> Update<P, T> {
         self.receiver.recv().map_or(Update::Died, Into::into)

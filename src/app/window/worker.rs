@@ -7,6 +7,7 @@ use crate::app::platform;
 use crate::app::session::facts::{CurveFact, FrequencyFact, JumpFact, ReferenceFact};
 use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
 use crate::app::task::lazy::FactWork;
+use crate::app::task::remote_solve::SolveWork;
 use crate::app::task::thread::{Work, serve};
 
 /// Work by its name.
@@ -16,7 +17,7 @@ const fn entry<W: Work>() -> Entry {
     (W::NAME, serve::<W>)
 }
 
-const ENTRIES: [Entry; 9] = [
+const ENTRIES: [Entry; 10] = [
     entry::<FactWork<ReferenceFact>>(),
     entry::<FactWork<CurveFact>>(),
     entry::<FactWork<JumpFact>>(),
@@ -25,6 +26,7 @@ const ENTRIES: [Entry; 9] = [
     entry::<FactWork<Rho>>(),
     entry::<FactWork<ElementErrors>>(),
     entry::<StudyWork>(),
+    entry::<SolveWork>(),
     entry::<ThumbnailWork>(),
 ];
 

@@ -1,7 +1,7 @@
 //! Report of the decisions of `auto`.
 
 /// Decisions of `auto` for the current result.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct AutoReport {
     /// Kind of solution.
@@ -16,7 +16,7 @@ pub struct AutoReport {
 }
 
 /// Kind of solution that `auto` chose.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Decision {
     /// Not finished.

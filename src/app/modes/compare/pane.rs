@@ -9,9 +9,8 @@ use web_time::{Duration, Instant};
 
 use super::setting::PaneSetting;
 use crate::app::session::has_mesh_of;
-use crate::app::task::solve::{
-    BackgroundSolve, Bodies, MOST_PANE_UNKNOWNS, Model, Phase, SolveRequest, SolveUpdate, Start,
-};
+use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
+use crate::app::task::solve::{Bodies, MOST_PANE_UNKNOWNS, Model, Phase, SolveRequest, Start};
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::Forces;
 use crate::app::viewport::body_mesh::BodyMesh;
