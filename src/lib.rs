@@ -55,7 +55,7 @@
 //!
 //! Data flows in one direction; each module imports only from modules to its left:
 //!
-//! `format`, `timings`, the scene's data (`model`), `simd` → `rotation`, `material`, `displacement` → `element` → `mesh`
+//! `format`, `sentence`, `timings`, the scene's data (`model`), `simd` → `rotation`, `material`, `displacement` → `element` → `mesh`
 //! → `solver`, `scene` (reads scenes and mesh files), `state` → `assembly` → `method` for equilibria, `dynamics` for
 //! motions, `stress` → `simulation` → `exact_beam` → `study` → `plot`, the drawings → the window → the commands.
 //! `article` needs elements and rotations only. The list `LAYERS` in `tests/architecture.rs` holds this order, and a test
@@ -116,6 +116,8 @@ pub mod render;
 pub mod rotation;
 #[doc(hidden)]
 pub mod scene;
+#[doc(hidden)]
+pub mod sentence;
 #[doc(hidden)]
 pub mod simd;
 #[doc(hidden)]

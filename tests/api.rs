@@ -98,8 +98,8 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
     for scene in wrong {
         let error = Simulation::new(&scene).map(|_| ()).unwrap_err();
         let SimulationError::System(SystemError::Scene(invalid)) = &error else { panic!("{scene:?}: {error}") };
-        assert!(invalid.message.starts_with("expected "), "{scene:?}: {error}");
-        assert_eq!(error.to_string(), format!("{}: {}", invalid.key, invalid.message));
+        assert!(invalid.message().starts_with("expected "), "{scene:?}: {error}");
+        assert_eq!(error.to_string(), format!("{}: {}", invalid.key, invalid.message()));
         assert!(Simulation::with_system(&scene, system.clone()).is_err());
         assert!(Problem::new(&scene, system.clone()).is_err());
         assert!(Reference::of(&scene).is_err());

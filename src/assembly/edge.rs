@@ -9,6 +9,7 @@ use crate::element::side_weights;
 use crate::format::{engineering, number};
 use crate::mesh::Mesh;
 use crate::scene::Invalid;
+use crate::sentence::sentence;
 
 /// Nodes with a weight each.
 pub type NodeWeights = Vec<(u32, f64)>;
@@ -165,5 +166,7 @@ pub(super) fn no_such_edge(mesh: &Mesh, name: &str, key: &str) -> Invalid {
         return Invalid::new(format!("{key}.edge"), message);
     }
     let known: Vec<&str> = mesh.edges().keys().map(String::as_str).collect();
-    Invalid::new(format!("{key}.edge"), format!("expected one of {}, got \"{name}\"", known.join(", ")))
+    let got = format!("\"{name}\"");
+    let message = sentence!("expected one of %{known}, got %{got}", known = known.join(", "), got);
+    Invalid::new(format!("{key}.edge"), message)
 }

@@ -6,6 +6,8 @@ use super::edge::{no_such_edge, node_at};
 use crate::format::number;
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, Axis, Invalid, Place, Support};
+use crate::sentence::sentence;
+
 /// Returns the unknowns (2 · node + axis) that supports fix: `true` for fixed ones.
 pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bool>, Invalid> {
     let mut fixed = vec![false; 2 * mesh.nodes().len()];
@@ -17,10 +19,8 @@ pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bo
         }
     }
     if fixed.iter().all(|&f| f) {
-        return Err(Invalid::new(
-            "support",
-            "expected at least one node that can move, got supports that fix every node",
-        ));
+        let message = sentence!("expected at least one node that can move, got supports that fix every node");
+        return Err(Invalid::new("support", message));
     }
     Ok(fixed)
 }
@@ -75,10 +75,10 @@ pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<
         );
         return Err(Invalid::new("mesh", message));
     }
-    Err(Invalid::new(
-        "support",
-        "expected supports that prevent translation along both axes and rotation: the body can still move freely",
-    ))
+    let message = sentence!(
+        "expected supports that prevent translation along both axes and rotation: the body can still move freely"
+    );
+    Err(Invalid::new("support", message))
 }
 
 impl Hold {

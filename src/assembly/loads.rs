@@ -9,6 +9,7 @@ use super::edge::node_at;
 use super::{Edge, Kinematics, Matrix, System};
 use crate::element::UNIT;
 use crate::scene::{Invalid, Load, Material, Place, Pulse};
+use crate::sentence::sentence;
 use crate::state::State;
 
 /// Forces on some nodes, N.
@@ -87,7 +88,8 @@ impl Loads {
                 Load::Moment { edge: name, moment, pulse } => {
                     let (edge, straight) = system.edge(name, &key)?;
                     if !straight.is_straight() {
-                        let message = format!("expected a straight edge, got \"{name}\", which is not straight");
+                        let edge = format!("\"{name}\"");
+                        let message = sentence!("expected a straight edge, got %{edge}, which is not straight", edge);
                         return Err(Invalid::new(format!("{key}.edge"), message));
                     }
                     let nodes: Vec<u32> = straight.arms().iter().map(|&(node, _)| node).collect();

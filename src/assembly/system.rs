@@ -12,22 +12,34 @@ use crate::element::Elements;
 use crate::mesh::{Mesh, Recovery};
 use crate::rotation::Rotation;
 use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
+use crate::sentence::{Sentence, sentence};
 use crate::solver::Symbolic;
 use crate::state::{State, StateError};
 
 /// Reason why a scene has no equations.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum SystemError {
     /// The scene refers to something that does not exist.
-    #[error(transparent)]
     Scene(#[from] Invalid),
     /// The factor of the matrix does not fit in memory.
-    #[error("the factorization of {unknowns} unknowns does not fit in memory; use a coarser mesh")]
     TooLarge {
         /// Number of free unknowns.
         unknowns: usize,
     },
+}
+
+impl From<&SystemError> for Sentence {
+    fn from(error: &SystemError) -> Self {
+        match error {
+            SystemError::Scene(invalid) => invalid.into(),
+            SystemError::TooLarge { unknowns } => sentence!(
+                "the factorization of %{n} unknowns does not fit in memory; use a coarser mesh",
+                n = *unknowns
+            ),
+        }
+    }
 }
 
 /// Origin of a mesh.
@@ -120,7 +132,8 @@ impl System {
         match (&scene.beam, &scene.mesh) {
             (Some(beam), _) => Mesh::beam(beam).map_err(|e| Invalid::new("beam", e.to_string())),
             (None, Some(file)) => {
-                let failed = |message: String| Invalid::new("mesh.file", format!("{}: {message}", file.file));
+                let failed =
+                    |message: String| Invalid::new("mesh.file", Sentence::located(file.file.as_str(), message));
                 let unread = "its contents were not loaded: open the scene from its folder".to_owned();
                 let text = file.text.as_deref().ok_or_else(|| failed(unread))?;
                 let element = file.element.or_else(|| Mesh::gmsh_element(text)).unwrap_or_default();

@@ -8,6 +8,7 @@
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::{Analysis, Invalid, MethodKind};
+use crate::sentence::sentence;
 use crate::state::State;
 
 mod auto;
@@ -61,8 +62,11 @@ impl MethodEntry {
     pub fn in_motion(&self) -> Result<MotionMethod, Invalid> {
         self.motion.ok_or_else(|| {
             let known: Vec<&str> = METHODS.iter().filter(|m| m.motion.is_some()).map(|m| m.id).collect();
-            let known = known.join(", ");
-            let message = format!("expected one of {known} with analysis = \"dynamic\", got \"{}\"", self.id);
+            let message = sentence!(
+                "expected one of %{known} with analysis = \"dynamic\", got %{got}",
+                known = known.join(", "),
+                got = format!("\"{}\"", self.id)
+            );
             Invalid::new("solver.method", message)
         })
     }
@@ -212,7 +216,7 @@ mod tests {
         let refused = other.in_motion().unwrap_err();
         assert_eq!(refused.key, "solver.method");
         let known = "expected one of linear, warped, newton, auto with analysis = \"dynamic\", got \"other\"";
-        assert_eq!(refused.message, known);
+        assert_eq!(refused.message(), known);
         assert!(other.serves(Analysis::Static) && !other.serves(Analysis::Dynamic));
     }
 }

@@ -93,7 +93,7 @@ pub struct Pulse {
 }
 
 fn check(key: &str, limit: Limit, value: f64) -> Result<(), Invalid> {
-    limit.check(value).map_err(|e| Invalid::new(key, e.to_string()))
+    limit.check(value).map_err(|e| Invalid::new(key, &e))
 }
 
 impl DynamicsSettings {

@@ -5,22 +5,35 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use crate::sentence::Sentence;
+
 /// Value that can be parsed but not used.
 ///
 /// See [`LoadId`](crate::LoadId) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("{key}: {message}")]
+#[error("{}", Sentence::from(self))]
 pub struct Invalid {
     /// Key as in `--set`: `load.0.force`.
     pub key: String,
-    /// Expected and actual value.
-    pub message: String,
+    message: Sentence,
 }
 
 impl Invalid {
     /// Returns an error for `key` with this message.
-    pub fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn new(key: impl Into<String>, message: impl Into<Sentence>) -> Self {
         Self { key: key.into(), message: message.into() }
+    }
+
+    /// Returns the expected and the actual value.
+    #[must_use]
+    pub fn message(&self) -> String {
+        self.message.to_string()
+    }
+}
+
+impl From<&Invalid> for Sentence {
+    fn from(Invalid { key, message }: &Invalid) -> Self {
+        Self::located(key.as_str(), message.clone())
     }
 }
 
@@ -54,10 +67,10 @@ impl From<std::io::Error> for ReadError {
 ///
 /// See [`Scene::from_toml`](crate::Scene::from_toml) for an example.
 #[derive(Debug, Error)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum SceneError {
     /// Neither a built-in scene nor a readable file.
-    #[error("{path}: {reason}; expected a scene file, or one of the built-in scenes: {built_in}", path = path.display())]
     Read {
         /// Path or name given.
         path: PathBuf,
@@ -67,7 +80,6 @@ pub enum SceneError {
         built_in: String,
     },
     /// Not TOML, an unknown key, or a value of the wrong type.
-    #[error("{}{message}", at(file.as_deref(), *line))]
     Syntax {
         /// File, or built-in name; `None` for a text without a name.
         file: Option<PathBuf>,
@@ -77,7 +89,6 @@ pub enum SceneError {
         message: String,
     },
     /// A value that cannot be used, or a missing key.
-    #[error("{}{invalid}", at(file.as_deref(), *line))]
     Invalid {
         /// File, or built-in name; `None` for a text without a name.
         file: Option<PathBuf>,
@@ -87,7 +98,6 @@ pub enum SceneError {
         invalid: Invalid,
     },
     /// A `--set` that cannot be applied.
-    #[error("--set {assignment}: {message}")]
     Set {
         /// The assignment as typed.
         assignment: String,
@@ -96,11 +106,29 @@ pub enum SceneError {
     },
 }
 
-fn at(file: Option<&std::path::Path>, line: Option<usize>) -> String {
+impl From<&SceneError> for Sentence {
+    fn from(error: &SceneError) -> Self {
+        let (place, message) = match error {
+            SceneError::Read { path, reason, built_in } => {
+                let expected = "expected a scene file, or one of the built-in scenes";
+                (Some(path.display().to_string()), format!("{reason}; {expected}: {built_in}").into())
+            }
+            SceneError::Syntax { file, line, message } => (at(file.as_deref(), *line), message.as_str().into()),
+            SceneError::Invalid { file, line, invalid } => (at(file.as_deref(), *line), invalid.into()),
+            SceneError::Set { assignment, message } => (Some(format!("--set {assignment}")), message.as_str().into()),
+        };
+        match place {
+            Some(place) => Self::located(place, message),
+            None => message,
+        }
+    }
+}
+
+fn at(file: Option<&std::path::Path>, line: Option<usize>) -> Option<String> {
+    let file = file.map(|file| file.display().to_string());
     match (file, line) {
-        (Some(file), Some(line)) => format!("{}:{line}: ", file.display()),
-        (Some(file), None) => format!("{}: ", file.display()),
-        (None, Some(line)) => format!("line {line}: "),
-        (None, None) => String::new(),
+        (Some(file), Some(line)) => Some(format!("{file}:{line}")),
+        (None, Some(line)) => Some(format!("line {line}")),
+        (file, None) => file,
     }
 }

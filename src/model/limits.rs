@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::format::number;
+use crate::sentence::{Sentence, sentence};
 
 /// Closed range and its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +18,7 @@ pub struct Limit {
 
 /// Value out of range.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("expected {} to {}{}{}, got {got}", number(limit.min), number(limit.max), if limit.unit.is_empty() { "" } else { " " }, limit.unit)]
+#[error("{}", Sentence::from(self))]
 pub struct OutOfRange {
     /// The range.
     pub limit: Limit,
@@ -25,9 +26,22 @@ pub struct OutOfRange {
     pub got: String,
 }
 
+impl From<&OutOfRange> for Sentence {
+    fn from(OutOfRange { limit, got }: &OutOfRange) -> Self {
+        let [low, high] = limit.ends();
+        sentence!("expected %{low} to %{high}, got %{got}", low, high, got)
+    }
+}
+
 impl Limit {
     const fn new(unit: &'static str, min: f64, max: f64) -> Self {
         Self { unit, min, max }
+    }
+
+    /// Returns both ends as texts, the upper one with the unit.
+    pub(super) fn ends(&self) -> [String; 2] {
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        [number(self.min), number(self.max) + &unit]
     }
 
     /// Checks that `value` is in the range.

@@ -20,6 +20,7 @@ pub use limits::OutOfRange;
 pub use place::{Axis, Load, Place, Probe, Support, TableError};
 
 use crate::format::number;
+use crate::sentence::sentence;
 
 /// Complete description of a simulation.
 ///
@@ -292,7 +293,10 @@ impl Scene {
             return Err(Invalid::new("support", "expected at least one [[support]], got none"));
         }
         if dynamic && self.material.density == 0.0 {
-            return Err(Invalid::new("material.density", "expected a density above 0: without mass nothing moves"));
+            return Err(Invalid::new(
+                "material.density",
+                sentence!("expected a density above 0: without mass nothing moves"),
+            ));
         }
         for (i, support) in self.supports.iter().enumerate() {
             let key = format!("support.{i}");
@@ -343,7 +347,7 @@ impl Scene {
 }
 
 fn check(key: &str, limit: limits::Limit, value: f64) -> Result<(), Invalid> {
-    limit.check(value).map_err(|e| Invalid::new(key, e.to_string()))
+    limit.check(value).map_err(|e| Invalid::new(key, &e))
 }
 
 /// Largest ratio of the sides of a cell; beyond it rounding errors dominate the element stiffness.
@@ -358,14 +362,20 @@ impl Beam {
             check("beam.cells", limits::CELLS, f64::from(cells))?;
         }
         let total = f64::from(self.cells[0]) * f64::from(self.cells[1]);
-        limits::TOTAL_CELLS.check(total).map_err(|e| Invalid::new("beam.cells", format!("{e} cells in all")))?;
+        limits::TOTAL_CELLS.check(total).map_err(|OutOfRange { limit, got }| {
+            let [low, high] = limit.ends();
+            let message = sentence!("expected %{low} to %{high}, got %{got} cells in all", low, high, got);
+            Invalid::new("beam.cells", message)
+        })?;
         let aspect = self.cell_aspect();
         if (1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect) {
             return Ok(());
         }
-        let most = number(MAX_CELL_ASPECT);
-        let message =
-            format!("expected cells at most {most} times as long as high or as high as long, got {}", number(aspect));
+        let message = sentence!(
+            "expected cells at most %{n} times as long as high or as high as long, got %{got}",
+            n = number(MAX_CELL_ASPECT),
+            got = number(aspect)
+        );
         Err(Invalid::new("beam.cells", message))
     }
 

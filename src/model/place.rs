@@ -8,6 +8,7 @@ use super::dynamics::Pulse;
 use super::error::Invalid;
 use super::{is_zero, limits};
 use crate::format::number;
+use crate::sentence::Sentence;
 
 /// Whole edge or single point.
 ///
@@ -90,9 +91,9 @@ impl Place {
     pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
         match self {
             Self::Edge(_) => Ok(()),
-            Self::At(at) => at.iter().try_for_each(|&v| {
-                limits::COORDINATE.check(v).map_err(|e| Invalid::new(format!("{key}.at"), e.to_string()))
-            }),
+            Self::At(at) => at
+                .iter()
+                .try_for_each(|&v| limits::COORDINATE.check(v).map_err(|e| Invalid::new(format!("{key}.at"), &e))),
         }
     }
 }
@@ -138,26 +139,23 @@ impl Support {
         if self.fix.is_empty() {
             return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
         }
-        let refuse = |name: &str, message: String| Err(Invalid::new(format!("{key}.{name}"), message));
+        let refuse = |name: &str, message: Sentence| Err(Invalid::new(format!("{key}.{name}"), message));
         for (axis, word, value) in [(Axis::X, "x", self.displacement[0]), (Axis::Y, "y", self.displacement[1])] {
-            limits::COORDINATE.check(value).or_else(|e| refuse("displacement", e.to_string()))?;
+            limits::COORDINATE.check(value).or_else(|e| refuse("displacement", (&e).into()))?;
             if value != 0.0 && !self.fix.contains(&axis) {
                 let message =
                     format!("expected 0 along {word}, which this support does not fix, got {}", number(value));
-                return refuse("displacement", message);
+                return refuse("displacement", message.into());
             }
         }
-        limits::ROTATION.check(self.turn).or_else(|e| refuse("turn", e.to_string()))?;
+        limits::ROTATION.check(self.turn).or_else(|e| refuse("turn", (&e).into()))?;
         if self.turn != 0.0 && !matches!(self.place, Place::Edge(_)) {
-            return refuse(
-                "turn",
-                "expected edge = \"…\" for this support: a single node cannot be rotated".to_owned(),
-            );
+            return refuse("turn", "expected edge = \"…\" for this support: a single node cannot be rotated".into());
         }
         if self.turn != 0.0 && !(self.fix.contains(&Axis::X) && self.fix.contains(&Axis::Y)) {
             return refuse(
                 "turn",
-                "expected fix = [\"x\", \"y\"] for this support: a rotation moves nodes along both axes".to_owned(),
+                "expected fix = [\"x\", \"y\"] for this support: a rotation moves nodes along both axes".into(),
             );
         }
         Ok(())
@@ -262,7 +260,7 @@ impl Load {
             pulse.validate(key)?;
         }
         let check = |name: &str, limit: limits::Limit, value: f64| {
-            limit.check(value).map_err(|e| Invalid::new(format!("{key}.{name}"), e.to_string()))
+            limit.check(value).map_err(|e| Invalid::new(format!("{key}.{name}"), &e))
         };
         match self {
             Self::Force { place, force, .. } => {

@@ -2,7 +2,6 @@
 //! Results are in the unit of the value's [`limits`].
 
 use std::borrow::Cow;
-use std::fmt;
 
 use thiserror::Error;
 use toml::Spanned;
@@ -10,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::Invalid;
 use super::limits::{self, Limit};
+use crate::sentence::{Sentence, sentence};
 
 /// Exponents of metre, kilogram, second and radian. The radian is included so that `1/s` is not an angular velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -120,10 +120,10 @@ const KEYS: &[(&str, Limit)] = &[
 
 /// Reason why a text is not a number in the expected unit.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum UnitError {
     /// The text does not begin with a number.
-    #[error("`{text}` is not a number; expected {expected}")]
     NoNumber {
         /// Text as typed.
         text: String,
@@ -131,13 +131,11 @@ pub enum UnitError {
         expected: Quantity,
     },
     /// A comma or a space in the number does not separate thousands and could mean a decimal point.
-    #[error("`{text}` can be read in two ways: write a decimal point, or groups of three digits as in 30,000")]
     Ambiguous {
         /// Text as typed.
         text: String,
     },
     /// The text after the number is not a unit.
-    #[error("`{text}` has the unknown unit `{unit}`; expected {expected}")]
     UnknownUnit {
         /// Text as typed.
         text: String,
@@ -147,7 +145,6 @@ pub enum UnitError {
         expected: Quantity,
     },
     /// The unit has the wrong dimension.
-    #[error("`{text}` is {got}; expected {expected}")]
     WrongDimension {
         /// Text as typed.
         text: String,
@@ -156,6 +153,26 @@ pub enum UnitError {
         /// Expected quantity.
         expected: Quantity,
     },
+}
+
+impl From<&UnitError> for Sentence {
+    fn from(error: &UnitError) -> Self {
+        match error {
+            UnitError::NoNumber { text, expected } => {
+                sentence!("`%{text}` is not a number; expected %{expected}", text, expected)
+            }
+            UnitError::Ambiguous { text } => sentence!(
+                "`%{text}` can be read in two ways: write a decimal point, or groups of three digits as in 30,000",
+                text
+            ),
+            UnitError::UnknownUnit { text, unit, expected } => {
+                sentence!("`%{text}` has the unknown unit `%{unit}`; expected %{expected}", text, unit, expected)
+            }
+            UnitError::WrongDimension { text, got, expected } => {
+                sentence!("`%{text}` is %{got}; expected %{expected}", text, got, expected)
+            }
+        }
+    }
 }
 
 /// Dimension with the expected unit, shown as "a pressure (Pa)".
@@ -171,22 +188,20 @@ impl Quantity {
     }
 }
 
-impl fmt::Display for Quantity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let known = NAMES.iter().find(|(dimension, ..)| *dimension == self.dimension);
-        let unit = self.unit.or(known.map(|known| known.2)).unwrap_or_default();
+impl From<&Quantity> for Sentence {
+    fn from(Quantity { dimension, unit }: &Quantity) -> Self {
+        let known = NAMES.iter().find(|known| known.0 == *dimension);
+        let unit = unit.or(known.map(|known| known.2)).unwrap_or_default();
         match known {
-            Some((_, name, _)) if unit.is_empty() => f.write_str(name),
-            Some((_, name, _)) => write!(f, "{name} ({unit})"),
+            Some((_, name, _)) if unit.is_empty() => (*name).into(),
+            Some((_, name, _)) => sentence!("%{quantity} (%{unit})", quantity = *name, unit),
             None => {
-                f.write_str("a quantity in")?;
-                for (base, power) in ["m", "kg", "s", "rad"].iter().zip(self.dimension.0).filter(|(_, p)| *p != 0) {
-                    write!(f, " {base}")?;
-                    if power != 1 {
-                        write!(f, "^{power}")?;
-                    }
-                }
-                Ok(())
+                let powers = ["m", "kg", "s", "rad"].iter().zip(dimension.0).filter(|(_, power)| *power != 0);
+                let powers = powers.map(|(base, power)| match power {
+                    1 => format!(" {base}"),
+                    power => format!(" {base}^{power}"),
+                });
+                format!("a quantity in{}", powers.collect::<String>()).into()
             }
         }
     }
@@ -363,7 +378,7 @@ pub(crate) fn quantity_of(key: &str) -> Option<Quantity> {
 /// Parses a number typed as text for `key`; `None` if `key` holds no number with a unit.
 pub(crate) fn number_for(key: &str, text: &str) -> Option<Result<f64, Invalid>> {
     let unit = unit_of(key)?;
-    Some(parse(text, unit).map_err(|error| Invalid::new(key, error.to_string())))
+    Some(parse(text, unit).map_err(|error| Invalid::new(key, &error)))
 }
 
 /// Replaces every number that is written with its unit in a TOML text by the plain number, keeping line numbers, so

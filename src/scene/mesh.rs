@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{ElementKind, Invalid, MeshFile, Scene, SceneError, registry};
 use crate::mesh::{GmshError, Mesh};
+use crate::sentence::Sentence;
 
 /// Largest accepted mesh file, bytes.
 const MAX_MESH_BYTES: u64 = 256 << 20;
@@ -48,7 +49,7 @@ pub(super) fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid>
     let text = match (registry::mesh(&mesh.file), path.is_file()) {
         (Some(text), false) => text.to_owned(),
         _ => {
-            let failed = |reason: String| Invalid::new(KEY, format!("{}: {reason}", path.display()));
+            let failed = |reason: String| Invalid::new(KEY, Sentence::located(path.display().to_string(), reason));
             let size = std::fs::metadata(&path).map_err(|e| failed(e.to_string()))?.len();
             if size > MAX_MESH_BYTES {
                 return Err(failed(format!("expected at most {MAX_MESH_BYTES} bytes, got {size}")));

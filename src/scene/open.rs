@@ -182,7 +182,7 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
 fn blame(text: &str, file: Option<&Path>, assignments: &[String], invalid: Invalid) -> SceneError {
     let blamed = assignments.iter().rev().find(|a| a.split('=').next().is_some_and(|k| same_key(k, &invalid.key)));
     match blamed {
-        Some(assignment) => SceneError::Set { assignment: assignment.clone(), message: invalid.message },
+        Some(assignment) => SceneError::Set { assignment: assignment.clone(), message: invalid.message() },
         None => located(text, file, invalid),
     }
 }
@@ -217,7 +217,7 @@ enum AssignError {
     NoPlace { part: String, kind: &'static str },
     #[error("expected an index below {length}, got {part}")]
     Index { part: String, length: usize },
-    #[error("{}", .0.message)]
+    #[error("{}", .0.message())]
     Value(#[from] Invalid),
 }
 

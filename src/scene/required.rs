@@ -6,6 +6,7 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use super::{Invalid, Scene, units};
+use crate::sentence::{Sentence, sentence};
 
 /// Keys without default, without list indices, and the expected value for keys that hold no number with a unit. The
 /// parser checks the keys of the scene itself last.
@@ -101,8 +102,8 @@ pub(super) fn missing(table: Table) -> Option<Invalid> {
     KEYS.iter().filter(|(key, _)| key.rsplit('.').next() == Some(field)).find_map(|(key, words)| {
         let parts: Vec<&str> = key.split('.').collect();
         let place = place_without(&scene, &parts)?;
-        let expected = units::quantity_of(key).map_or_else(|| (*words).to_owned(), |quantity| quantity.to_string());
-        Some(Invalid::new(place, format!("expected {expected}, got nothing")))
+        let expected = units::quantity_of(key).map_or_else(|| (*words).into(), |quantity| Sentence::from(&quantity));
+        Some(Invalid::new(place, sentence!("expected %{what}, got nothing", what = expected)))
     })
 }
 
