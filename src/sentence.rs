@@ -26,6 +26,18 @@ macro_rules! sentence {
 }
 pub(crate) use sentence;
 
+/// Implements `Display` by the English sentence.
+macro_rules! displayed {
+    ($($type:ty),+) => {
+        $(impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                std::fmt::Display::fmt(&$crate::sentence::Sentence::from(self), f)
+            }
+        })+
+    };
+}
+pub(crate) use displayed;
+
 impl Sentence {
     /// Returns a sentence with these parts; implementation of `sentence!`.
     pub(crate) fn new<const N: usize>(pattern: impl Into<Cow<'static, str>>, parts: [(&'static str, Self); N]) -> Self {
@@ -63,7 +75,7 @@ macro_rules! texts {
         })+
     };
 }
-texts!(&str, String, &String, usize);
+texts!(&str, String, &String, &u32, usize);
 
 /// Replaces every placeholder `%{name}` of a pattern by its value.
 fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> String {

@@ -1,5 +1,7 @@
 //! Report of the decisions of `auto` in a motion.
 
+use crate::sentence::{Sentence, displayed, sentence};
+
 /// Decisions of `auto` since the start of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -46,14 +48,16 @@ impl MotionDecision {
     }
 }
 
-impl std::fmt::Display for MotionDecision {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Undecided => "not decided yet",
-            Self::Linear => "linear theory suffices",
-            Self::OldFactor => "old factorization reused",
-            Self::NewFactor => "new factorization",
-        })
+displayed!(MotionDecision);
+
+impl From<&MotionDecision> for Sentence {
+    fn from(decision: &MotionDecision) -> Self {
+        match decision {
+            MotionDecision::Undecided => sentence!("not decided yet"),
+            MotionDecision::Linear => sentence!("linear theory suffices"),
+            MotionDecision::OldFactor => sentence!("old factorization reused"),
+            MotionDecision::NewFactor => sentence!("new factorization"),
+        }
     }
 }
 

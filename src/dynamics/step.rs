@@ -7,24 +7,22 @@ use super::correction::Corrector;
 use crate::assembly::{Forces, System};
 use crate::element::Tangent;
 use crate::format::number;
+use crate::sentence::{Sentence, sentence};
 use crate::solver::SolverError;
 use crate::state::State;
 
 /// Reason why a step failed.
 #[derive(Clone, Copy, Debug, Error, PartialEq, serde::Serialize, serde::Deserialize)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum StepError {
     /// The factorization failed.
-    #[error(transparent)]
     Solver(#[from] SolverError),
     /// A number is not finite.
-    #[error("a result is not a finite number")]
     NotFinite,
     /// The step has added more energy than errors of rounding or linearization explain.
-    #[error("the time step has added energy to the motion")]
     AddedEnergy,
     /// The iteration of a stage did not reach its tolerance.
-    #[error("the iteration did not reach its tolerance within {0} solves")]
     NotConverged(u32),
 }
 
@@ -32,10 +30,10 @@ pub enum StepError {
 ///
 /// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, serde::Serialize, serde::Deserialize)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum StopReason {
     /// A step failed even at the smallest length.
-    #[error("a time step failed even when shortened to {} s: {error}", number(*step))]
     Step {
         /// Length of the last step tried, s.
         step: f64,
@@ -43,7 +41,6 @@ pub enum StopReason {
         error: StepError,
     },
     /// An explicit step gave a state that is not finite.
-    #[error("the motion exploded: the time step is {} s, the critical one about {} s; shorten the time step", number(*step), number(*critical))]
     Exploded {
         /// Step length, s.
         step: f64,
@@ -51,11 +48,42 @@ pub enum StopReason {
         critical: f64,
     },
     /// A node has moved by more than this multiple of the body's size.
-    #[error("the body has moved by more than {} times its size", number(*.0))]
     RanAway(f64),
     /// Stopped from outside before the end.
-    #[error("interrupted before the end: the result is partial")]
     Interrupted,
+}
+
+impl From<&StepError> for Sentence {
+    fn from(error: &StepError) -> Self {
+        match error {
+            StepError::Solver(error) => error.into(),
+            StepError::NotFinite => sentence!("a result is not a finite number"),
+            StepError::AddedEnergy => sentence!("the time step has added energy to the motion"),
+            StepError::NotConverged(n) => {
+                sentence!("the iteration did not reach its tolerance within %{n} solves", n)
+            }
+        }
+    }
+}
+
+impl From<&StopReason> for Sentence {
+    fn from(reason: &StopReason) -> Self {
+        match reason {
+            StopReason::Step { step, error } => {
+                sentence!("a time step failed even when shortened to %{n} s: %{error}", n = number(*step), error)
+            }
+            StopReason::Exploded { step, critical } => sentence!(
+                "the motion exploded: the time step is %{n} s, the critical one about %{critical} s; shorten the time \
+                 step",
+                n = number(*step),
+                critical = number(*critical)
+            ),
+            StopReason::RanAway(sizes) => {
+                sentence!("the body has moved by more than %{n} times its size", n = number(*sizes))
+            }
+            StopReason::Interrupted => sentence!("interrupted before the end: the result is partial"),
+        }
+    }
 }
 
 /// Number of solves per stage.

@@ -5,20 +5,29 @@ use thiserror::Error;
 
 use crate::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use crate::element::Tangent;
+use crate::sentence::{Sentence, sentence};
 use crate::solver::{Factor, SolverError};
 use crate::state::State;
 use crate::timings::{Timings, timed};
 
 /// Reason why an iteration produced no new state.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum IterationError {
     /// The factorization failed.
-    #[error(transparent)]
     Solver(#[from] SolverError),
     /// The solution is not finite.
-    #[error("the solution is not a finite number")]
     NotFinite,
+}
+
+impl From<&IterationError> for Sentence {
+    fn from(error: &IterationError) -> Self {
+        match error {
+            IterationError::Solver(error) => error.into(),
+            IterationError::NotFinite => sentence!("the solution is not a finite number"),
+        }
+    }
 }
 
 /// Work memory of an iteration, allocated once per system.

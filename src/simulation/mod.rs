@@ -16,6 +16,7 @@ use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::scene::{Analysis, Invalid, LoadId, Material, MethodKind, Scene, SupportId};
+use crate::sentence::Sentence;
 use crate::solver::{Factor, SolverError};
 use crate::state::{State, StateError, is_finite};
 use crate::stress::{ErrorEstimate, NodalStress, RecoveryScratch};
@@ -44,14 +45,22 @@ pub use status::Status;
 ///
 /// See [`Simulation`](crate::Simulation) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum SimulationError {
     /// The scene has no valid equations.
-    #[error(transparent)]
     System(#[from] SystemError),
     /// Not enough memory.
-    #[error(transparent)]
     Solver(#[from] SolverError),
+}
+
+impl From<&SimulationError> for Sentence {
+    fn from(error: &SimulationError) -> Self {
+        match error {
+            SimulationError::System(error) => error.into(),
+            SimulationError::Solver(error) => error.into(),
+        }
+    }
 }
 
 impl From<Invalid> for SimulationError {

@@ -15,17 +15,27 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
 use thiserror::Error;
 
+use crate::sentence::{Sentence, sentence};
+
 pub(crate) mod lanczos;
 
 /// Reason why there is no factor.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[error("{}", Sentence::from(self))]
 pub enum SolverError {
     /// The matrix is not positive definite, or not finite.
-    #[error("the stiffness matrix is not positive definite")]
     NotPositiveDefinite,
     /// The factor does not fit in memory or in the index type.
-    #[error("the factorization of this mesh does not fit in memory")]
     TooLarge,
+}
+
+impl From<&SolverError> for Sentence {
+    fn from(error: &SolverError) -> Self {
+        match error {
+            SolverError::NotPositiveDefinite => sentence!("the stiffness matrix is not positive definite"),
+            SolverError::TooLarge => sentence!("the factorization of this mesh does not fit in memory"),
+        }
+    }
 }
 
 /// Type of the current factorization.

@@ -1,5 +1,7 @@
 //! Report of the decisions of `auto`.
 
+use crate::sentence::{Sentence, displayed, sentence};
+
 /// Decisions of `auto` for the current result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
@@ -49,15 +51,17 @@ impl Decision {
     }
 }
 
-impl std::fmt::Display for Decision {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Undecided => "not decided yet",
-            Self::Unchanged => "nothing changed: no solve",
-            Self::Linear => "linear theory suffices",
-            Self::OldFactor => "old factorization reused",
-            Self::NewFactor => "new factorization",
-            Self::LoadSteps => "load stepping",
-        })
+displayed!(Decision);
+
+impl From<&Decision> for Sentence {
+    fn from(decision: &Decision) -> Self {
+        match decision {
+            Decision::Undecided => sentence!("not decided yet"),
+            Decision::Unchanged => sentence!("nothing changed: no solve"),
+            Decision::Linear => sentence!("linear theory suffices"),
+            Decision::OldFactor => sentence!("old factorization reused"),
+            Decision::NewFactor => sentence!("new factorization"),
+            Decision::LoadSteps => sentence!("load stepping"),
+        }
     }
 }
