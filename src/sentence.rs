@@ -13,6 +13,7 @@ pub struct Sentence {
 }
 
 /// Makes a [`Sentence`] of a pattern and its parts, each written `name = value`, or `name` for a variable of that name.
+/// `tests/language.rs` checks that every pattern is translated.
 macro_rules! sentence {
     ($pattern:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {
         $crate::sentence::Sentence::new($pattern, [$((stringify!($name), sentence!(@part $name $($value)?))),*])
@@ -44,9 +45,20 @@ impl Sentence {
         Self { pattern: pattern.into(), parts: parts.map(|(name, part)| (name.into(), part)).into() }
     }
 
+    /// Returns a count with its noun: `2 iterations`.
+    pub(crate) fn count(n: u32, noun: &str) -> Self {
+        Self::new(format!("%{{n}} {noun}{}", if n == 1 { "" } else { "s" }), [("n", n.into())])
+    }
+
     /// Returns a message with its place before it: `beam.length: expected …`.
     pub(crate) fn located(place: impl Into<Self>, message: impl Into<Self>) -> Self {
         sentence!("%{key}: %{message}", key = place.into(), message = message.into())
+    }
+
+    /// Returns `true` for an empty text.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.pattern.is_empty()
     }
 
     /// Renders the sentence; `tr` translates the patterns and the plain texts.
@@ -66,6 +78,12 @@ impl Display for Sentence {
     }
 }
 
+impl From<&Self> for Sentence {
+    fn from(sentence: &Self) -> Self {
+        sentence.clone()
+    }
+}
+
 macro_rules! texts {
     ($($type:ty),+) => {
         $(impl From<$type> for Sentence {
@@ -75,10 +93,10 @@ macro_rules! texts {
         })+
     };
 }
-texts!(&str, String, &String, &u32, usize);
+texts!(&str, String, &String, u32, &u32, usize, &usize, &f64);
 
 /// Replaces every placeholder `%{name}` of a pattern by its value.
-fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> String {
+pub(crate) fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> String {
     let mut parts = pattern.split("%{");
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {

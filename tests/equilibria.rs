@@ -294,7 +294,7 @@ fn steps_shrink_by_rho() {
         assert!((ratio / rho - 1.0).abs() < 0.01, "{factor}: {ratio} {rho}");
         assert!(ratio > before && ratio < 1.0);
         before = ratio;
-        let says = rho_text(rho);
+        let says = rho_text(rho).to_string();
         assert!(says.contains("converges near") && says.contains(&format!("{rho:.3}")), "{says}");
     }
     let mut newton = Simulation::new(&scene("cantilever").with_method(MethodKind::Newton)).unwrap();
@@ -307,7 +307,7 @@ fn steps_shrink_by_rho() {
             && auto.equilibrium().unwrap().step_ratio().is_some_and(|ratio| ratio > 0.0 && ratio < 0.5)
     );
     for (rho, text) in [(1.0, "cannot converge here: ρ = 1.000"), (999.0, "ρ = 999.000"), (1e3, "ρ = 1.0e3")] {
-        assert!(rho_text(rho).contains(text), "{}", rho_text(rho));
+        assert!(rho_text(rho).to_string().contains(text), "{}", rho_text(rho));
     }
 }
 

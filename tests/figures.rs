@@ -113,7 +113,7 @@ fn loads_are_plotted_in_their_unit() {
     let mut scene = scene_with("cantilever", &[FORCE]);
     let words = |scene: &Scene| {
         let axis = LoadAxis::of(scene);
-        (axis.quantity.name, axis.quantity.unit, axis.full)
+        (axis.name.to_string(), axis.unit, axis.full)
     };
     assert_eq!(words(&scene), ("force".to_owned(), "N", 553.0));
     scene.loads.push(Load::force("top", [0.0, 0.0]));

@@ -298,7 +298,32 @@ fn every_text_of_the_sources_is_in_the_catalogue() {
     }
 }
 
-/// The names and sentences of the library are in the catalogue, too.
+/// Every sentence of the library is in the catalogue, and has a part for every placeholder.
+#[test]
+fn every_sentence_of_the_library_is_in_the_catalogue() {
+    let (known, mut found) = (catalogue(), BTreeSet::new());
+    for path in common::rust_files("src".as_ref()) {
+        let source = std::fs::read_to_string(&path).unwrap();
+        let calls = source.split("sentence!(").skip(1).filter(|call| call.trim_start().starts_with('"'));
+        for call in calls {
+            let pattern = literals(call).swap_remove(0);
+            for place in pattern.split("%{").skip(1) {
+                let name = place.split_once('}').unwrap().0;
+                let words = call.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+                assert!(words.filter(|word| *word == name).count() > 1, "{}: {pattern:?}: {name}", path.display());
+            }
+            assert!(known.contains_key(&pattern), "{}: {pattern:?} is not in assets/locales", path.display());
+            found.insert(pattern);
+        }
+        for noun in source.split("Self::count(").skip(1).filter_map(|call| call.split('"').nth(1)) {
+            let has = |pattern: String| known.contains_key(&pattern);
+            assert!(has(format!("%{{n}} {noun}")) && has(format!("%{{n}} {noun}s")), "{}: {noun:?}", path.display());
+        }
+    }
+    assert!(found.len() > 60 && found.contains("%{key}: %{message}"), "the scan is blind");
+}
+
+/// The names of the library are in the catalogue, too.
 #[test]
 fn everything_of_the_library_that_has_a_name_is_in_the_catalogue() {
     let known = catalogue();

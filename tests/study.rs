@@ -157,7 +157,7 @@ fn a_study_of_a_motion_says_how_far_it_is_and_keeps_what_is_measured() {
         let mut observe = |progress: warpbeam::study::Progress<'_>| {
             assert!((last..=1.0).contains(&progress.fraction), "from {last} to {}", progress.fraction);
             last = progress.fraction;
-            let now = progress.now.to_owned();
+            let now = progress.now.to_string();
             if now.ends_with("paths of its settings") {
                 meshes.push(now);
                 meshes.dedup();
@@ -253,7 +253,7 @@ fn a_cancelled_tuning_chooses_from_what_was_measured() {
     let scene = scene("elastica");
     let mut measured = 0;
     let mut observe = |progress: warpbeam::study::Progress<'_>| {
-        measured += u32::from(progress.now.contains("×"));
+        measured += u32::from(progress.now.to_string().contains("×"));
         if measured < 12 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let own = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().own_error_percent;

@@ -1,6 +1,6 @@
 //! Diagnosis of a result: its error and the source of the error, its status in words, and edits that would improve it.
 
-use crate::app::language::{count, fill, percent, sentence, tr, translated};
+use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::readout::Readout;
 use crate::app::widgets::palette::Palette;
 use crate::format::{self, engineering, number, two_digits};
@@ -90,7 +90,6 @@ pub(crate) fn is_stale(input: &Readout<'_>) -> bool {
 /// equilibrium is drawn.
 pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converged: bool) -> (String, bool) {
     let moves = simulation.motion().is_some();
-    let said = |reason: &dyn std::fmt::Display| translated(&reason.to_string());
     match simulation.status() {
         Status::Running | Status::Finished if !running => (tr("Paused").to_owned(), false),
         // The duration applies to runs without a window; in the window a motion continues.
@@ -142,7 +141,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     }
     add(count(simulation.iterations(), "iteration"));
     if let Some(path) = input.jump.filter(|_| simulation.status().is_success()) {
-        path.sentences().for_each(|sentence| add(translated(&sentence)));
+        path.sentences().for_each(|sentence| add(said(&sentence)));
     }
     (text, inside_out || stability(simulation) == Some(false))
 }
@@ -197,7 +196,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         ),
     });
     if let Some(floor) = floor {
-        lines.push(sentence(&translated(&floor_text(floor, input.scene.solver.tolerance))));
+        lines.push(sentence(&said(&floor_text(floor, input.scene.solver.tolerance))));
     }
     let stable = stability(simulation).map(|stable| match stable {
         true => "Stable: after a small push the body returns (the exact tangent stiffness is positive definite).",
@@ -207,7 +206,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     });
     lines.extend(stable.map(|text| tr(text).to_owned()));
     if let Some(rho) = rho(input) {
-        lines.push(sentence(&translated(&rho_text(rho))));
+        lines.push(sentence(&said(&rho_text(rho))));
         let converged = *simulation.status() == Status::Converged;
         if rho > 1.0 && converged {
             lines.push(match input.scene.solver.method {
@@ -291,8 +290,5 @@ pub(crate) fn rho_number(rho: f64) -> String {
 
 /// Returns the name of the reference solution, or a text for the case that it is not known yet.
 pub(crate) fn reference_text(reference: Option<&Reference>) -> String {
-    reference.map_or_else(
-        || tr("the reference solution (not known yet)").to_owned(),
-        |reference| translated(&reference.to_string()),
-    )
+    reference.map_or_else(|| tr("the reference solution (not known yet)").to_owned(), said)
 }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::render::RenderError;
+use crate::sentence::Sentence;
 
 mod action;
 mod diagnosis;
@@ -41,7 +42,7 @@ pub use window::{Display, NoDisplay, opens_in_background, run};
 /// Error if all numbered file names are taken.
 #[derive(Debug, Error)]
 #[error("warpbeam-001.{extension} to warpbeam-999.{extension} all exist")]
-struct NoName {
+pub(crate) struct NoName {
     extension: &'static str,
 }
 
@@ -64,6 +65,15 @@ pub enum AppError {
     /// The window system failed to open or to run the window.
     #[error("no window: {0}")]
     Window(String),
+}
+
+impl From<&AppError> for Sentence {
+    fn from(error: &AppError) -> Self {
+        match error {
+            AppError::Record(error) => error.into(),
+            other => other.to_string().into(),
+        }
+    }
 }
 
 /// Light or dark.

@@ -136,7 +136,8 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &
 /// Returns sentences about the limitations of a result that are found without a reference solution.
 fn limits_of(simulation: &Simulation, stress: &StressResult) -> Vec<String> {
     let mut limits: Vec<String> = Vec::new();
-    limits.extend(strain_warning(Deformation::of(simulation.problem(), simulation.state()).max_strain));
+    let strain = Deformation::of(simulation.problem(), simulation.state()).max_strain;
+    limits.extend(strain_warning(strain).map(|warning| warning.to_string()));
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
     limits.extend(moved_points(simulation).iter().map(ToString::to_string));
     limits.extend(simulation.scene().unresolved_pulses());
@@ -177,7 +178,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     }
     if let (Some(picture), Some(is_png)) = (picture, is_png) {
         let path = path.as_ref().ok_or_else(|| CliError::NoPath(named(&source)))?;
-        let drawing = plot::figure(&path_chart::figure(path, &scene, &ordinate));
+        let drawing = plot::figure(&path_chart::figure(path, &scene, &ordinate, &ToString::to_string));
         if is_png { drawing.picture()?.write_png(&picture)? } else { export::write_text(&picture, &drawing.svg())? }
     }
     text::print(&words)?;

@@ -107,7 +107,7 @@ impl Watch {
     /// Shows the progress of a study; returns [`ControlFlow::Break`] if the command should end.
     pub(super) fn observe(&self, progress: &Progress<'_>) -> ControlFlow<()> {
         if !progress.now.is_empty() {
-            self.show(progress.fraction, || progress.now.to_owned());
+            self.show(progress.fraction, || progress.now.to_string());
         }
         self.flow()
     }

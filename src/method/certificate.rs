@@ -3,6 +3,7 @@
 use super::iteration::{Workspace, assemble};
 use crate::assembly::{Forces, Kinematics, Matrix, Problem};
 use crate::element::Tangent;
+use crate::sentence::{Sentence, sentence};
 use crate::solver::lanczos::extreme_eigenvalues;
 use crate::state::State;
 
@@ -90,13 +91,13 @@ pub fn support_stiffness(
 
 /// Describes ρ in a sentence.
 #[must_use]
-pub fn rho_text(rho: f64) -> String {
-    if rho < 1.0 {
-        format!("the warped iteration converges near here: ρ = {rho:.3} < 1")
-    } else if rho < 1000.0 {
-        format!("the warped iteration cannot converge here: ρ = {rho:.3} > 1")
-    } else {
-        format!("the warped iteration cannot converge here: ρ = {rho:.1e} > 1")
+pub fn rho_text(rho: f64) -> Sentence {
+    match rho {
+        ..1.0 => sentence!("the warped iteration converges near here: ρ = %{n} < 1", n = format!("{rho:.3}")),
+        _ => {
+            let rho = if rho < 1000.0 { format!("{rho:.3}") } else { format!("{rho:.1e}") };
+            sentence!("the warped iteration cannot converge here: ρ = %{n} > 1", n = rho)
+        }
     }
 }
 

@@ -3,7 +3,8 @@
 use super::iteration::ROUNDING;
 use super::{Iteration, IterationError, Verdict};
 use crate::assembly::System;
-use crate::format::{count, number, two_digits};
+use crate::format::{number, two_digits};
+use crate::sentence::{Sentence, displayed, sentence};
 use crate::state::{State, largest};
 
 /// Reason why an iteration stopped before it converged.
@@ -37,40 +38,43 @@ impl Reason {
     }
 }
 
-impl std::fmt::Display for Reason {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::IterationLimit(n) => {
-                write!(f, "the limit of {} is reached; a higher limit may help", count(*n, "iteration"))
-            }
-            Self::Stuck(n) => {
-                write!(f, "the residual has not fallen for {n} iterations, and is larger than rounding errors")
-            }
-            Self::Stalled(n) => write!(
-                f,
-                "the residual has not fallen for {n} iterations: the load is too large for this method; lower the load"
+displayed!(Reason);
+
+impl From<&Reason> for Sentence {
+    fn from(reason: &Reason) -> Self {
+        match reason {
+            Reason::IterationLimit(n) => sentence!(
+                "the limit of %{count} is reached; a higher limit may help",
+                count = Self::count(*n, "iteration")
             ),
-            Self::RanAway(sizes) => {
-                write!(f, "the body has moved by more than {sizes} times its size; lower the load")
+            Reason::Stuck(n) => {
+                sentence!("the residual has not fallen for %{n} iterations, and is larger than rounding errors", n)
             }
-            Self::Interrupted => write!(f, "interrupted before the end: the result is partial"),
-            Self::NoDescent => write!(
-                f,
-                "neither smaller load steps nor a descent of the energy lead to an \
-                 equilibrium; lower the load"
+            Reason::Stalled(n) => sentence!(
+                "the residual has not fallen for %{n} iterations: the load is too large for this method; lower the load",
+                n
             ),
-            Self::Iteration(error) => write!(f, "{error}; lower the load"),
+            Reason::RanAway(sizes) => {
+                sentence!("the body has moved by more than %{n} times its size; lower the load", n = sizes)
+            }
+            Reason::Interrupted => sentence!("interrupted before the end: the result is partial"),
+            Reason::NoDescent => sentence!(
+                "neither smaller load steps nor a descent of the energy lead to an equilibrium; lower the load"
+            ),
+            Reason::Iteration(error) => sentence!("%{error}; lower the load", error),
         }
     }
 }
 
 /// Explains in a sentence that a solve has ended at the rounding error of its residual.
 #[must_use]
-pub fn floor_text(floor: f64, tolerance: f64) -> String {
+pub fn floor_text(floor: f64, tolerance: f64) -> Sentence {
     let [floor, tolerance] = [floor, tolerance].map(|v| number(two_digits(v)));
-    format!(
-        "the limit of rounding is reached: rounding may change the residual by {floor}, so the tolerance \
-         {tolerance} cannot be met here"
+    sentence!(
+        "the limit of rounding is reached: rounding may change the residual by %{floor}, so the tolerance \
+         %{tolerance} cannot be met here",
+        floor,
+        tolerance
     )
 }
 

@@ -2,6 +2,7 @@
 
 use crate::dynamics::StopReason;
 use crate::method::Reason;
+use crate::sentence::Sentence;
 
 /// Status of a simulation.
 ///
@@ -57,9 +58,14 @@ impl Status {
     /// Returns the reason why the simulation ended without success; `None` otherwise.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
+        self.failure_sentence().map(|reason| reason.to_string())
+    }
+
+    /// Returns the reason as [`Self::failure`] does, with its parts.
+    pub(crate) fn failure_sentence(&self) -> Option<Sentence> {
         match self {
-            Self::NotConverged(reason) | Self::Diverged(reason) => Some(reason.to_string()),
-            Self::Stopped(reason) => Some(reason.to_string()),
+            Self::NotConverged(reason) | Self::Diverged(reason) => Some(reason.into()),
+            Self::Stopped(reason) => Some(reason.into()),
             Self::Running | Self::Converged | Self::Accepted | Self::Finished => None,
         }
     }

@@ -15,6 +15,7 @@ use nalgebra::{Matrix2, Vector2};
 use crate::assembly::{Kinematics, Problem};
 use crate::rotation::{Rotation, polar_or};
 use crate::scene::{Material, Plane};
+use crate::sentence::{Sentence, sentence};
 use crate::state::State;
 
 mod estimate;
@@ -139,12 +140,13 @@ pub const LAW_HOLDS: f64 = 0.1;
 
 /// Returns a warning for strains beyond [`LAW_HOLDS`].
 #[must_use]
-pub fn strain_warning(max_strain: f64) -> Option<String> {
+pub fn strain_warning(max_strain: f64) -> Option<Sentence> {
     let percent = 100.0 * max_strain;
     (percent.is_finite() && max_strain > LAW_HOLDS).then(|| {
-        let most = 100.0 * LAW_HOLDS;
-        format!(
-            "strains reach {percent:.0} %: beyond {most} % the linear law between stress and strain is not realistic"
+        sentence!(
+            "strains reach %{n} %: beyond %{most} % the linear law between stress and strain is not realistic",
+            n = format!("{percent:.0}"),
+            most = (100.0 * LAW_HOLDS).to_string()
         )
     })
 }

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use crate::export::csv_field;
 use crate::scene::{ElementKind, Load, MethodKind, Scene};
+use crate::sentence::{Sentence, sentence};
 
 /// A quantity that every point of a figure has.
 #[derive(Clone, Debug, PartialEq)]
@@ -240,8 +241,10 @@ fn csv_row(fields: &[String]) -> String {
 /// The axis of a scene's loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadAxis {
-    /// Name and unit.
-    pub quantity: Quantity,
+    /// Name of the quantity.
+    pub name: Sentence,
+    /// Its unit; empty for a pure number.
+    pub unit: &'static str,
     /// Value under the scene's own loads.
     pub full: f64,
 }
@@ -254,12 +257,11 @@ impl LoadAxis {
             scene.loads.iter().map(kind).filter(|(_, _, size)| *size > 0.0).collect();
         let one_unit = pulling.windows(2).all(|pair| pair[0].1 == pair[1].1);
         match pulling.first() {
-            Some(&(name, unit, full)) if pulling.len() == 1 => Self { quantity: Quantity::new(name, unit), full },
+            Some(&(name, unit, full)) if pulling.len() == 1 => Self { name: name.into(), unit, full },
             Some(&(name, unit, full)) if one_unit => {
-                let name = format!("first {name}, the others in proportion");
-                Self { quantity: Quantity::new(name, unit), full }
+                Self { name: sentence!("first %{load}, the others in proportion", load = name), unit, full }
             }
-            _ => Self { quantity: Quantity::new("load factor", ""), full: 1.0 },
+            _ => Self { name: sentence!("load factor"), unit: "", full: 1.0 },
         }
     }
 }

@@ -11,10 +11,11 @@ use super::convergence::remaining_error;
 use super::progress::{Observer, Progress, check};
 use crate::assembly::{Forces, System};
 use crate::element::ElementType;
-use crate::format::{count, engineering, engineering_pair};
+use crate::format::{engineering, engineering_pair};
 use crate::mesh::{Mesh, Segment, bent, straightened};
 use crate::method::{Workspace, is_stable};
 use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
+use crate::sentence::sentence;
 use crate::simulation::{Simulation, SimulationError, Status};
 
 /// Cost allowed for a reference solution.
@@ -237,7 +238,7 @@ impl Search<'_> {
     /// Iterates until the status is final or the budget is spent; returns the status.
     fn solve(&mut self, simulation: &mut Simulation) -> Result<Status, StudyError> {
         let unknowns = simulation.system().dofs();
-        let now = format!("the reference solution, {}", count(unknowns as u64, "unknown"));
+        let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
         let fraction = (unknowns as f64 / self.effort.most_unknowns() as f64).min(1.0);
         while *simulation.status() == Status::Running && self.work <= self.effort.most_work() {
             check((self.observe)(Progress { fraction, now: &now }))?;

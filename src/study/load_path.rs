@@ -10,6 +10,7 @@ use crate::element::Tangent;
 use crate::format::engineering;
 use crate::method::{Workspace, support_stiffness};
 use crate::scene::{Analysis, MethodKind, Place, Scene};
+use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status, SupportReaction, supports_power};
 use crate::state::{State, largest};
 
@@ -37,18 +38,20 @@ pub struct Jump {
     pub distance: f64,
 }
 
-impl std::fmt::Display for Jump {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if self.factor >= 1.0 {
-            return write!(f, "the body jumped: another equilibrium under this load is closer to rest");
+displayed!(Jump, Bifurcation);
+
+impl From<&Jump> for Sentence {
+    fn from(jump: &Jump) -> Self {
+        if jump.factor >= 1.0 {
+            return sentence!("the body jumped: another equilibrium under this load is closer to rest");
         }
-        let percent = engineering(100.0 * self.factor, "%");
-        match self.distance {
-            0.0 => write!(f, "beyond {percent} of the load no stable equilibrium was found"),
-            distance => write!(
-                f,
-                "the body jumped: beyond {percent} of the load the next equilibrium is {} away",
-                engineering(distance, "m")
+        let percent = engineering(100.0 * jump.factor, "%");
+        match jump.distance {
+            0.0 => sentence!("beyond %{percent} of the load no stable equilibrium was found", percent),
+            distance => sentence!(
+                "the body jumped: beyond %{percent} of the load the next equilibrium is %{distance} away",
+                percent,
+                distance = engineering(distance, "m")
             ),
         }
     }
@@ -72,23 +75,25 @@ impl Bifurcation {
 
     /// Returns a short label for figures: `buckles at 49.3 %`.
     #[must_use]
-    pub fn label(&self) -> String {
+    pub fn label(&self) -> Sentence {
         let percent = engineering((self.factor * 1e3).round() / 10.0, "%");
         match self.unstable_modes {
-            [0, _] => format!("buckles at {percent}"),
-            [_, 0] => format!("stable from {percent}"),
-            [_, modes] => format!("{modes} unstable modes from {percent}"),
+            [0, _] => sentence!("buckles at %{percent}", percent),
+            [_, 0] => sentence!("stable from %{percent}", percent),
+            [_, modes] => sentence!("%{n} unstable modes from %{percent}", n = modes, percent),
         }
     }
 }
 
-impl std::fmt::Display for Bifurcation {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let percent = self.percent();
-        match self.unstable_modes {
-            [0, _] => write!(f, "buckles at {percent} of the load: beyond it, this path is unstable"),
-            [_, 0] => write!(f, "stable again from {percent} of the load on"),
-            [_, modes] => write!(f, "from {percent} of the load on {modes} modes are unstable"),
+impl From<&Bifurcation> for Sentence {
+    fn from(bifurcation: &Bifurcation) -> Self {
+        let percent = bifurcation.percent();
+        match bifurcation.unstable_modes {
+            [0, _] => {
+                sentence!("buckles at %{percent} of the load: beyond it, this path is unstable", percent)
+            }
+            [_, 0] => format!("stable again from {percent} of the load on").into(),
+            [_, modes] => format!("from {percent} of the load on {modes} modes are unstable").into(),
         }
     }
 }
@@ -140,9 +145,9 @@ pub struct PathSummary {
 
 impl PathSummary {
     /// Describes jump and buckling, one sentence each.
-    pub fn sentences(&self) -> impl Iterator<Item = String> {
-        let buckling = self.buckling.map(|buckling| buckling.to_string());
-        self.jump.map(|jump| jump.to_string()).into_iter().chain(buckling)
+    pub fn sentences(&self) -> impl Iterator<Item = Sentence> {
+        let buckling = self.buckling.map(|buckling| Sentence::from(&buckling));
+        self.jump.map(|jump| Sentence::from(&jump)).into_iter().chain(buckling)
     }
 }
 

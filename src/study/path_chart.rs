@@ -4,7 +4,9 @@ use nalgebra::Vector2;
 
 use super::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, LoadAxis, Mark, Quantity, dominant_axis};
 use super::{LoadPath, PathState, support_text};
-use crate::scene::{MethodKind, Scene};
+use crate::format::number;
+use crate::scene::{MethodKind, Place, Scene};
+use crate::sentence::{Sentence, sentence};
 
 /// The pair of quantities that is drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,9 +23,12 @@ pub enum Ordinate {
     Reaction(usize),
 }
 
-/// Draws the path over the way of the support that moves, or over the load.
+/// Function that renders a name.
+type Words<'a> = &'a dyn Fn(&Sentence) -> String;
+
+/// Draws the path over the way of the support that moves, or over the load; `words` renders its names.
 #[must_use]
-pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Figure {
+pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, words: Words<'_>) -> Figure {
     let probe = match ordinate {
         Ordinate::Path(i) | Ordinate::Component(i, _) | Ordinate::Probe(i) => *i,
         Ordinate::Usual | Ordinate::Reaction(_) => 0,
@@ -32,9 +37,9 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Figure {
     let displacement = |s: &PathState| s.probes.get(probe).copied().unwrap_or_else(Vector2::zeros);
     let along = Abscissa::of(path, scene);
     let mut quantities = vec![
-        along.quantity.clone(),
-        Quantity::new(format!("u_x of {name}"), "m"),
-        Quantity::new(format!("u_y of {name}"), "m"),
+        Quantity::new(words(&along.name), along.unit),
+        Quantity::new(words(&sentence!("u_x of %{probe}", probe = name)), "m"),
+        Quantity::new(words(&sentence!("u_y of %{probe}", probe = name)), "m"),
     ];
     let axes = match (ordinate, path.driven) {
         (Ordinate::Path(_), _) => [1, 2],
@@ -46,7 +51,10 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Figure {
         (Ordinate::Reaction(i), _) => Some(Quantity::new(format!("reaction of {}", support_text(scene, *i)), "N")),
         (Ordinate::Probe(_), _) => Some(Quantity::new(format!("displacement of {name}"), "m")),
         // The other axis names the support.
-        (_, Some(_)) => Some(Quantity::new("reaction in this direction", if along.turns { "N m" } else { "N" })),
+        (_, Some(_)) => {
+            let name = words(&sentence!("reaction in this direction"));
+            Some(Quantity::new(name, if along.turns { "N m" } else { "N" }))
+        }
         _ => None,
     });
     let point = |s: &PathState| {
@@ -61,11 +69,11 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Figure {
     };
     let points: Vec<FigurePoint> = path.states.iter().map(point).collect();
     let mut series: Vec<FigureSeries> =
-        pieces(path, &points).into_iter().map(|(points, piece)| piece.series(path, points)).collect();
-    series.extend(bifurcations(path, &points));
+        pieces(path, &points).into_iter().map(|(points, piece)| piece.series(path, points, words)).collect();
+    series.extend(bifurcations(path, &points, words));
     let last = points.last().map(|point| FigurePoint { is_present: true, ..point.clone() });
     series.push(FigureSeries {
-        name: "the scene".to_owned(),
+        name: words(&sentence!("the scene")),
         ink: Ink::Scene,
         mark: Mark::Disc,
         may_leave: false,
@@ -92,7 +100,8 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate) -> Figure {
 
 /// The quantity that grows along the path.
 struct Abscissa {
-    quantity: Quantity,
+    name: Sentence,
+    unit: &'static str,
     full: f64,
     turns: bool,
 }
@@ -100,15 +109,19 @@ struct Abscissa {
 impl Abscissa {
     fn of(path: &LoadPath, scene: &Scene) -> Self {
         let turns = path.driven.and_then(|i| scene.supports.get(i)).is_some_and(|s| s.displacement == [0.0; 2]);
-        let quantity = match path.driven {
-            Some(i) if turns => Quantity::new(format!("rotation of {}", support_text(scene, i)), "°"),
-            Some(i) => Quantity::new(format!("displacement of {}", support_text(scene, i)), "m"),
+        let place = path.driven.and_then(|i| scene.supports.get(i)).map(|support| &support.place);
+        let (name, unit) = match place {
+            Some(place) if turns => (sentence!("rotation of support %{place}", place = place.to_string()), "°"),
+            Some(Place::At([x, y])) => {
+                (sentence!("displacement of support (%{x}, %{y})", x = number(*x), y = number(*y)), "m")
+            }
+            Some(Place::Edge(edge)) => (sentence!("displacement of support %{place}", place = edge.as_str()), "m"),
             None => {
-                let LoadAxis { quantity, full } = LoadAxis::of(scene);
-                return Self { quantity, full, turns };
+                let LoadAxis { name, unit, full } = LoadAxis::of(scene);
+                return Self { name, unit, full, turns };
             }
         };
-        Self { quantity, full: 1.0, turns }
+        Self { name, unit, full: 1.0, turns }
     }
 
     fn value(&self, path: &LoadPath, scene: &Scene, state: &PathState) -> f64 {
@@ -132,13 +145,13 @@ enum Piece {
 }
 
 impl Piece {
-    fn series(self, path: &LoadPath, points: Vec<FigurePoint>) -> FigureSeries {
+    fn series(self, path: &LoadPath, points: Vec<FigurePoint>, words: Words<'_>) -> FigureSeries {
         let (name, ink, mark) = match self {
             Self::Stable => ("stable", Ink::Method(MethodKind::Newton), Mark::Line),
             Self::Unstable => (unstable_text(path), Ink::Unstable, Mark::Dashes),
             Self::Jump => ("it jumps", Ink::Unstable, Mark::Dots),
         };
-        FigureSeries { name: name.to_owned(), ink, mark, may_leave: false, points }
+        FigureSeries { name: words(&name.into()), ink, mark, may_leave: false, points }
     }
 }
 
@@ -172,13 +185,17 @@ fn branches(points: &[FigurePoint], stable: &[bool]) -> Vec<(Vec<FigurePoint>, P
 }
 
 /// Places where the path loses or regains its stability without a jump, each with its label.
-fn bifurcations<'a>(path: &'a LoadPath, points: &'a [FigurePoint]) -> impl Iterator<Item = FigureSeries> + 'a {
+fn bifurcations<'a>(
+    path: &'a LoadPath,
+    points: &'a [FigurePoint],
+    words: Words<'a>,
+) -> impl Iterator<Item = FigureSeries> + 'a {
     path.bifurcations.iter().filter_map(|bifurcation| {
         let next = path.states.iter().position(|s| s.factor > bifurcation.factor)?;
         let (from, to) = (points.get(next.checked_sub(1)?)?, points.get(next)?);
         let middle = from.values.iter().zip(&to.values).map(|(a, b)| Some(0.5 * ((*a)? + (*b)?))).collect();
         Some(FigureSeries {
-            name: bifurcation.label(),
+            name: words(&bifurcation.label()),
             ink: Ink::Unstable,
             mark: Mark::Disc,
             may_leave: false,

@@ -4,59 +4,40 @@ use std::ops::ControlFlow;
 
 use crate::dynamics::StopReason;
 use crate::format::{number, two_digits};
+use crate::sentence::{Sentence, sentence};
 use crate::simulation::SimulationError;
 
 /// Reason why a scene cannot be studied.
 ///
 /// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum StudyError {
     /// The scene cannot be simulated.
-    #[error(transparent)]
     Simulation(#[from] SimulationError),
     /// The scene is dynamic and has no equilibrium to compare with.
-    #[error(
-        "expected a scene with analysis = \"static\": the study measures solves for an equilibrium, and this scene is \
-         in motion"
-    )]
     InMotion,
     /// The scene is static and has no path to compare with.
-    #[error(
-        "expected a scene with analysis = \"dynamic\": the study measures the path of a motion, and this scene is \
-         at rest"
-    )]
     AtRest,
     /// The motion on the fine mesh, which would be the reference, stops.
-    #[error("no reference solution: the motion of the fine mesh stops: {0}")]
     NoPath(StopReason),
     /// The scene has a mesh file, which cannot be meshed with other cells.
-    #[error("expected a scene with [beam]: the study measures coarser and finer meshes of it")]
     NoBeam,
     /// The scene has no probe that moves.
-    #[error("expected a scene with a probe that moves: errors are measured at probes")]
     NoProbe,
     /// The refined mesh of a file would have too many unknowns.
-    #[error("no reference solution: the mesh of {elements} elements is too large to be refined")]
     TooFine {
         /// Number of elements of the mesh.
         elements: usize,
     },
     /// The equilibrium is unstable.
-    #[error("no reference solution: the equilibrium is unstable")]
     Unstable,
     /// No equilibrium was found on fine meshes.
-    #[error("no reference solution: the solution on the fine mesh does not converge")]
     NoReference,
     /// The solutions on refined meshes do not converge, or too slowly.
-    #[error("no reference solution: the solutions on finer and finer meshes do not converge")]
     NoBound,
     /// The reference solution is not more accurate than the requested result.
-    #[error(
-        "the reference solution's own error may be {} %, not less than the {} % asked for",
-        number(two_digits(*own_percent)),
-        number(*asked_percent)
-    )]
     NotKnown {
         /// Bound of the reference's own error, percent.
         own_percent: f64,
@@ -64,8 +45,46 @@ pub enum StudyError {
         asked_percent: f64,
     },
     /// Cancelled.
-    #[error("cancelled")]
     Cancelled,
+}
+
+impl From<&StudyError> for Sentence {
+    fn from(error: &StudyError) -> Self {
+        match error {
+            StudyError::Simulation(error) => error.into(),
+            StudyError::InMotion => "expected a scene with analysis = \"static\": the study measures solves for an \
+                                     equilibrium, and this scene is in motion"
+                .into(),
+            StudyError::AtRest => "expected a scene with analysis = \"dynamic\": the study measures the path of a \
+                                   motion, and this scene is at rest"
+                .into(),
+            StudyError::NoPath(reason) => {
+                sentence!("no reference solution: the motion of the fine mesh stops: %{reason}", reason)
+            }
+            StudyError::NoBeam => {
+                sentence!("expected a scene with [beam]: the study measures coarser and finer meshes of it")
+            }
+            StudyError::NoProbe => {
+                sentence!("expected a scene with a probe that moves: errors are measured at probes")
+            }
+            StudyError::TooFine { elements } => {
+                sentence!("no reference solution: the mesh of %{n} elements is too large to be refined", n = *elements)
+            }
+            StudyError::Unstable => sentence!("no reference solution: the equilibrium is unstable"),
+            StudyError::NoReference => {
+                sentence!("no reference solution: the solution on the fine mesh does not converge")
+            }
+            StudyError::NoBound => {
+                sentence!("no reference solution: the solutions on finer and finer meshes do not converge")
+            }
+            StudyError::NotKnown { own_percent, asked_percent } => sentence!(
+                "the reference solution's own error may be %{own} %, not less than the %{asked} % asked for",
+                own = number(two_digits(*own_percent)),
+                asked = number(*asked_percent)
+            ),
+            StudyError::Cancelled => "cancelled".into(),
+        }
+    }
 }
 
 impl StudyError {
@@ -85,7 +104,7 @@ pub struct Progress<'a> {
     /// Completed fraction, 0 to 1, of the expected time, which is estimated from sizes and from times measured so far.
     pub fraction: f64,
     /// Current setting.
-    pub now: &'a str,
+    pub now: &'a Sentence,
 }
 
 /// Callback that receives the progress of a study, and cancels with [`ControlFlow::Break`].

@@ -13,6 +13,7 @@ use crate::assembly::System;
 use crate::exact_beam::{ExactBeam, error_percent};
 use crate::format::{number, two_digits};
 use crate::scene::{Analysis, MethodKind, Place, Scene};
+use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
 
 /// Origin of a reference solution.
@@ -39,13 +40,13 @@ impl ReferenceSource {
     }
 }
 
-impl std::fmt::Display for ReferenceSource {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::ExactBeam => "the exact beam",
-            Self::FineMesh => "a fine solution",
-            Self::RefinedMesh => "a solution on the refined mesh",
-        })
+impl From<&ReferenceSource> for Sentence {
+    fn from(source: &ReferenceSource) -> Self {
+        match source {
+            ReferenceSource::ExactBeam => sentence!("the exact beam"),
+            ReferenceSource::FineMesh => sentence!("a fine solution"),
+            ReferenceSource::RefinedMesh => sentence!("a solution on the refined mesh"),
+        }
     }
 }
 
@@ -82,9 +83,13 @@ impl ProbeReference {
     }
 }
 
-impl std::fmt::Display for ProbeReference {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} ({})", self.source, self.own_error())
+impl From<&ProbeReference> for Sentence {
+    fn from(reference: &ProbeReference) -> Self {
+        sentence!(
+            "%{reference} (its own error at most %{own} %)",
+            reference = &reference.source,
+            own = number(two_digits(reference.own_error_percent))
+        )
     }
 }
 
@@ -113,13 +118,17 @@ pub struct Reference {
     pub unknowns: usize,
 }
 
-impl std::fmt::Display for Reference {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.first() {
-            Some(first) => write!(f, "{first}")?,
-            None => f.write_str("no reference solution")?,
+displayed!(ReferenceSource, ProbeReference, Reference);
+
+impl From<&Reference> for Sentence {
+    fn from(reference: &Reference) -> Self {
+        let known = reference.first().map_or_else(|| sentence!("no reference solution"), |first| (&first).into());
+        match reference.beam_off_by_percent {
+            Some(off) => {
+                sentence!("%{reference}; beam theory differs by %{off} %", reference = known, off = format!("{off:.1}"))
+            }
+            None => known,
         }
-        self.beam_off_by_percent.map_or(Ok(()), |off| write!(f, "; beam theory differs by {off:.1} %"))
     }
 }
 

@@ -16,9 +16,9 @@ use super::progress::{Extent, Observer, Progress, StudyError, all_done, check};
 use super::reference::{ProbeReference, Reference, end, first_probe, system_of};
 use super::timing::{expected_time, times_from_rest};
 use crate::assembly::System;
-use crate::format::count;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
 
@@ -57,19 +57,24 @@ impl Setting {
     }
 }
 
-impl std::fmt::Display for Setting {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mesh = mesh_text(self.element, self.cells);
-        write!(f, "{mesh}, {}, {}", self.method.id(), count(self.iterations, "iteration"))
+displayed!(Setting);
+
+impl From<&Setting> for Sentence {
+    fn from(setting: &Setting) -> Self {
+        sentence!(
+            "%{mesh}, %{method}, %{count}",
+            mesh = mesh_text(setting.element, setting.cells),
+            method = setting.method.id(),
+            count = Self::count(setting.iterations, "iteration")
+        )
     }
 }
 
-pub(super) fn mesh_text(element: ElementKind, cells: Option<[u32; 2]>) -> String {
-    format!("{} {}", element.id(), cells_text(cells))
-}
-
-pub(super) fn cells_text(cells: Option<[u32; 2]>) -> String {
-    cells.map_or_else(|| "as meshed".to_owned(), |[along, across]| format!("{along}×{across}"))
+pub(super) fn mesh_text(element: ElementKind, cells: Option<[u32; 2]>) -> Sentence {
+    match cells {
+        Some([along, across]) => format!("{} {along}×{across}", element.id()).into(),
+        None => sentence!("%{element} as meshed", element = element.id()),
+    }
 }
 
 /// Error of a result and its parts, percent of the reference's displacement. The parts are lengths of displacements:
@@ -200,7 +205,7 @@ impl Study {
         let ends = |mesh: &MeshChoice, _: &CalledOff| MeshEnds::find(scene, mesh);
         let ends = all_done(parallel::map(&meshes, ends, |done| {
             let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: "end state of every method" }, None)
+            observe(Progress { fraction, now: &sentence!("end state of every method") }, None)
         }))?;
         let all: f64 = ends.iter().map(MeshEnds::expected_time).sum();
         // Start with the element that converges fastest, which is likely to give the best results.
@@ -217,7 +222,7 @@ impl Study {
                 let of = |mesh: &MeshChoice| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
                 meshes.iter().position(of)
             });
-            check(observe(Progress { fraction: fraction(1.0), now: "" }, Some(&study)))?;
+            check(observe(Progress { fraction: fraction(1.0), now: &Sentence::default() }, Some(&study)))?;
             done += time;
         }
         Ok(study)
@@ -260,7 +265,7 @@ impl Study {
         scene: &Scene,
         mesh: &MeshChoice,
         ends: &MeshEnds,
-        say: &mut dyn FnMut(f64, &str) -> Result<(), StudyError>,
+        say: &mut dyn FnMut(f64, &Sentence) -> Result<(), StudyError>,
     ) -> Result<(), StudyError> {
         let MeshChoice { element, cells, .. } = *mesh;
         let text = mesh_text(element, cells);
@@ -269,7 +274,7 @@ impl Study {
         let MeshEnds { system, exact, linear, .. } = ends;
         let mut measurements = Vec::new();
         for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
-            say(number as f64 / METHODS.len() as f64, &format!("{text}, {}", method.id()))?;
+            say(number as f64 / METHODS.len() as f64, &format!("{text}, {}", method.id()).into())?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` decides itself how many iterations it needs.
             let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };

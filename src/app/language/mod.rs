@@ -8,10 +8,7 @@ use std::sync::LazyLock;
 use egui::RichText;
 
 use crate::format;
-
-mod library;
-
-pub(super) use library::translated;
+use crate::sentence::{self, Sentence};
 
 /// Language of the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
@@ -74,6 +71,14 @@ pub(super) fn tr(english: &str) -> &str {
     CURRENT.get().of(english)
 }
 
+/// Renders a sentence or a text of the library in the language of the window.
+pub(super) fn said<'a, T: ?Sized>(text: &'a T) -> String
+where
+    Sentence: From<&'a T>,
+{
+    Sentence::from(text).render(&tr)
+}
+
 /// Translates a sentence and inserts values for its placeholders `%{name}`.
 macro_rules! fill {
     ($english:literal, $($name:ident = $value:expr),+ $(,)?) => {
@@ -84,15 +89,7 @@ pub(super) use fill;
 
 /// Translates a sentence and inserts `values` for the placeholders `names`; implementation of [`fill`].
 pub(super) fn filled(english: &str, names: &[&str], values: &[String]) -> String {
-    let mut parts = tr(english).split("%{");
-    let mut text = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let (name, after) = part.split_once('}').unwrap_or(("", part));
-        let value = names.iter().position(|own| *own == name).and_then(|i| values.get(i));
-        text.push_str(value.map_or("", String::as_str));
-        text.push_str(after);
-    }
-    text
+    sentence::fill(tr(english), |name| names.iter().position(|own| *own == name).and_then(|i| values.get(i)).cloned())
 }
 
 /// Formats a number of things: translation of [`format::count`].
@@ -132,3 +129,6 @@ pub(super) fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::app::language::{self, Language, count, fill, tr, translated};
+use crate::app::language::{self, Language, count, fill, said, tr};
 use crate::app::offscreen::record::{Phase, RecordOptions, RecordProgress, record};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::{NoName, ThemeChoice, free_name};
@@ -96,6 +96,6 @@ fn work(
         Ok(recorded) => {
             fill!("Saved %{file}, %{pictures}", file = path.display(), pictures = count(recorded.pictures, "picture"))
         }
-        Err(error) => fill!("No recording: %{reason}", reason = translated(&error.to_string())),
+        Err(error) => fill!("No recording: %{reason}", reason = said(&error)),
     }
 }

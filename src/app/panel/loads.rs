@@ -11,6 +11,7 @@ use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::format::engineering;
 use crate::scene::{Load, Place, Scene, limits};
+use crate::sentence::sentence;
 
 /// Gravitational acceleration on earth, m/s².
 const EARTH: f64 = 9.81;
@@ -133,8 +134,8 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut P
             None => match edges::edge_for_moment(&scene, input.simulation.system()) {
                 Some(edge) => scene.loads.push(Load::moment(&edge, new)),
                 None => {
-                    let message = "expected a straight edge without support; the body has none";
-                    state.messages.insert("Moment", message.to_owned());
+                    let message = sentence!("expected a straight edge without support; the body has none");
+                    state.messages.insert("Moment", message);
                     return;
                 }
             },

@@ -3,7 +3,7 @@
 use egui::{Grid, RichText, Ui};
 
 use crate::app::diagnosis::{DRIFT_TIP, Errors, reference_text, rho, stability};
-use crate::app::language::{count, fill, joined, percent, sentence, tr, translated};
+use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
@@ -81,7 +81,7 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
     row("Load steps", text, "Number of steps in which the load is applied");
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
-    let text = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&translated(&rho_text(rho))));
+    let text = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&said(&rho_text(rho))));
     let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
     row("ρ", text, tip);
     // The energy is a sum over all elements, which is too expensive for every frame of a motion.
@@ -97,7 +97,7 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
             _ => None,
         };
         let tip = joined(error.into_iter().chain([solves, factors]));
-        row("Auto", sentence(&translated(&auto.decision.to_string())), &tip);
+        row("Auto", sentence(&said(&auto.decision)), &tip);
     }
     frame_row(row, input, "Computing time of the iterations of one displayed frame");
 }
@@ -133,7 +133,7 @@ fn quality_rows(row: &mut Row<'_>, input: &Readout<'_>) {
         (true, Some(_)) => fill!("%{strain}: too large", strain = strain),
     };
     let tip = tr("The largest principal strain");
-    let tip = warning.map_or_else(|| tip.to_owned(), |text| format!("{tip}; {}", translated(&text)));
+    let tip = warning.map_or_else(|| tip.to_owned(), |text| format!("{tip}; {}", said(&text)));
     row("Strain", text, &tip);
 }
 
@@ -169,7 +169,7 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: Motion<'_>) {
             solves = count(auto.solves, "back substitution"),
             linear = linear
         );
-        row("Auto", sentence(&translated(&auto.decision.to_string())), &tip);
+        row("Auto", sentence(&said(&auto.decision)), &tip);
     }
     let ledger = motion.ledger();
     let joules = |value: f64| engineering(value, "J");

@@ -8,6 +8,7 @@ use crate::app::panel::{Action, PanelState, ViewOptions};
 use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::scene::{Analysis, Scene, limits};
+use crate::sentence::sentence;
 use crate::simulation::{Field, Simulation};
 use crate::stress::RecoveryScratch;
 
@@ -63,7 +64,7 @@ pub(super) fn options(
                 if changed[0] < changed[1] {
                     view.fixed_range = Some(changed);
                 } else {
-                    state.messages.insert(label, "expected the lowest value below the highest".to_owned());
+                    state.messages.insert(label, sentence!("expected the lowest value below the highest"));
                 }
             }
         }

@@ -321,7 +321,7 @@ impl Session {
         }
         let label = self.background.work.rollback().and_then(|rollback| rollback.label);
         self.roll_back();
-        self.notices.push(Notice::Rejected { label, message: rejected.error.to_string() });
+        self.notices.push(Notice::Rejected { label, message: (&rejected.error).into() });
     }
 
     /// Displays a snapshot in place of the current model.

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use crate::app::platform::files;
 use crate::scene::{Scene, SceneError, Source};
+use crate::sentence::{Sentence, sentence};
 
 /// Name of a scene's file or built-in scene, and the scene as it is stored there.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,11 +23,21 @@ pub(crate) struct Document {
 
 /// Reason for which a scene was not saved.
 #[derive(Debug, Error)]
+#[error("{}", Sentence::from(self))]
 pub(crate) enum SaveError {
-    #[error("the scene could not be written as TOML: {0}")]
     Toml(#[from] toml::ser::Error),
-    #[error("{path}: {reason}", path = .path.display())]
     File { path: PathBuf, reason: std::io::Error },
+}
+
+impl From<&SaveError> for Sentence {
+    fn from(error: &SaveError) -> Self {
+        match error {
+            SaveError::Toml(error) => {
+                sentence!("the scene could not be written as TOML: %{error}", error = error.to_string())
+            }
+            SaveError::File { path, reason } => Self::located(path.display().to_string(), reason.to_string()),
+        }
+    }
 }
 
 impl Document {

@@ -29,6 +29,7 @@ use crate::app::task::solve::{Start, note_residual, solve_linear};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{IntegratorKind, Load, Scene, SceneError, Source};
+use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::timings::Timings;
@@ -66,7 +67,7 @@ pub(crate) enum Notice {
     /// The scene of the last background solve has no model; `label` names the control that was edited.
     Rejected {
         label: Option<&'static str>,
-        message: String,
+        message: Sentence,
     },
     SolveDied,
     NoThread(io::Error),
@@ -74,11 +75,19 @@ pub(crate) enum Notice {
 
 /// Reason for which an edit was refused. The session is unchanged.
 #[derive(Debug, Error)]
+#[error("{}", Sentence::from(self))]
 pub(crate) enum EditError {
-    #[error(transparent)]
     Scene(#[from] SceneError),
-    #[error(transparent)]
     Simulation(#[from] SimulationError),
+}
+
+impl From<&EditError> for Sentence {
+    fn from(error: &EditError) -> Self {
+        match error {
+            EditError::Scene(error) => error.into(),
+            EditError::Simulation(error) => error.into(),
+        }
+    }
 }
 
 /// Grab of the body with the pointer during one frame. The fields are applied in this order.

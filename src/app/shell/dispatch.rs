@@ -1,7 +1,7 @@
 //! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
 use crate::app::action::{Action, MOST_ITERATIONS};
-use crate::app::language::{fill, tr, translated};
+use crate::app::language::{fill, said, tr};
 use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::explore::figure;
@@ -53,7 +53,7 @@ impl Lab {
         let applied = self.desk.session.apply(edit);
         self.follow_session();
         if let Err(error) = &applied {
-            self.say(ctx, translated(&error.to_string()));
+            self.say(ctx, said(error));
         }
         applied.is_ok()
     }
@@ -88,7 +88,7 @@ impl Lab {
                 let messages = &mut self.desk.panel.messages;
                 match applied {
                     Ok(_) => messages.remove(label),
-                    Err(error) => messages.insert(label, error.to_string()),
+                    Err(error) => messages.insert(label, (&error).into()),
                 };
                 self.follow_session();
             }
@@ -159,7 +159,7 @@ impl Lab {
             Action::Export(figure, file) => {
                 let text = match figure::save(&figure, file) {
                     Ok(path) => fill!("Saved %{file}", file = path.display()),
-                    Err(reason) => fill!("Not saved: %{reason}", reason = translated(&reason.to_string())),
+                    Err(reason) => fill!("Not saved: %{reason}", reason = said(&reason)),
                 };
                 self.say(ctx, text);
                 ctx.request_repaint();

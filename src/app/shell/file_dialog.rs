@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Context, Key, Modal, RichText, ScrollArea, TextEdit};
 
-use crate::app::language::{fill, tr, translated};
+use crate::app::language::{fill, tr};
 
 /// Purpose of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl FileDialog {
 
     /// Shows an error message; the dialog stays open.
     pub(crate) fn refuse(&mut self, message: String) {
-        self.message = Some(translated(&message));
+        self.message = Some(message);
     }
 
     /// Accepts the typed path: enters a folder, or returns a file as the answer.

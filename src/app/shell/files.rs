@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::app::action::Action;
-use crate::app::language::{fill, tr, translated};
+use crate::app::language::{fill, said, tr};
 use crate::app::platform::{IS_PAGE, files, page};
 use crate::app::session::document::SaveError;
 use crate::app::session::{Edit, EditError};
@@ -16,7 +16,7 @@ impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.
     pub(super) fn open(&mut self, ctx: &egui::Context, source: Source) {
         if let Err(error) = self.try_open(source) {
-            self.say(ctx, translated(&error.to_string()));
+            self.say(ctx, said(&error));
         }
     }
 
@@ -55,7 +55,7 @@ impl Lab {
             Ok(()) => self.after_save(ctx),
             Err(reason) => {
                 self.question = Question::None;
-                self.say(ctx, fill!("Not saved: %{reason}", reason = translated(&reason.to_string())));
+                self.say(ctx, fill!("Not saved: %{reason}", reason = said(&reason)));
             }
         }
     }
@@ -86,14 +86,14 @@ impl Lab {
             }
             Answer::File(path) if dialog.purpose == Purpose::Open => {
                 let source = Source { name: path, assignments: Vec::new() };
-                self.try_open(source).err().map(|error| error.to_string())
+                self.try_open(source).err().map(|error| said(&error))
             }
             Answer::File(path) => match self.save(ctx, &path) {
                 Ok(()) => {
                     self.after_save(ctx);
                     None
                 }
-                Err(reason) => Some(translated(&reason.to_string())),
+                Err(reason) => Some(said(&reason)),
             },
         };
         if let Some(refusal) = refusal {

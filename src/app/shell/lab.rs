@@ -157,7 +157,7 @@ impl Lab {
         let mut lab = Self::new(own, meanwhile, simulation);
         let session = &mut lab.desk.session;
         if let Err(error) = session.replace(Document::new(source, scene.clone()), scene) {
-            session.notify(Notice::Rejected { label: None, message: error.to_string() });
+            session.notify(Notice::Rejected { label: None, message: (&error).into() });
         }
         Some(lab)
     }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{Align2, Painter, Rect, Sense, Ui};
 
-use crate::app::language::{fill, tr, translated};
+use crate::app::language::{fill, said, tr};
 use crate::app::session::Notice;
 use crate::app::shell::lab::Lab;
 use crate::app::shell::toolbar;
@@ -41,7 +41,7 @@ impl Lab {
                 Notice::Rejected { label: Some(label), message } => {
                     self.desk.panel.messages.insert(label, message);
                 }
-                Notice::Rejected { label: None, message } => self.say(ctx, translated(&message)),
+                Notice::Rejected { label: None, message } => self.say(ctx, said(&message)),
                 Notice::SolveDied => self.say(ctx, tr("The solve ended unexpectedly").to_owned()),
                 Notice::NoThread(error) => self.say(ctx, fill!("Could not start the solve: %{error}", error = error)),
             }

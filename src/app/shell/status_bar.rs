@@ -8,7 +8,7 @@ use std::sync::Arc;
 use egui::{Align, Color32, FontId, Galley, Layout, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::action::Action;
-use crate::app::language::{fill, percent, tr, translated};
+use crate::app::language::{fill, filled, percent, tr};
 use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
 use crate::app::task::solve::Phase;
@@ -262,7 +262,7 @@ fn body_text(scene: &Scene) -> String {
             let cells = beam.cells.iter().map(|&n| u64::from(n)).product::<u64>();
             // A triangle is half a cell of a beam.
             let pieces = if cell.corners.len() == 3 { 2 } else { 1 };
-            translated(&format!("{} {}s", grouped(pieces * cells), cell.name))
+            filled(&format!("%{{n}} {}s", cell.name), &["n"], &[grouped(pieces * cells)])
         }
         (None, Some(mesh)) => mesh.file.clone(),
         (None, None) => tr("the body").to_owned(),

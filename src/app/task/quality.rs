@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::scene::Material;
+use crate::sentence::Sentence;
 use crate::simulation::{Deformation, Simulation};
 use crate::stress::strain_warning;
 
@@ -45,7 +46,7 @@ impl Quality {
     }
 
     /// Returns the warning for large strains.
-    pub(crate) fn warning(&self) -> Option<String> {
+    pub(crate) fn warning(&self) -> Option<Sentence> {
         strain_warning(self.max_strain)
     }
 }

@@ -5,17 +5,16 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use egui::{Align, DragValue, Id, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
-use thiserror::Error;
 
-use crate::app::language::{fill, tr, translated};
+use crate::app::language::{fill, said, tr};
 use crate::app::widgets::load_scale::LoadScale;
 use crate::format::{editable, number, three_digits};
-use crate::scene::OutOfRange;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
+use crate::sentence::{Sentence, sentence};
 
-/// Messages next to fields, by the field's label, in English.
-pub(crate) type Messages = BTreeMap<&'static str, String>;
+/// Messages next to fields, by the field's label.
+pub(crate) type Messages = BTreeMap<&'static str, Sentence>;
 
 /// Number to show and edit.
 pub(crate) struct NumberField {
@@ -42,17 +41,6 @@ pub(crate) enum SliderScale {
     Logarithmic(f64),
     /// Proportional around this value, and logarithmic far beyond it: [`LoadScale`].
     Around(f64),
-}
-
-/// Reason for which a typed number is refused.
-#[derive(Debug, Error)]
-enum FieldError {
-    #[error("expected a whole number, got {0}")]
-    NotWhole(String),
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    #[error(transparent)]
-    Unit(#[from] UnitError),
 }
 
 const VALUE_WIDTH: f32 = 104.0;
@@ -94,7 +82,7 @@ impl NumberField {
                             if has_escaped || text.trim() == shown {
                                 return Some(value);
                             }
-                            self.read(text).map_err(|reason| refused.replace(Some(reason.to_string()))).ok()
+                            self.read(text).map_err(|reason| refused.replace(Some(reason))).ok()
                         });
                     let size = egui::vec2(VALUE_WIDTH, ui.spacing().interact_size.y);
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
@@ -143,7 +131,7 @@ impl NumberField {
                     Some(new)
                 }
                 Err(error) => {
-                    messages.insert(self.label, error.to_string());
+                    messages.insert(self.label, error);
                     None
                 }
             },
@@ -218,21 +206,21 @@ impl NumberField {
     }
 
     /// Reads a number within the limit.
-    fn read(&self, text: &str) -> Result<f64, FieldError> {
+    fn read(&self, text: &str) -> Result<f64, Sentence> {
         match parse(text, self.limit.unit) {
             Ok(number) if number.is_finite() => self.check(number).map(|()| number),
             Ok(_) | Err(UnitError::NoNumber { .. }) => {
-                Err(self.limit.expected(&format!("\u{201c}{}\u{201d}", text.trim())).into())
+                Err((&self.limit.expected(&format!("\u{201c}{}\u{201d}", text.trim()))).into())
             }
-            Err(error) => Err(error.into()),
+            Err(error) => Err((&error).into()),
         }
     }
 
-    fn check(&self, value: f64) -> Result<(), FieldError> {
+    fn check(&self, value: f64) -> Result<(), Sentence> {
         if self.whole && value.fract() != 0.0 {
-            return Err(FieldError::NotWhole(number(value)));
+            return Err(sentence!("expected a whole number, got %{got}", got = number(value)));
         }
-        Ok(self.limit.check(value)?)
+        self.limit.check(value).map_err(|error| (&error).into())
     }
 }
 
@@ -240,7 +228,7 @@ impl NumberField {
 pub(crate) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
     if let Some(message) = messages.get(label) {
         let color = ui.visuals().error_fg_color;
-        ui.add(egui::Label::new(egui::RichText::new(translated(message)).color(color).small()).wrap());
+        ui.add(egui::Label::new(egui::RichText::new(said(message)).color(color).small()).wrap());
     }
 }
 

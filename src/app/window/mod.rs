@@ -21,7 +21,7 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
 use winit::window::{Window, WindowId};
 
-use crate::app::language::{fill, translated};
+use crate::app::language::fill;
 use crate::app::offscreen::painter::Stage;
 use crate::app::offscreen::record::{LiveRecording, pointer};
 use crate::app::offscreen::recorder::{Recorder, RecorderError};
@@ -427,7 +427,7 @@ impl App {
                 self.recording = Some(recording);
                 open.window.request_redraw();
             }
-            Err(reason) => self.say(fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
+            Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
         }
     }
 
@@ -440,7 +440,7 @@ impl App {
         let (source, scene) = (self.lab.source().clone(), self.lab.scene().clone());
         match Recorder::start(source, scene, theme, self.lab.language()) {
             Ok(recorder) => self.scene_recording = Some(recorder),
-            Err(reason) => self.say(fill!("No recording: %{reason}", reason = translated(&reason.to_string()))),
+            Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
         }
         self.schedule(Duration::ZERO);
     }

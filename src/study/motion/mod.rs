@@ -19,8 +19,8 @@ use super::timing::{Runs, median_time};
 use super::trade::{Setting, mesh_text};
 use crate::assembly::{Mass, System};
 use crate::dynamics::{Counts, critical_step};
-use crate::format::count;
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status};
 
 mod plan;
@@ -75,27 +75,36 @@ impl MotionSetting {
     }
 
     /// Describes the number of solves per step, or per stage of one.
-    fn solves_text(&self) -> String {
+    fn solves_text(&self) -> Sentence {
         let entry = self.integrator.entry();
-        match self.iterations {
-            _ if entry.is_explicit() => "no solve".to_owned(),
-            0 => "to tolerance".to_owned(),
-            n if entry.stages > 1 => format!("{} a stage", count(n, "solve")),
-            n => format!("{} a step", count(n, "solve")),
+        match (self.iterations, entry.stages > 1) {
+            _ if entry.is_explicit() => sentence!("no solve"),
+            (0, _) => sentence!("to tolerance"),
+            (n @ 1, true) => sentence!("%{n} solve a stage", n),
+            (n @ 1, false) => sentence!("%{n} solve a step", n),
+            (n, true) => sentence!("%{n} solves a stage", n),
+            (n, false) => sentence!("%{n} solves a step", n),
         }
     }
 }
 
-impl std::fmt::Display for MotionSetting {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mesh = mesh_text(self.element, self.cells);
-        let (step, solves) = (step_text(self.time_step), self.solves_text());
-        let theory = match self.method {
+displayed!(MotionSetting);
+
+impl From<&MotionSetting> for Sentence {
+    fn from(setting: &MotionSetting) -> Self {
+        let theory = match setting.method {
             method if method.moves_linearly() => "linear theory",
-            _ if self.integrator.entry().is_explicit() => "corotated",
+            _ if setting.integrator.entry().is_explicit() => "corotated",
             method => method.id(),
         };
-        write!(f, "{mesh}, {}, {step}, {solves}, {theory}", self.integrator.id())
+        sentence!(
+            "%{mesh}, %{integrator}, %{step}, %{solves}, %{theory}",
+            mesh = mesh_text(setting.element, setting.cells),
+            integrator = setting.integrator.id(),
+            step = step_text(setting.time_step),
+            solves = setting.solves_text(),
+            theory
+        )
     }
 }
 
@@ -271,7 +280,7 @@ impl MotionStudy {
         let own = |mesh: &MeshPlan, cancelled: &CalledOff| Meshed::new(studied, mesh, cancelled);
         let meshed = all_done(parallel::map(&meshes, own, |done| {
             let fraction = REFERENCE_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: "the motion on every mesh" })
+            observe(Progress { fraction, now: &sentence!("the motion on every mesh") })
         }))?;
         let mut study = Self {
             scene: scene.name.clone(),
@@ -309,21 +318,21 @@ impl MotionStudy {
         studied: Studied<'_>,
         mesh: &MeshPlan,
         meshed: &Meshed,
-        say: &mut dyn FnMut(f64, &str) -> ControlFlow<()>,
+        say: &mut dyn FnMut(f64, &Sentence) -> ControlFlow<()>,
     ) -> Result<(), StudyError> {
         // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
         let first = |job: &Job, cancelled: &CalledOff| {
             let (setting, steps) = job.setting(mesh, meshed.critical, studied.samples);
             FirstRun::new(studied, meshed, setting, steps, cancelled)
         };
-        let now = format!("{}, paths of its settings", mesh_text(mesh.element, mesh.cells));
+        let now = sentence!("%{mesh}, paths of its settings", mesh = mesh_text(mesh.element, mesh.cells));
         let first = all_done(parallel::map(&mesh.jobs, first, |done| {
             say(FIRST_RUNS_SHARE * done as f64 / mesh.jobs.len() as f64, &now)
         }))?;
         let mut done = 0.0;
         for (job, first) in mesh.jobs.iter().zip(first) {
             let part = FIRST_RUNS_SHARE + (1.0 - FIRST_RUNS_SHARE) * done / mesh.weight();
-            check(say(part, &first.setting.to_string()))?;
+            check(say(part, &(&first.setting).into()))?;
             self.measurements.push(MotionMeasurement {
                 setting: first.setting,
                 dofs: meshed.system.dofs(),

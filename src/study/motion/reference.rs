@@ -9,6 +9,7 @@ use super::{MotionSetting, path, step_text};
 use crate::assembly::System;
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::sentence::sentence;
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::fine::finest_element;
 use crate::study::parallel::{self, CalledOff};
@@ -41,7 +42,7 @@ impl std::fmt::Display for MotionReference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mesh = match self.cells {
             Some(_) => mesh_text(self.element, self.cells),
-            None => format!("{} on the refined mesh", self.element.id()),
+            None => format!("{} on the refined mesh", self.element.id()).into(),
         };
         write!(
             f,
@@ -82,7 +83,7 @@ impl MotionReference {
             fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, cancelled)
         };
         let paths = all_done(parallel::map(&paths, follow, |done| {
-            observe(Progress { fraction: done as f64 / paths.len() as f64, now: "the reference solution" })
+            observe(Progress { fraction: done as f64 / paths.len() as f64, now: &sentence!("the reference solution") })
         }))?;
         let [coarser, longer, best] = <[_; 3]>::try_from(paths).unwrap_or_default();
         let size = best.iter().map(|u| u.norm()).fold(0.0, f64::max);

@@ -142,7 +142,7 @@ impl MotionStudy {
                 text,
                 "    {:<16} {:<18} {:>10}  {:>12} {:>12.5} {:<6} {:>10.3}",
                 setting.integrator.id(),
-                setting.solves_text(),
+                setting.solves_text().to_string(),
                 step_text(setting.time_step),
                 m.error.map_or_else(|| m.ending.id().replace('_', " "), |e| format!("{:.4}", e.integration)),
                 m.drift_percent,

@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use egui::Color32;
 
-use crate::app::language::{count, fill, joined, percent, tr, translated};
+use crate::app::language::{count, fill, percent, said, tr};
 use crate::app::session::clock::FRAMES;
 use crate::app::widgets::palette::Palette;
 use crate::plot::drawn_error;
@@ -81,7 +81,7 @@ impl Measured {
     /// Returns the name of the reference solution.
     pub(crate) fn reference_text(&self) -> String {
         match self {
-            Self::Rest(study) => translated(&study.reference.to_string()),
+            Self::Rest(study) => said(&study.reference),
             Self::Motion(study) => {
                 fill!(
                     "the same motion on a finer mesh (its own error about %{own})",
@@ -122,8 +122,8 @@ impl Choice {
     /// Returns the label of the measured setting: element, mesh and method.
     pub(crate) fn text(&self) -> String {
         match self {
-            Self::Rest(m) => translated(&m.setting.to_string()),
-            Self::Motion(m) => joined(m.setting.to_string().split(", ").map(translated)),
+            Self::Rest(m) => said(&m.setting),
+            Self::Motion(m) => said(&m.setting),
         }
     }
 

@@ -9,9 +9,9 @@ use egui::{Button, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
 use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoints, Points, VLine};
 
 use crate::app::action::Action;
-use crate::app::language::{fill, joined, percent, tr, translated};
+use crate::app::language::{fill, joined, percent, said, tr};
 use crate::app::modes::budget::measured::{Choice, Group, Measured};
-use crate::app::modes::budget::study_task::{Background, BackgroundError, StudyState};
+use crate::app::modes::budget::study_task::{Background, StudyState};
 use crate::app::task::thread::POLL;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
 use crate::app::widgets::palette::Palette;
@@ -20,6 +20,7 @@ use crate::element::ELEMENTS;
 use crate::format::{engineering, number, three_digits};
 use crate::method::METHODS;
 use crate::scene::{Analysis, Scene, limits};
+use crate::sentence::Sentence;
 use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
 
 /// State of Budget: the study of the scene, and the largest error and time that a setting may have.
@@ -31,7 +32,7 @@ pub(crate) struct Budget {
     study: Option<Measured>,
     /// Measured scene without the settings that the study varies.
     of: Option<Scene>,
-    error: Option<BackgroundError>,
+    error: Option<Sentence>,
     limits: Limits,
     messages: Messages,
 }
@@ -78,7 +79,7 @@ impl Budget {
     }
 
     /// Returns the fraction done and the current measurement, while a study is in progress.
-    pub(crate) fn progress(&self) -> Option<(f32, &str)> {
+    pub(crate) fn progress(&self) -> Option<(f32, &Sentence)> {
         self.background.as_ref().map(Background::progress)
     }
 
@@ -143,7 +144,7 @@ impl Budget {
             current: self.of.as_ref() == Some(&without_settings(scene)),
             is_partial: self.is_partial,
             progress: self.background.as_ref().map(Background::progress),
-            error: self.error.as_ref().map(ToString::to_string),
+            error: self.error.as_ref(),
         };
         let (limits, messages) = (&mut self.limits, &mut self.messages);
         ui.add_space(4.0);
@@ -175,9 +176,9 @@ struct BudgetView<'a> {
     /// `true` if the study was cancelled.
     is_partial: bool,
     /// Fraction done and current measurement, while a study is in progress.
-    progress: Option<(f32, &'a str)>,
+    progress: Option<(f32, &'a Sentence)>,
     /// Reason for which there is no study.
-    error: Option<String>,
+    error: Option<&'a Sentence>,
 }
 
 /// Width of the list, points, and its largest fraction of the width shared with the plot.
@@ -197,14 +198,14 @@ fn settings(
                 actions.push(Action::Measure(false));
             }
             ui.add(ProgressBar::new(fraction).desired_width(120.0).show_percentage());
-            ui.add(egui::Label::new(RichText::new(translated(now)).small()).truncate());
+            ui.add(egui::Label::new(RichText::new(said(now)).small()).truncate());
         } else {
             let tip = "Measure error and time of every element, mesh, method and number of iterations, on this machine";
             if ui.button(tr("Measure")).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
-            let words = match (&budget.error, budget.study) {
-                (Some(error), _) => RichText::new(translated(error)).small().color(ui.visuals().error_fg_color),
+            let words = match (budget.error, budget.study) {
+                (Some(error), _) => RichText::new(said(error)).small().color(ui.visuals().error_fg_color),
                 (None, None) => RichText::new(tr("Nothing measured yet: it takes about a minute.")).small(),
                 (None, Some(_)) if !budget.current => {
                     let color = ui.visuals().warn_fg_color;
@@ -285,7 +286,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
 
 /// Returns the name of a measured setting.
 pub(crate) fn setting_text(setting: &Setting) -> String {
-    translated(&setting.to_string())
+    said(setting)
 }
 
 /// Formats the time of a solve or of a frame with three digits.

@@ -1,34 +1,23 @@
 //! Study in the background.
 
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use crate::app::modes::budget::measured::Measured;
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::thread::{Reporter, Task, Update, Work};
 use crate::scene::{Analysis, Scene};
+use crate::sentence::{Sentence, sentence};
 use crate::study::{Extent, MotionStudy, Progress, Study, StudyError};
-
-/// Reason for which a study has no result.
-#[derive(Debug, Error)]
-pub(crate) enum BackgroundError {
-    #[error("no thread for the study: {0}")]
-    NoThread(#[from] std::io::Error),
-    #[error("{0}")]
-    Study(String),
-    #[error("the study ended unexpectedly")]
-    Died,
-}
 
 /// Progress report of a study.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum StudyProgress {
-    Now(f32, String),
+    Now(f32, Sentence),
     SoFar(Measured),
 }
 
 /// Measurements, or the reason why there are none; `None` for a cancelled study.
-type Done = Result<Measured, Option<String>>;
+type Done = Result<Measured, Option<Sentence>>;
 
 /// Request for a study.
 #[derive(Debug, Serialize, Deserialize)]
@@ -40,7 +29,7 @@ impl Work for StudyWork {
     type Output = Done;
 
     fn run(self, reporter: &Reporter<StudyProgress, Done>) -> Done {
-        study(&self.0.0, self.1, reporter).map_err(|error| (error != StudyError::Cancelled).then(|| error.to_string()))
+        study(&self.0.0, self.1, reporter).map_err(|error| (error != StudyError::Cancelled).then(|| (&error).into()))
     }
 }
 
@@ -50,7 +39,7 @@ pub(crate) enum StudyState {
     /// The study is in progress.
     Running,
     /// The study has ended or was cancelled; the error tells why it failed.
-    Ended(Result<(), BackgroundError>),
+    Ended(Result<(), Sentence>),
 }
 
 /// Study in a background thread. Dropping it cancels it.
@@ -59,21 +48,22 @@ pub(crate) struct Background {
     task: Task<StudyProgress, Done>,
     /// Fraction done, and (`now`) the current measurement.
     fraction: f32,
-    now: String,
+    now: Sentence,
 }
 
 impl Background {
     /// Starts a study of the scene.
     ///
     /// # Errors
-    /// [`BackgroundError::NoThread`].
-    pub(crate) fn start(scene: Scene, extent: Extent) -> Result<Self, BackgroundError> {
-        let task = Task::run(StudyWork(SentScene(scene), extent))?;
-        Ok(Self { task, fraction: 0.0, now: String::new() })
+    /// The system cannot start another thread.
+    pub(crate) fn start(scene: Scene, extent: Extent) -> Result<Self, Sentence> {
+        let task = Task::run(StudyWork(SentScene(scene), extent))
+            .map_err(|error| sentence!("no thread for the study: %{error}", error = error.to_string()))?;
+        Ok(Self { task, fraction: 0.0, now: Sentence::default() })
     }
 
     /// Returns the fraction done, and the current measurement.
-    pub(crate) fn progress(&self) -> (f32, &str) {
+    pub(crate) fn progress(&self) -> (f32, &Sentence) {
         (self.fraction, &self.now)
     }
 
@@ -93,10 +83,10 @@ impl Background {
                     return StudyState::Ended(Ok(()));
                 }
                 Update::Done(Err(None)) => return StudyState::Ended(Ok(())),
-                Update::Done(Err(Some(error))) => return StudyState::Ended(Err(BackgroundError::Study(error))),
+                Update::Done(Err(Some(error))) => return StudyState::Ended(Err(error)),
                 Update::None => return StudyState::Running,
                 Update::Died if self.task.is_cancelled() => return StudyState::Ended(Ok(())),
-                Update::Died => return StudyState::Ended(Err(BackgroundError::Died)),
+                Update::Died => return StudyState::Ended(Err(sentence!("the study ended unexpectedly"))),
             }
         }
     }
@@ -106,7 +96,7 @@ fn study(scene: &Scene, extent: Extent, reporter: &Reporter<StudyProgress, Done>
     let observe = |progress: Progress<'_>, so_far: Option<&Study>| {
         reporter.report(match so_far {
             Some(study) => StudyProgress::SoFar(Measured::Rest(study.clone())),
-            None => StudyProgress::Now(progress.fraction as f32, progress.now.to_owned()),
+            None => StudyProgress::Now(progress.fraction as f32, progress.now.clone()),
         })
     };
     match scene.analysis {

@@ -15,7 +15,7 @@ use self::setting::PANES;
 use self::trace::Trace;
 use crate::app::action::Action;
 use crate::app::diagnosis::{error_color, reference_text};
-use crate::app::language::{count, fill, percent, sentence, tr, translated};
+use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::playback::Playback;
 use crate::app::task::thread::POLL;
@@ -415,9 +415,9 @@ impl Compare {
         let palette = Palette::new(ui.visuals());
         let setting = pane.setting.of(input.common.scene);
         let (bad, words) = match pane.doing() {
-            Doing::Refused(reason) => (true, sentence(&translated(reason))),
-            Doing::Rests(end) => match end.status.failure() {
-                Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = translated(&reason))),
+            Doing::Refused(reason) => (true, sentence(&said(reason))),
+            Doing::Rests(end) => match end.status.failure_sentence() {
+                Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = said(&reason))),
                 None => {
                     let stopped = if end.status.is_success() { "" } else { tr(", stopped") };
                     let time = engineering(two_digits(end.seconds), "s");

@@ -8,7 +8,7 @@ use web_time::Instant;
 use super::grid::{self, Grid, PaneBody, PaneChange, PaneInput, Preset, grow};
 use super::setting::PANES;
 use super::{mesh_picker, pick};
-use crate::app::language::{fill, joined, percent, sentence, tr, translated};
+use crate::app::language::{fill, joined, percent, said, sentence, tr};
 use crate::app::session::clock::{FRAMES, RealTimeClock};
 use crate::app::session::playback::Playback;
 use crate::app::viewport::arrow::Forces;
@@ -23,6 +23,7 @@ use crate::format::{engineering, three_digits, two_digits};
 use crate::render::display_geometry::DisplayGeometry;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, IntegratorKind, Scene};
+use crate::sentence::Sentence;
 use crate::simulation::{Motion, Simulation, Status, probe_results};
 
 /// Settings of a pane; `None` means the setting of the scene.
@@ -66,7 +67,7 @@ pub struct MotionPane {
     scene: Option<Scene>,
     simulation: Option<Box<Simulation>>,
     /// Reason for which there is no simulation.
-    refused: Option<String>,
+    refused: Option<Sentence>,
     /// Computing time of a step, s: an exponentially weighted mean.
     seconds: Option<f64>,
     drawing: DisplayGeometry,
@@ -126,7 +127,7 @@ impl MotionPane {
             Some(mut simulation) => simulation.change_scene(&wanted).map(|()| simulation),
             None => Simulation::new(&wanted).map(Box::new),
         };
-        self.refused = made.as_ref().err().map(ToString::to_string);
+        self.refused = made.as_ref().err().map(Sentence::from);
         self.simulation = made.ok();
         if let (Some(simulation), false) = (&self.simulation, goes_on) {
             self.drawing = DisplayGeometry::new(simulation.system().mesh());
@@ -392,8 +393,8 @@ impl MotionCompare {
     /// first pane; or the reason for which there are none.
     fn result(&self, ui: &mut Ui, name: &str, number: usize, pane: &MotionPane) {
         let palette = Palette::new(ui.visuals());
-        let failure = pane.refused.as_deref().map(translated).or_else(|| match pane.simulation()?.status() {
-            Status::Stopped(reason) => Some(translated(&reason.to_string())),
+        let failure = pane.refused.as_ref().map(said).or_else(|| match pane.simulation()?.status() {
+            Status::Stopped(reason) => Some(said(reason)),
             _ => None,
         });
         let text = failure.as_deref().map_or_else(|| self.numbers(number, pane), sentence);

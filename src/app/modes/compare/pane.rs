@@ -22,6 +22,7 @@ use crate::assembly::System;
 use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Beam, MeshFile, Scene};
+use crate::sentence::{Sentence, sentence};
 use crate::simulation::{ProbeResult, Simulation, Status, probe_results};
 use crate::study::Reference;
 
@@ -77,7 +78,7 @@ enum Body {
     Here(Box<Simulation>),
     Away(Box<PaneSolve>),
     /// Error of the scene.
-    Refused(String),
+    Refused(Sentence),
 }
 
 /// Background solve of a pane.
@@ -100,7 +101,7 @@ fn model(simulation: Option<Box<Simulation>>, system: Option<Arc<System>>) -> Mo
 fn set_up(model: Model, scene: &Scene) -> Body {
     match model.set_up(scene) {
         Ok((bodies, _)) => Body::Here(Box::new(bodies.simulation)),
-        Err(rejected) => Body::Refused(rejected.error.to_string()),
+        Err(rejected) => Body::Refused((&rejected.error).into()),
     }
 }
 
@@ -129,7 +130,7 @@ pub(super) enum Doing<'a> {
     Iterates(u32),
     /// Solving in the background, with the number of iterations.
     Works(u32),
-    Refused(&'a str),
+    Refused(&'a Sentence),
 }
 
 impl Pane {
@@ -328,8 +329,8 @@ impl Pane {
                 SolveUpdate::Progress(_) => {}
                 SolveUpdate::None => return false,
                 SolveUpdate::Done(Ok(solved)) => break Body::Here(Box::new(solved.snapshot.bodies.simulation)),
-                SolveUpdate::Done(Err(rejected)) => break Body::Refused(rejected.error.to_string()),
-                SolveUpdate::Died => break Body::Refused("the solve ended unexpectedly".to_owned()),
+                SolveUpdate::Done(Err(rejected)) => break Body::Refused((&rejected.error).into()),
+                SolveUpdate::Died => break Body::Refused(sentence!("the solve ended unexpectedly")),
             }
         };
         if self.given == self.wanted {
@@ -373,7 +374,7 @@ impl Pane {
         let request = SolveRequest { scene, model, start, iterations, residuals: Vec::new(), is_displayed: false };
         self.body = match BackgroundSolve::start(request) {
             Ok(solve) => Body::Away(Box::new(PaneSolve { solve, since: Instant::now() })),
-            Err(error) => Body::Refused(format!("no thread for the solve: {error}")),
+            Err(error) => Body::Refused(sentence!("no thread for the solve: %{error}", error = error.to_string())),
         };
     }
 

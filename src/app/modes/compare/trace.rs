@@ -364,7 +364,7 @@ impl Trace {
         }
         let load = engineering(three_digits(axis.magnitude), axis.limit.unit);
         let bounds = self.bounds(&all, reach, axes(shown));
-        let quantity = Quantity::new(axis.name, axis.limit.unit);
+        let quantity = Quantity::new(tr(axis.name), axis.limit.unit);
         Figure {
             title: format!("{}: {}", tr(&scene.name), tr("Load curve")),
             quantities: quantities(quantity, scene),

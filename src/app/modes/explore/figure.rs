@@ -15,17 +15,26 @@ use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{marker, segments, still};
 use crate::app::{NoName, free_name};
 use crate::picture::PictureError;
+use crate::sentence::Sentence;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 
 /// Reason for which a figure is not saved.
 #[derive(Debug, Error)]
+#[error("{}", Sentence::from(self))]
 pub(crate) enum SaveError {
-    #[error(transparent)]
     NoName(#[from] NoName),
-    #[error("{path}: {reason}", path = .path.display())]
     File { path: PathBuf, reason: std::io::Error },
-    #[error(transparent)]
     Picture(#[from] PictureError),
+}
+
+impl From<&SaveError> for Sentence {
+    fn from(error: &SaveError) -> Self {
+        match error {
+            SaveError::NoName(error) => error.to_string().into(),
+            SaveError::File { path, reason } => Self::located(path.display().to_string(), reason.to_string()),
+            SaveError::Picture(error) => error.to_string().into(),
+        }
+    }
 }
 
 /// Saves a figure in the current folder under the first free name, and returns its path.

@@ -6,12 +6,13 @@ use egui::{Align2, Ui, UiBuilder};
 use nalgebra::Vector2;
 
 use crate::app::action::Action;
-use crate::app::language::{fill, tr, translated};
+use crate::app::language::{fill, said, tr};
 use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::view_options::CurvePlot;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::scene::{MethodKind, Scene};
+use crate::sentence::sentence;
 use crate::simulation::Status;
 use crate::study::figure::{
     Figure, FigurePoint, FigureRow, FigureSeries, Ink, LoadAxis, Mark, Quantity, dominant_axis, leaves_the_axes,
@@ -101,8 +102,9 @@ pub(crate) fn usual(displacements: impl Iterator<Item = Vector2<f64>> + Clone) -
 /// Returns the load and both components of the displacement of the first probe.
 pub(crate) fn quantities(load: Quantity, scene: &Scene) -> Vec<Quantity> {
     let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
-    let component = |axis: &str| Quantity::new(translated(&format!("u_{axis} of {probe}")), "m");
-    vec![Quantity::new(translated(&load.name), load.unit), component("x"), component("y")]
+    let x = said(&sentence!("u_x of %{probe}", probe));
+    let y = said(&sentence!("u_y of %{probe}", probe));
+    vec![load, Quantity::new(x, "m"), Quantity::new(y, "m")]
 }
 
 /// Returns the heading of a column of displacements.
@@ -132,12 +134,7 @@ fn path(path: &LoadPath, scene: &Scene, shown: CurvePlot) -> Figure {
         CurvePlot::X => Ordinate::Component(0, 0),
         CurvePlot::Y => Ordinate::Component(0, 1),
     };
-    let mut figure = path_chart::figure(path, scene, &ordinate);
-    figure.title = curve_title(scene);
-    let names = figure.quantities.iter_mut().map(|q| &mut q.name);
-    let names = names.chain(figure.series.iter_mut().map(|s| &mut s.name));
-    names.chain(figure.rows.iter_mut().map(|r| &mut r.name)).for_each(|name| *name = translated(name));
-    figure
+    Figure { title: curve_title(scene), ..path_chart::figure(path, scene, &ordinate, &|name| said(name)) }
 }
 
 fn curve_title(scene: &Scene) -> String {
@@ -145,7 +142,7 @@ fn curve_title(scene: &Scene) -> String {
 }
 
 fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
-    let LoadAxis { quantity, full } = LoadAxis::of(scene);
+    let LoadAxis { name, unit, full } = LoadAxis::of(scene);
     let linear = Ink::Method(MethodKind::Linear);
     let line = |value: fn(&Sample) -> Vector2<f64>| -> Vec<FigurePoint> {
         let samples = curve.samples.iter();
@@ -184,7 +181,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         error: String::new(),
         is_bad: series.mark == Mark::Cross,
     };
-    let load = engineering(three_digits(full), quantity.unit);
+    let load = engineering(three_digits(full), unit);
     Figure {
         title: curve_title(scene),
         axes: axes(shown),
@@ -193,7 +190,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         series: all,
         head: [fill!("at %{load}", load = load), displacement_text(scene), String::new()],
         error_name: String::new(),
-        quantities: quantities(quantity, scene),
+        quantities: quantities(Quantity::new(said(&name), unit), scene),
     }
 }
 

@@ -15,6 +15,7 @@ use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{self, Analysis, MethodKind, Scene, SolverSettings, Source, registry};
+use crate::sentence::Sentence;
 use crate::simulation::Simulation;
 use crate::study::Study;
 
@@ -138,7 +139,7 @@ pub(crate) struct Shown<'a> {
     /// Speed–accuracy study, if there is one.
     pub study: Option<&'a Study>,
     /// Fraction done and current measurement, while a study is in progress.
-    pub progress: Option<(f32, &'a str)>,
+    pub progress: Option<(f32, &'a Sentence)>,
 }
 
 /// View that a card paints over.

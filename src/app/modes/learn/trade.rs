@@ -4,7 +4,7 @@ use egui::{Button, Grid, ProgressBar, RichText, Ui};
 
 use super::{Learn, Shown};
 use crate::app::action::Action;
-use crate::app::language::{fill, percent, tr, translated};
+use crate::app::language::{fill, percent, said, tr};
 use crate::app::modes::budget::setting_text;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
                 actions.push(Action::Measure(false));
             }
             ui.add(ProgressBar::new(fraction).desired_width(110.0).show_percentage());
-            ui.add(egui::Label::new(RichText::new(translated(now)).size(SMALL)).truncate());
+            ui.add(egui::Label::new(RichText::new(said(now)).size(SMALL)).truncate());
         } else {
             let tip = "Measure error and time of every element and method on meshes up to 40 cells, on this machine";
             if ui.add(Button::new(tr("Measure"))).on_hover_text(tr(tip)).clicked() {
@@ -70,10 +70,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         }
     });
     let text = match shown.study {
-        Some(study) => fill!(
-            "Error against %{reference}. Grey: the smallest error measured.",
-            reference = translated(&study.reference.to_string())
-        ),
+        Some(study) => {
+            fill!("Error against %{reference}. Grey: the smallest error measured.", reference = said(&study.reference))
+        }
         None => tr("Nothing measured yet: it takes some seconds.").to_owned(),
     };
     ui.label(RichText::new(text).size(SMALL).color(palette.secondary));

@@ -10,7 +10,7 @@ use egui_wgpu::ScreenDescriptor;
 
 use super::RecordError;
 use super::film::{Film, MovieFormat};
-use crate::app::language::{self, Language, count, fill, tr, translated};
+use crate::app::language::{self, Language, count, fill, said, tr};
 use crate::app::offscreen::painter::Stage;
 use crate::app::task::thread::{Task, Update};
 use crate::picture::Picture;
@@ -260,12 +260,12 @@ fn encode(path: &Path, pictures: &Receiver<(u64, Picture)>, end: &AtomicU64) -> 
     match write(path, pictures, end) {
         Ok(0) => tr("Nothing was recorded").to_owned(),
         Ok(written) => fill!("Saved %{file}, %{pictures}", file = path.display(), pictures = count(written, "picture")),
-        Err((0, error)) => fill!("No recording: %{reason}", reason = translated(&error.to_string())),
+        Err((0, error)) => fill!("No recording: %{reason}", reason = said(&error)),
         Err((written, error)) => fill!(
             "Saved %{file}, %{pictures}; then: %{reason}",
             file = path.display(),
             pictures = count(written, "picture"),
-            reason = translated(&error.to_string())
+            reason = said(&error)
         ),
     }
 }

@@ -17,6 +17,7 @@ use crate::app::{AppError, ThemeChoice};
 use crate::picture::Picture;
 use crate::render::{Gpu, RenderError};
 use crate::scene::{Analysis, Scene, Source};
+use crate::sentence::Sentence;
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::stress::RecoveryScratch;
@@ -81,6 +82,16 @@ pub enum RecordError {
         /// The reason.
         reason: String,
     },
+}
+
+impl From<&RecordError> for Sentence {
+    fn from(error: &RecordError) -> Self {
+        match error {
+            RecordError::Simulation { scene, error } => Self::located(scene.as_str(), error),
+            RecordError::Write { path, reason } => Self::located(path.display().to_string(), reason.as_str()),
+            other => other.to_string().into(),
+        }
+    }
 }
 
 /// Options of a recording.

@@ -12,6 +12,7 @@ use crate::app::platform::web::browser;
 use crate::mesh::Mesh;
 use crate::model::Invalid;
 use crate::scene::{self, Scene, SceneError, Source};
+use crate::sentence::sentence;
 
 /// Files received from the user.
 #[derive(Default)]
@@ -40,7 +41,8 @@ pub(crate) fn open(source: &Source) -> Result<Scene, SceneError> {
     let name = Path::new(&mesh.file).file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let Some(read) = text(name) else {
         // The meshes of the built-in scenes are part of the library.
-        let message = format!("{file}: expected the mesh file together with its scene file", file = mesh.file);
+        let file = mesh.file.as_str();
+        let message = sentence!("%{file}: expected the mesh file together with its scene file", file);
         let invalid = Invalid::new("mesh.file", message);
         let missing = SceneError::Invalid { file: Some(source.name.clone()), line: None, invalid };
         return Scene::from_toml_in(&toml, Path::new("")).map_err(|_| missing);
