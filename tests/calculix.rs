@@ -37,7 +37,8 @@ fn solved_like(row: &Row) -> Simulation {
 }
 
 /// Linear theory agrees to the six digits that CalculiX prints, except in plane stress, where CalculiX expands a
-/// triangle to a thin wedge with shear across its thickness. With large rotations, CalculiX's Saint-Venant-Kirchhoff law differs to the order of the strain.
+/// triangle to a thin wedge with shear across its thickness. With large rotations, CalculiX's Saint-Venant-Kirchhoff
+/// law differs to the order of the strain.
 #[test]
 fn displacements_are_those_of_calculix() {
     let rows = rows();

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::Invalid;
-use super::limits::{self, Limit};
+use super::{check, limits};
 
 /// Time integration settings of a dynamic scene.
 ///
@@ -90,10 +90,6 @@ pub struct Pulse {
     pub start: f64,
     /// Duration, s.
     pub duration: f64,
-}
-
-fn check(key: &str, limit: Limit, value: f64) -> Result<(), Invalid> {
-    limit.check(value).map_err(|e| Invalid::new(key, &e))
 }
 
 impl DynamicsSettings {

@@ -346,6 +346,7 @@ impl Scene {
     }
 }
 
+/// Checks a value, and names its key if it is out of range.
 fn check(key: &str, limit: limits::Limit, value: f64) -> Result<(), Invalid> {
     limit.check(value).map_err(|e| Invalid::new(key, &e))
 }

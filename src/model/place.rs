@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::dynamics::Pulse;
 use super::error::Invalid;
-use super::{is_zero, limits};
+use super::{check, is_zero, limits};
 use crate::format::number;
 use crate::sentence::Sentence;
 
@@ -91,9 +91,7 @@ impl Place {
     pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
         match self {
             Self::Edge(_) => Ok(()),
-            Self::At(at) => at
-                .iter()
-                .try_for_each(|&v| limits::COORDINATE.check(v).map_err(|e| Invalid::new(format!("{key}.at"), &e))),
+            Self::At(at) => at.iter().try_for_each(|&v| check(&format!("{key}.at"), limits::COORDINATE, v)),
         }
     }
 }
@@ -259,9 +257,7 @@ impl Load {
         if let Some(pulse) = self.pulse() {
             pulse.validate(key)?;
         }
-        let check = |name: &str, limit: limits::Limit, value: f64| {
-            limit.check(value).map_err(|e| Invalid::new(format!("{key}.{name}"), &e))
-        };
+        let check = |name: &str, limit, value| check(&format!("{key}.{name}"), limit, value);
         match self {
             Self::Force { place, force, .. } => {
                 place.validate(key)?;

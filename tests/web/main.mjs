@@ -45,6 +45,11 @@ function near(actual, expected, tolerance, message) {
   if (!(Math.abs(actual - expected) <= tolerance * scale)) throw new Error(`${message}: expected ${expected}, got ${actual}`);
 }
 
+// Compares the displacements of all probes.
+function nearProbes(actual, expected, tolerance) {
+  expected.forEach((probe, i) => [0, 1].forEach((k) => near(actual[i].u[k], probe.u[k], tolerance, `${probe.name}, component ${k}`)));
+}
+
 // Opens the page, and calls `test` with helpers; console errors fail it.
 async function onPage(browser, query, test, options = {}) {
   const context = await browser.newContext({ viewport: SIZE, permissions: ["clipboard-read", "clipboard-write"], ...options });
@@ -126,7 +131,7 @@ const TESTS = {
     await onPage(browser, "?scene=article&lang=en", async ({ until }) => {
       const now = await until(settled, "waited for convergence");
       equal(now.unknowns, expected.dofs, "unknowns");
-      expected.probes.forEach((probe, i) => [0, 1].forEach((k) => near(now.probes[i].u[k], probe.u[k], 1e-9, `${probe.name}, component ${k}`)));
+      nearProbes(now.probes, expected.probes, 1e-9);
     });
   },
 
@@ -160,7 +165,7 @@ const TESTS = {
       }
       const expected = native("solve", "swing", "--json", "--set", `dynamics.duration=${now.motion.time}`);
       equal(now.motion.steps, expected.steps, "time steps");
-      expected.probes.forEach((probe, i) => [0, 1].forEach((k) => near(now.probes[i].u[k], probe.u[k], 1e-6, `${probe.name}, component ${k}`)));
+      nearProbes(now.probes, expected.probes, 1e-6);
       if (Math.abs(now.motion.energy_drift - expected.energy_drift) > 1e-9) {
         throw new Error(`energy drift: expected ${expected.energy_drift}, got ${now.motion.energy_drift}`);
       }
@@ -202,7 +207,7 @@ const TESTS = {
     const agrees = (now, expected) => {
       equal(now.unknowns, expected.dofs, "unknowns");
       equal(now.iterations, expected.iterations, "iterations");
-      expected.probes.forEach((probe, i) => [0, 1].forEach((k) => near(now.probes[i].u[k], probe.u[k], 1e-9, `${probe.name}, component ${k}`)));
+      nearProbes(now.probes, expected.probes, 1e-9);
     };
     const link = `?lang=en#scene=${deflateRawSync(toml).toString("base64url")}`;
     await onPage(browser, link, async ({ page, until, still }) => {
@@ -221,7 +226,7 @@ const TESTS = {
       console.log(`    ${after.unknowns} unknowns: the page stood still for at most ${longest.toFixed(0)} ms`);
       writeFileSync(file, toml.replace(/force = .*/, `force = [${after.loads[0].force}]`));
       const moved = native("solve", file, "--json");
-      expected.probes.forEach((probe, i) => [0, 1].forEach((k) => near(after.probes[i].u[k], moved.probes[i].u[k], 1e-6, `${probe.name}, component ${k}`)));
+      nearProbes(after.probes, moved.probes, 1e-6);
       // A solve that is cancelled by an undo ends with the state before it.
       await page.keyboard.press("Control+z");
       await until((now) => settled(now) && JSON.stringify(now.loads) === JSON.stringify(before.loads) && now.iterations > 0, "waited for the undo");
@@ -272,7 +277,7 @@ const TESTS = {
       await page.waitForFunction(() => document.body.className === "ready", null, { timeout: PATIENCE });
       const there = await until(settled, "waited for the linked scene");
       equal(JSON.stringify(there.loads), JSON.stringify(edited.loads), "loads");
-      there.probes.forEach((probe, i) => [0, 1].forEach((k) => near(probe.u[k], edited.probes[i].u[k], 1e-6, `${probe.name}, component ${k}`)));
+      nearProbes(there.probes, edited.probes, 1e-6);
     });
   },
 
@@ -328,7 +333,7 @@ const TESTS = {
       await drop([["own.msh", mesh], ["own.toml", toml]]);
       const now = await until((now) => now.title.includes("own.toml") && settled(now), "waited for the dropped scene");
       equal(now.unknowns, expected.dofs, "unknowns");
-      expected.probes.forEach((probe, i) => [0, 1].forEach((k) => near(now.probes[i].u[k], probe.u[k], 1e-9, `${probe.name}, component ${k}`)));
+      nearProbes(now.probes, expected.probes, 1e-9);
     });
   },
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::task::lazy::{Fact, Lazy, Watch};
+use crate::app::task::lazy::{Lazy, Watch, facts};
 use crate::app::task::sent_scene::SentScene;
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
@@ -19,25 +19,6 @@ pub(crate) enum Curve {
     Beam(Box<(LoadCurve, SentScene)>),
     /// Load path of any other scene at rest, and its scene.
     Path(Box<(LoadPath, SentScene)>),
-}
-
-/// Facts: the kinds of results of a scene.
-macro_rules! facts {
-    ($($(#[$about:meta])* $kind:ident = $name:literal: $value:ty, $compute:expr;)*) => {$(
-        $(#[$about])*
-        #[derive(Debug)]
-        pub(crate) struct $kind;
-
-        impl Fact for $kind {
-            const NAME: &'static str = $name;
-            type Value = $value;
-
-            fn compute(scene: &Scene, watch: Watch<'_>) -> Option<$value> {
-                let compute: fn(&Scene, Watch<'_>) -> Option<$value> = $compute;
-                compute(scene, watch)
-            }
-        }
-    )*};
 }
 
 facts! {

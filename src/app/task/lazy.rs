@@ -23,6 +23,29 @@ pub(crate) trait Fact: Debug + 'static {
     fn compute(scene: &Scene, watch: Watch<'_>) -> Option<Self::Value>;
 }
 
+/// Defines kinds of values, each by its name, its type and the function that computes it.
+macro_rules! facts {
+    ($($(#[$about:meta])* $kind:ident = $name:literal: $value:ty, $compute:expr;)*) => {$(
+        $(#[$about])*
+        #[derive(Debug)]
+        pub(crate) struct $kind;
+
+        impl $crate::app::task::lazy::Fact for $kind {
+            const NAME: &'static str = $name;
+            type Value = $value;
+
+            fn compute(
+                scene: &$crate::scene::Scene,
+                watch: $crate::app::task::lazy::Watch<'_>,
+            ) -> Option<$value> {
+                let compute: fn(&$crate::scene::Scene, $crate::app::task::lazy::Watch<'_>) -> Option<$value> = $compute;
+                compute(scene, watch)
+            }
+        }
+    )*};
+}
+pub(crate) use facts;
+
 /// Request for a value.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
@@ -139,16 +162,8 @@ impl<F: Fact> Lazy<F> {
 mod tests {
     use super::*;
 
-    #[derive(Debug)]
-    struct Length;
-
-    impl Fact for Length {
-        const NAME: &'static str = "length";
-        type Value = f64;
-
-        fn compute(scene: &Scene, _: Watch<'_>) -> Option<f64> {
-            scene.beam.as_ref().map(|beam| beam.length)
-        }
+    facts! {
+        Length = "length": f64, |scene, _| scene.beam.as_ref().map(|beam| beam.length);
     }
 
     #[test]

@@ -284,11 +284,6 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     });
 }
 
-/// Returns the name of a measured setting.
-pub(crate) fn setting_text(setting: &Setting) -> String {
-    said(setting)
-}
-
 /// Formats the time of a solve or of a frame with three digits.
 fn milliseconds(m: &Choice) -> String {
     engineering(three_digits(1e-3 * m.milliseconds()), "s")

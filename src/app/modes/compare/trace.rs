@@ -11,7 +11,7 @@ use crate::app::language::{fill, percent, tr};
 use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::modes::explore::load_curve::{axes, displacement_text, pair, quantities, usual};
 use crate::app::session::facts::without_settings;
-use crate::app::task::lazy::{Fact, Lazy, Watch};
+use crate::app::task::lazy::{Lazy, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::CurvePlot;
 use crate::exact_beam::error_percent;
@@ -129,17 +129,9 @@ impl Default for Trace {
     }
 }
 
-/// Curve of the exact beam.
-#[derive(Debug)]
-pub(crate) struct ExactLine;
-
-impl Fact for ExactLine {
-    const NAME: &'static str = "exact-line";
-    type Value = Vec<Exact>;
-
-    fn compute(scene: &Scene, _: Watch<'_>) -> Option<Vec<Exact>> {
-        exact_line(scene)
-    }
+facts! {
+    /// Curve of the exact beam.
+    ExactLine = "exact-line": Vec<Exact>, |scene, _| exact_line(scene);
 }
 
 /// Returns the displacement of the first probe of the exact beam over the traced load.

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::readout::Readout;
-use crate::app::task::lazy::{Fact, Lazy, Watch};
+use crate::app::task::lazy::{Fact, Lazy, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Mode, Toggle};
 use crate::app::widgets::number_field::Messages;
@@ -86,30 +86,11 @@ impl<F: Fact> Known<F> {
     }
 }
 
-/// Spectral radius ρ of the warped iteration at the equilibrium.
-#[derive(Debug)]
-pub(crate) struct Rho;
-
-impl Fact for Rho {
-    const NAME: &'static str = "rho";
-    type Value = f64;
-
-    fn compute(scene: &Scene, _: Watch<'_>) -> Option<f64> {
-        fixed_point_rho(scene)
-    }
-}
-
-/// Errors of all elements.
-#[derive(Debug)]
-pub(crate) struct ElementErrors;
-
-impl Fact for ElementErrors {
-    const NAME: &'static str = "element-errors";
-    type Value = Vec<ElementError>;
-
-    fn compute(scene: &Scene, _: Watch<'_>) -> Option<Vec<ElementError>> {
-        locking::errors(scene)
-    }
+facts! {
+    /// Spectral radius ρ of the warped iteration at the equilibrium.
+    Rho = "rho": f64, |scene, _| fixed_point_rho(scene);
+    /// Errors of all elements.
+    ElementErrors = "element-errors": Vec<ElementError>, |scene, _| locking::errors(scene);
 }
 
 /// State of the mode.

@@ -5,7 +5,6 @@ use egui::{Button, Grid, ProgressBar, RichText, Ui};
 use super::{Learn, Shown};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, said, tr};
-use crate::app::modes::budget::setting_text;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, two_digits};
@@ -88,7 +87,7 @@ fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, bool)>) {
     let color = if *good { palette.text } else { palette.secondary };
     let tip = fill!(
         "%{setting}: %{time}, error at most %{error}",
-        setting = setting_text(&m.setting),
+        setting = said(&m.setting),
         time = time,
         error = percent(m.error.bound())
     );

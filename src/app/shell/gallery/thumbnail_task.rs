@@ -19,21 +19,17 @@ impl Work for ThumbnailWork {
     type Output = ();
 
     fn run(self, reporter: &Reporter<Made, ()>) {
-        make(reporter);
-    }
-}
-
-fn make(reporter: &Reporter<Made, ()>) {
-    for (number, built_in) in registry::BUILT_IN.iter().enumerate() {
-        let scene = scene::open(&Source { name: built_in.id.into(), assignments: Vec::new() });
-        let thumbnail = scene.ok().and_then(|scene| Thumbnail::of(&scene, || reporter.is_cancelled()));
-        if reporter.is_cancelled() {
-            return;
-        }
-        if let Some(thumbnail) = thumbnail
-            && reporter.report((number, thumbnail)).is_break()
-        {
-            return;
+        for (number, built_in) in registry::BUILT_IN.iter().enumerate() {
+            let scene = scene::open(&Source { name: built_in.id.into(), assignments: Vec::new() });
+            let thumbnail = scene.ok().and_then(|scene| Thumbnail::of(&scene, || reporter.is_cancelled()));
+            if reporter.is_cancelled() {
+                return;
+            }
+            if let Some(thumbnail) = thumbnail
+                && reporter.report((number, thumbnail)).is_break()
+            {
+                return;
+            }
         }
     }
 }
