@@ -26,7 +26,7 @@ pub enum Ordinate {
 /// Function that renders a name.
 type Words<'a> = &'a dyn Fn(&Sentence) -> String;
 
-/// Draws the path over the way of the support that moves, or over the load; `words` renders its names.
+/// Draws the path over the displacement or angle of the moving support, or over the load; `words` renders its names.
 #[must_use]
 pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, words: Words<'_>) -> Figure {
     let probe = match ordinate {

@@ -274,7 +274,10 @@ impl Study {
         let MeshEnds { system, exact, linear, .. } = ends;
         let mut measurements = Vec::new();
         for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
-            say(number as f64 / METHODS.len() as f64, &format!("{text}, {}", method.id()).into())?;
+            say(
+                number as f64 / METHODS.len() as f64,
+                &sentence!("%{mesh}, %{method}", mesh = &text, method = method.id()),
+            )?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` decides itself how many iterations it needs.
             let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };

@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(arrow(0.0).moment_of(0.0), 0.0);
     }
 
-    /// A drag by one pixel along the arc changes the moment by 1 to 2 % of that with which the scene opened.
+    /// A drag by one pixel along the arc changes the moment by 1 to 2 % of the moment at which the scene was opened.
     #[test]
     fn a_pixel_is_one_or_two_percent_of_the_moment() {
         let arrow = arrow(1e4);

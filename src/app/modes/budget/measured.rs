@@ -1,4 +1,4 @@
-//! Measurements for the mode Budget: the study of a body at rest, or that of a motion.
+//! Measurements for the mode Budget: the study of a body at rest, or the study of a motion.
 
 use crate::app::action::Action;
 use egui::Color32;
