@@ -41,7 +41,7 @@ fn stages(c: &mut Criterion) {
         let mut state = system.state_of(&bent).unwrap();
         let mut forces = Forces::new(bent.len());
         let mut matrix = Matrix::new(system.pattern());
-        let mut factor = Factor::new(system.symbolic()).unwrap();
+        let mut factor = Factor::new(system.symbolic().unwrap()).unwrap();
 
         c.bench_function(&format!("rotate/{dofs}"), |b| {
             b.iter(|| system.follow(black_box(&mut state), Kinematics::Corotated));
@@ -141,7 +141,7 @@ fn sweeps(_: &mut Criterion) {
             };
             median((0..repetitions).map(|_| time(&mut sweep)).collect()).as_secs_f64() * 1e9 / count
         });
-        let mut factor = Factor::new(system.symbolic()).unwrap();
+        let mut factor = Factor::new(system.symbolic().unwrap()).unwrap();
         let mut free = vec![0.0; dofs];
         let ratio =
             [(MethodKind::Warped, Tangent::WARPED), (MethodKind::Newton, Tangent::EXACT)].map(|(method, tangent)| {

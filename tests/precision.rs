@@ -47,7 +47,7 @@ fn plain_floor(problem: &Problem) -> f64 {
     let system = problem.system();
     let mut state = system.at_rest();
     let (mut forces, mut matrix) = (Forces::new(system.mesh().nodes().len()), Matrix::new(system.pattern()));
-    let mut factor = Factor::new(system.symbolic()).unwrap();
+    let mut factor = Factor::new(system.symbolic().unwrap()).unwrap();
     problem.linearize(&state, &mut forces, Some((Tangent::WARPED, &mut matrix)));
     factor.factorize(matrix.values()).unwrap();
     let mut free = vec![0.0; system.dofs()];

@@ -13,7 +13,7 @@ use crate::mesh::{Mesh, Recovery};
 use crate::rotation::Rotation;
 use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
 use crate::sentence::{Sentence, sentence};
-use crate::solver::Symbolic;
+use crate::solver::{SolverError, Symbolic};
 use crate::state::{State, StateError};
 
 /// Reason why a scene has no equations.
@@ -105,8 +105,9 @@ pub struct System {
     /// Indices of edges whose nodes are coupled, for moments.
     coupled: Vec<usize>,
     pattern: Pattern,
-    slots: Vec<u32>,
-    symbolic: Symbolic,
+    /// Computed on first use, as is the symbolic factorization.
+    slots: OnceLock<Vec<u32>>,
+    symbolic: OnceLock<Symbolic>,
 }
 
 impl System {
@@ -115,6 +116,14 @@ impl System {
     /// # Errors
     /// The invalid key and the expected value, or that the mesh is too large.
     pub fn new(scene: &Scene) -> Result<Self, SystemError> {
+        Self::for_display(scene)?.analysed()
+    }
+
+    /// Meshes a scene as [`Self::new`]; the elimination order, which takes most of the time, is computed on first use.
+    ///
+    /// # Errors
+    /// Same errors as [`Self::new`].
+    pub fn for_display(scene: &Scene) -> Result<Self, SystemError> {
         scene.validate()?;
         let origin = match (&scene.beam, &scene.mesh) {
             (Some(beam), _) => Origin::Beam(beam.clone()),
@@ -151,7 +160,7 @@ impl System {
     /// Same errors as [`Self::new`].
     pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, SystemError> {
         scene.validate_all_but_geometry()?;
-        Self::of_body(Arc::new(Body::new(Origin::Given, mesh)), scene)
+        Self::of_body(Arc::new(Body::new(Origin::Given, mesh)), scene)?.analysed()
     }
 
     /// Returns the system of another scene: this one if it fits, one that shares its mesh if only supports differ or a
@@ -179,7 +188,7 @@ impl System {
             check_held(self.hold, self.mesh(), scene.analysis)?;
             return Ok(self.clone());
         }
-        Ok(Arc::new(Self::of_body(self.body.clone(), scene)?))
+        Ok(Arc::new(Self::of_body(self.body.clone(), scene)?.analysed()?))
     }
 
     fn of_body(body: Arc<Body>, scene: &Scene) -> Result<Self, SystemError> {
@@ -191,10 +200,14 @@ impl System {
         let groups: Vec<Vec<u32>> =
             coupled.iter().map(|&edge| body.edges[edge].weights().iter().map(|&(node, _)| node).collect()).collect();
         let pattern = Pattern::new(&body.mesh, &fixed, &groups);
-        let slots = body.mesh.elements().flat_map(|nodes| pattern.block_slots(nodes)).collect();
-        let symbolic = Symbolic::new(pattern.column_starts(), pattern.row_indices())
-            .map_err(|_| SystemError::TooLarge { unknowns: pattern.dofs() })?;
-        Ok(Self { body, supports: scene.supports.clone(), hold, coupled, pattern, slots, symbolic })
+        let supports = scene.supports.clone();
+        Ok(Self { body, supports, hold, coupled, pattern, slots: OnceLock::new(), symbolic: OnceLock::new() })
+    }
+
+    /// Computes the symbolic factorization.
+    fn analysed(self) -> Result<Self, SystemError> {
+        self.symbolic().map_err(|_| SystemError::TooLarge { unknowns: self.pattern.dofs() })?;
+        Ok(self)
     }
 
     fn moment_edges(&self, scene: &Scene) -> Vec<usize> {
@@ -222,13 +235,19 @@ impl System {
     /// Returns the indices of every element's matrix entries; see [`crate::element::MatrixSum`].
     #[must_use]
     pub fn slots(&self) -> &[u32] {
-        &self.slots
+        self.slots.get_or_init(|| self.mesh().elements().flat_map(|nodes| self.pattern.block_slots(nodes)).collect())
     }
 
     /// Returns the symbolic factorization, with the elimination order.
-    #[must_use]
-    pub fn symbolic(&self) -> &Symbolic {
-        &self.symbolic
+    ///
+    /// # Errors
+    /// [`SolverError::TooLarge`].
+    pub fn symbolic(&self) -> Result<&Symbolic, SolverError> {
+        if let Some(symbolic) = self.symbolic.get() {
+            return Ok(symbolic);
+        }
+        let symbolic = Symbolic::new(self.pattern.column_starts(), self.pattern.row_indices())?;
+        Ok(self.symbolic.get_or_init(|| symbolic))
     }
 
     /// Returns the named edges, by name.

@@ -79,7 +79,7 @@ impl Corrector {
     pub fn new(system: &System) -> Result<Self, SolverError> {
         Ok(Self {
             matrix: Matrix::new(system.pattern()),
-            factor: Factor::new(system.symbolic())?,
+            factor: Factor::new(system.symbolic()?)?,
             free: vec![0.0; system.dofs()],
             constant: None,
             kept: Kept::default(),

@@ -67,7 +67,7 @@ impl Scratch {
             before: rest.displacement.to_vec(),
             forces: Forces::new(rest.displacement.len()),
             matrix: Matrix::new(system.pattern()),
-            factor: Factor::new(system.symbolic())?,
+            factor: Factor::new(system.symbolic()?)?,
             seen: rest.clone(),
             increment: rest,
         })

@@ -29,7 +29,7 @@ fn stiffness(problem: &Problem) -> Matrix {
 #[must_use]
 pub fn lowest_frequency(problem: &Problem, mass: &Mass) -> Option<f64> {
     let system = problem.system();
-    let mut factor = Factor::new(system.symbolic()).ok()?;
+    let mut factor = Factor::new(system.symbolic().ok()?).ok()?;
     factor.factorize(stiffness(problem).values()).ok()?;
     let mut inertia = Matrix::new(system.pattern());
     mass.add_to(1.0, &mut inertia);

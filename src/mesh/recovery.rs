@@ -1,6 +1,6 @@
 //! Recovery of nodal values from values at quadrature points.
 
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 use super::Mesh;
 
@@ -57,7 +57,7 @@ impl Recovery {
             patches.fit(corner, &mut fit);
             for &(node, share) in shares {
                 let weights = fit.weights(mesh.node(node));
-                rows[node as usize].extend(fit.points.iter().zip(&weights).map(|(&(q, _), w)| (q, share * w)));
+                rows[node as usize].extend(fit.points.iter().zip(weights).map(|(&(q, _), w)| (q, share * w)));
             }
         }
         let mut result = Self { starts: vec![0], entries: Vec::new() };
@@ -106,20 +106,12 @@ struct Fit {
     centre: Vector2<f64>,
     /// Scales positions relative to the centre to unit covariance.
     scale: Matrix2<f64>,
-    degree: usize,
-    /// Polynomial coefficients, terms × points.
-    coefficients: DMatrix<f64>,
+    /// Polynomial coefficients that a unit value at each point contributes.
+    coefficients: Vec<[f64; MOST_TERMS]>,
 }
 
-/// Evaluates the terms of a complete polynomial.
-fn terms(degree: usize, x: Vector2<f64>) -> Vec<f64> {
-    let mut terms = Vec::with_capacity((degree + 1) * (degree + 2) / 2);
-    for total in 0..=degree {
-        terms.extend((0..=total).map(|j| x.x.powi((total - j) as i32) * x.y.powi(j as i32)));
-    }
-    terms
-}
-
+/// Number of terms of a complete polynomial of degree 2, the highest that is fitted.
+const MOST_TERMS: usize = 6;
 /// Smallest ratio of points to polynomial terms in a patch inside the body.
 const ENOUGH: f64 = 1.3;
 /// The same for corners on the outline, where all points lie to one side.
@@ -157,7 +149,7 @@ impl<'a> Patches<'a> {
         let shapes: Vec<Vec<f64>> = entry.points.iter().map(|p| (entry.shape)(p.at)).collect();
         let place = |own: &[u32], shape: &[f64]| own.iter().zip(shape).map(|(&n, w)| mesh.node(n) * *w).sum();
         let points = mesh.elements().flat_map(|own| shapes.iter().map(move |shape| place(own, shape))).collect();
-        Self { mesh, around, starts, outer, points, degree: entry.degree() }
+        Self { mesh, around, starts, outer, points, degree: entry.degree().min(2) }
     }
 
     fn around(&self, node: u32) -> &[u32] {
@@ -201,14 +193,11 @@ impl<'a> Patches<'a> {
 
     /// Computes the least squares fit of a degree; returns `false` if the points do not determine it.
     fn solve(&self, about: Vector2<f64>, patch: &[u32], degree: usize, fit: &mut Fit) -> bool {
-        /// Smallest accepted pivot of the scaled normal equations, whose diagonal is about 1.
-        const DETERMINED: f64 = 1e-6;
         let per_element = self.mesh.entry().points.len() as u32;
         fit.points.clear();
         let numbers = patch.iter().flat_map(|&e| e * per_element..(e + 1) * per_element);
         fit.points.extend(numbers.map(|q| (q, self.points[q as usize])));
         let count = fit.points.len() as f64;
-        fit.degree = degree;
         fit.centre = fit.points.iter().map(|(_, x)| x).sum::<Vector2<f64>>() / count;
         let mut spread = Matrix2::zeros();
         for (_, x) in &fit.points {
@@ -221,30 +210,50 @@ impl<'a> Patches<'a> {
             let Some(scale) = spread.cholesky().and_then(|c| c.l().try_inverse()) else { return false };
             scale
         };
-        let rows: Vec<DVector<f64>> =
-            fit.points.iter().map(|(_, x)| DVector::from_vec(terms(degree, fit.scale * (x - fit.centre)))).collect();
-        let basis = DMatrix::from_columns(&rows);
-        let mut weighted = basis.clone();
-        let mut total = 0.0;
-        for (mut column, (_, x)) in weighted.column_iter_mut().zip(&fit.points) {
-            let weight = (-(fit.scale * (x - about)).norm_squared() / (REACH * REACH)).exp();
-            total += weight;
-            column *= weight;
+        match degree {
+            0 => fit.solve::<1>(about),
+            1 => fit.solve::<3>(about),
+            _ => fit.solve::<6>(about),
         }
-        let normal = &weighted * basis.transpose() / total;
-        let Some(factor) = normal.cholesky() else { return false };
-        if factor.l_dirty().diagonal().min() < DETERMINED {
-            return false;
-        }
-        fit.coefficients = factor.solve(&weighted) / total;
-        true
     }
 }
 
 impl Fit {
+    /// Computes the coefficients of the first `T` terms; returns `false` if the points do not determine them.
+    fn solve<const T: usize>(&mut self, about: Vector2<f64>) -> bool {
+        /// Smallest accepted pivot of the scaled normal equations, whose diagonal is about 1.
+        const DETERMINED: f64 = 1e-6;
+        let (mut normal, mut total) = (SMatrix::<f64, T, T>::zeros(), 0.0);
+        self.coefficients.clear();
+        for (_, x) in &self.points {
+            let basis = SVector::<f64, T>::from_fn(|term, _| self.terms(*x)[term]);
+            let weight = (-(self.scale * (x - about)).norm_squared() / (REACH * REACH)).exp();
+            normal += weight * basis * basis.transpose();
+            total += weight;
+            let mut coefficients = [0.0; MOST_TERMS];
+            coefficients.iter_mut().zip(&basis).for_each(|(own, term)| *own = weight * term);
+            self.coefficients.push(coefficients);
+        }
+        let Some(factor) = (normal / total).cholesky() else { return false };
+        if factor.l_dirty().diagonal().min() < DETERMINED {
+            return false;
+        }
+        for coefficients in &mut self.coefficients {
+            let solved = factor.solve(&SVector::<f64, T>::from_fn(|term, _| coefficients[term])) / total;
+            coefficients.iter_mut().zip(&solved).for_each(|(own, solved)| *own = *solved);
+        }
+        true
+    }
+
     /// Returns the weights of the points' values in the polynomial's value at a position.
-    fn weights(&self, at: Vector2<f64>) -> Vec<f64> {
-        let terms = DVector::from_vec(terms(self.degree, self.scale * (at - self.centre)));
-        self.coefficients.tr_mul(&terms).as_slice().to_vec()
+    fn weights(&self, at: Vector2<f64>) -> impl Iterator<Item = f64> {
+        let terms = self.terms(at);
+        self.coefficients.iter().map(move |own| own.iter().zip(&terms).map(|(a, b)| a * b).sum())
+    }
+
+    /// Evaluates the terms of a complete polynomial of degree 2 at a position.
+    fn terms(&self, at: Vector2<f64>) -> [f64; MOST_TERMS] {
+        let x = self.scale * (at - self.centre);
+        [1.0, x.x, x.y, x.x * x.x, x.x * x.y, x.y * x.y]
     }
 }

@@ -56,7 +56,7 @@ impl Workspace {
         Ok(Self {
             matrix: Matrix::new(system.pattern()),
             tangent: None,
-            factor: Factor::new(system.symbolic())?,
+            factor: Factor::new(system.symbolic()?)?,
             free: vec![0.0; system.dofs()],
             nodal: vec![Vector2::zeros(); system.mesh().nodes().len()],
             trial: system.at_rest(),

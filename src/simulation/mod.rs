@@ -292,7 +292,7 @@ impl Simulation {
         }
     }
 
-    /// Returns a simulation with what a simulation of the same scene has found elsewhere. Nothing else is computed, and work
+    /// Returns a simulation with the state and the results that another simulation of the same scene has computed. Work
     /// memory is allocated if the search is continued.
     ///
     /// # Errors
@@ -847,7 +847,7 @@ fn compliance(problem: &Problem, state: &State, point: MaterialPoint) -> Option<
     let mut matrix = Matrix::new(system.pattern());
     let mut forces = Forces::new(state.displacement.len());
     problem.linearize(state, &mut forces, Some((Tangent::WARPED, &mut matrix)));
-    let mut factor = Factor::new(system.symbolic()).ok()?;
+    let mut factor = Factor::new(system.symbolic().ok()?).ok()?;
     factor.factorize(matrix.values()).ok()?;
     let mut compliance = Matrix2::zeros();
     let (mut nodal, mut free) = (vec![Vector2::zeros(); state.displacement.len()], vec![0.0; system.dofs()]);

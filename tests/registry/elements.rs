@@ -784,7 +784,7 @@ fn energy_norm_error(kind: ElementKind, n: u32) -> f64 {
     let system = problem.system();
     let mut matrix = Matrix::new(system.pattern());
     problem.linearize(&system.at_rest(), &mut Forces::new(force.len()), Some((Tangent::WARPED, &mut matrix)));
-    let mut factor = Factor::new(system.symbolic()).unwrap();
+    let mut factor = Factor::new(system.symbolic().unwrap()).unwrap();
     factor.factorize(matrix.values()).unwrap();
     let mut free = restrict(&problem, &force).as_slice().to_vec();
     factor.solve_in_place(&mut free);

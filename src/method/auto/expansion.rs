@@ -81,7 +81,7 @@ impl Expansion {
                 timed(&mut it.timings.assemble, || {
                     problem.linearize(rest, forces, Some((Tangent::WARPED, &mut matrix)));
                 });
-                let mut new = Factor::new(system.symbolic())?;
+                let mut new = Factor::new(system.symbolic()?)?;
                 timed(&mut it.timings.factorize, || new.factorize(matrix.values()))?;
                 report.factorizations += 1;
                 factor.insert(new)

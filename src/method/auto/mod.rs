@@ -145,7 +145,7 @@ impl Auto {
         it.assemble(Tangent::EXACT, 1.0);
         let mut factor = match self.tangent.take() {
             Some(tangent) => tangent.factor,
-            None => Factor::new(it.system().symbolic())?,
+            None => Factor::new(it.system().symbolic()?)?,
         };
         let values = it.workspace.matrix.values();
         let definite = timed(&mut it.timings.factorize, || factor.factorize_symmetric(values));
