@@ -64,4 +64,4 @@ impl Picture {
 }
 
 /// Font with the Chinese glyphs of the window.
-pub(crate) const CHINESE_FONT: &[u8] = include_bytes!("../assets/fonts/NotoSansSC-subset.otf");
+pub(crate) static CHINESE_FONT: &[u8] = include_bytes!("../assets/fonts/NotoSansSC-subset.otf");

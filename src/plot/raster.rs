@@ -11,7 +11,7 @@ use super::drawing::{Anchor, Color, Drawing, Item, Outline, Shape, Stroke, Text}
 use crate::picture::{CHINESE_FONT, Picture, PictureError};
 
 /// Fonts in the order in which a letter is looked for.
-const FONTS: [&[u8]; 3] = [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR, CHINESE_FONT];
+static FONTS: [&[u8]; 3] = [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR, CHINESE_FONT];
 /// Accuracy of circles, pixels.
 const ACCURACY: f64 = 0.01;
 

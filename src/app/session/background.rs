@@ -3,6 +3,7 @@
 
 use web_time::Instant;
 
+use crate::app::platform::IS_PAGE;
 use crate::app::session::document::Document;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
@@ -272,7 +273,7 @@ impl Session {
                 }
             }
             // A worker has ended before it had a model.
-            SolveUpdate::Died if self.background.work.solve().is_some_and(BackgroundSolve::is_cancelled) => {
+            SolveUpdate::Died if IS_PAGE && self.background.work.solve().is_some_and(BackgroundSolve::is_cancelled) => {
                 self.background.work.take_solve();
             }
             SolveUpdate::Died => {

@@ -1,5 +1,5 @@
-//! Solve in a worker of a web page. The worker has a model of its own and sends what it finds as data; the model of the page
-//! displays it.
+//! Solve in a worker of a web page. The worker solves its own model, and sends the computed states; the page sets its
+//! model to these states, and displays it.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -26,7 +26,6 @@ pub(crate) struct SolveWork {
     /// Initial state; `None` is rest.
     state: Option<State>,
     iterations: Option<u32>,
-    residuals: Vec<f64>,
     is_displayed: bool,
 }
 
@@ -55,9 +54,10 @@ impl Work for SolveWork {
     type Output = SentOutcome;
 
     fn run(self, reporter: &Reporter<SentProgress, SentOutcome>) -> SentOutcome {
-        let Self { scene, state, iterations, residuals, is_displayed } = self;
+        let Self { scene, state, iterations, is_displayed } = self;
         let start = state.map_or(Start::Rest, Start::State);
-        let request = SolveRequest { scene: scene.0, model: Model::New, start, iterations, residuals, is_displayed };
+        let (scene, residuals) = (scene.0, Vec::new());
+        let request = SolveRequest { scene, model: Model::New, start, iterations, residuals, is_displayed };
         let is_linear_sent = Cell::new(false);
         let sent = |Snapshot { bodies, residuals, .. }: Snapshot| {
             let linear = bodies.linear.filter(|_| !is_linear_sent.replace(true));
@@ -76,8 +76,8 @@ impl Work for SolveWork {
     }
 }
 
-/// Time that a cancelled worker goes on. Without it, a worker would end in every frame of a drag, and nothing would be
-/// displayed.
+/// Time that a cancelled worker goes on. A worker that solves another load of the displayed mesh goes on until its first
+/// state in any case: while a load is dragged, every solve is cancelled, and nothing would be displayed otherwise.
 const GRACE: Duration = Duration::from_millis(500);
 
 /// Solve in a worker. Dropping it cancels it.
@@ -91,7 +91,9 @@ pub(crate) struct RemoteSolve {
     /// Model of the page. A new one is set up when the worker has its own, so that the page goes on until then.
     model: Result<Model, Box<Rejected>>,
     is_displayed: bool,
-    /// Iterations made before the solve.
+    /// `true` once the worker has sent a state.
+    has_found: bool,
+    /// Iterations made before the solve, and their residuals.
     made: u32,
     residuals: Vec<f64>,
 }
@@ -102,14 +104,21 @@ impl RemoteSolve {
     /// # Errors
     /// The browser cannot start another worker.
     pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
-        let SolveRequest { scene, mut model, start, iterations, residuals, is_displayed } = request;
+        let SolveRequest { scene, mut model, start, iterations, mut residuals, is_displayed } = request;
         let (mut made, mut present) = (0, None);
         let mut rejected = None;
         if let Model::Existing(own) = model {
             let continues = own.0.simulation.scene() == &scene && matches!(start, Start::Present);
             model = match Model::Existing(own).set_up(&scene) {
-                Ok(own) => {
+                Ok(mut own) => {
                     made = if continues { own.0.simulation.iterations() } else { 0 };
+                    // A solve that is cancelled before its first snapshot leaves the model at its start.
+                    match &start {
+                        Start::Present => {}
+                        Start::Rest => own.0.simulation.reset(),
+                        // A state of another mesh does not fit and is ignored.
+                        Start::State(state) => _ = own.0.simulation.restore(state),
+                    }
                     present = Some(own.0.simulation.state().clone());
                     Model::Existing(Box::new(own))
                 }
@@ -120,18 +129,20 @@ impl RemoteSolve {
             };
         }
         let state = match start {
-            Start::Present => present,
-            Start::Rest => None,
-            Start::State(state) => Some(state),
+            Start::State(state) if present.is_none() => Some(state),
+            _ => present,
         };
-        let sent = SentScene(scene.clone());
-        let work = SolveWork { scene: sent, state, iterations, residuals: residuals.clone(), is_displayed };
+        if made == 0 {
+            residuals.clear();
+        }
+        let work = SolveWork { scene: SentScene(scene.clone()), state, iterations, is_displayed };
         let task = if rejected.is_none() { Some(Task::run(work)?) } else { None };
         let model = rejected.map_or(Ok(model), Err);
-        Ok(Self { task, cancelled: Cell::default(), scene, model, is_displayed, made, residuals })
+        let cancelled = Cell::default();
+        Ok(Self { task, cancelled, scene, model, is_displayed, has_found: false, made, residuals })
     }
 
-    /// Ends the worker after [`GRACE`], unless it is done before.
+    /// Ends the worker later; see [`GRACE`].
     pub(crate) fn cancel(&self) {
         self.cancelled.set(self.cancelled.get().or_else(|| Some(Instant::now())));
     }
@@ -148,21 +159,25 @@ impl RemoteSolve {
 
     /// Returns the next update; waits for it if `waits` is `true`.
     pub(crate) fn next(&mut self, waits: bool) -> Update<Progress, Outcome> {
-        if self.cancelled.get().is_some_and(|since| since.elapsed() >= GRACE) {
+        let may_end = self.has_found || matches!(self.model, Ok(Model::New));
+        if may_end && self.cancelled.get().is_some_and(|since| since.elapsed() >= GRACE) {
             self.end();
         }
         match self.task.as_ref().map(|task| task.next(waits)) {
             Some(Update::None) => Update::None,
             Some(Update::Progress(SentProgress::Phase(phase))) => Update::Progress(Progress::Phase(phase)),
-            Some(Update::Progress(SentProgress::Found(sent))) => match self.take_over(*sent) {
-                Ok(snapshot) => self.display(snapshot),
-                Err(rejected) => Update::Done(Err(rejected)),
-            },
+            Some(Update::Progress(SentProgress::Found(sent))) => {
+                self.has_found = true;
+                match self.take_over(*sent) {
+                    Ok(snapshot) => self.display(snapshot),
+                    Err(rejected) => Update::Done(Err(rejected)),
+                }
+            }
             Some(Update::Done(Some(solved))) => {
                 let (sent, quality) = *solved;
                 Update::Done(self.take_over(sent).map(|snapshot| Box::new(Solved { snapshot, quality })))
             }
-            // A cancelled worker leaves what the page has.
+            // After a cancelled worker has ended, the page keeps its own model.
             Some(Update::Died) if self.is_cancelled() && matches!(self.model, Ok(Model::Existing(_))) => {
                 Update::Done(self.set_up().map(|snapshot| Box::new(Solved { snapshot, quality: None })))
             }
@@ -189,10 +204,13 @@ impl RemoteSolve {
         let (system, known, geometry) = match model {
             Model::Existing(own) => (own.0.simulation.system().clone(), own.0.linear, own.1),
             Model::Equations(system) => (system, None, None),
-            Model::New => (Arc::new(System::new(&self.scene).map_err(|error| rejected(error.into()))?), None, None),
+            Model::New => {
+                (Arc::new(System::for_display(&self.scene).map_err(|error| rejected(error.into()))?), None, None)
+            }
         };
         let SentBodies { simulation: mut found, linear, residuals } = sent;
         found.iterations += self.made;
+        let residuals = [self.residuals.as_slice(), &residuals].concat();
         let simulation = Simulation::with_found(&self.scene, system, found).map_err(rejected)?;
         let sent_linear =
             |found| Simulation::with_found(&linear_scene(&self.scene), simulation.system().clone(), found);
@@ -206,7 +224,6 @@ impl RemoteSolve {
     fn display(&mut self, snapshot: Snapshot) -> Update<Progress, Outcome> {
         let Snapshot { bodies, geometry, residuals } = snapshot;
         let copy = bodies.snapshot();
-        self.residuals.clone_from(&residuals);
         self.model = Ok(Model::Existing(Box::new((bodies, None))));
         copy.map_or(Update::None, |bodies| {
             Update::Progress(Progress::Snapshot(Box::new(Snapshot { bodies, geometry, residuals })))
@@ -280,5 +297,19 @@ mod tests {
         assert_eq!(*existing.model.unwrap().0.simulation.scene(), scene);
         let new = solve(request(&wrong, Model::New)).0.unwrap_err();
         assert_eq!((new.error, new.model.is_none()), (existing.error, true));
+    }
+
+    /// A solve that is cancelled before its first snapshot leaves the page's model, which has to be at its start then.
+    #[test]
+    fn the_model_of_the_page_starts_where_the_worker_starts() {
+        let scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let rest = simulation.state().clone();
+        simulation.solve();
+        assert_ne!(*simulation.state(), rest);
+        let model = Model::Existing(Box::new((Bodies { simulation, linear: None }, None)));
+        let solve = RemoteSolve::start(SolveRequest { start: Start::Rest, ..request(&scene, model) }).unwrap();
+        let Ok(Model::Existing(own)) = &solve.model else { panic!("no model") };
+        assert_eq!(*own.0.simulation.state(), rest);
     }
 }

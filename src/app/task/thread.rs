@@ -41,7 +41,7 @@ impl<T: Serialize + DeserializeOwned + Send + 'static> Data for T {}
 
 /// Work whose request, progress and result are data. It runs in a thread, or in a worker of a web page.
 pub(crate) trait Work: Data {
-    /// Name of the work, which a worker knows it by.
+    /// Name under which a worker looks up the work.
     const NAME: &'static str;
     type Progress: Data;
     type Output: Data;
@@ -118,12 +118,13 @@ impl<P: Data, T: Data> Task<P, T> {
     /// The browser cannot start another worker.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn run<W: Work<Progress = P, Output = T>>(work: W) -> io::Result<Self> {
+        use platform::work::Received;
         let (sender, receiver) = channel();
         let receive = move |bytes: &[u8]| {
-            let Some(message) = platform::work::decode::<Message<P, T>>(bytes) else { return true };
+            let Some(message) = platform::work::decode::<Message<P, T>>(bytes) else { return Received::Unreadable };
             let is_done = matches!(message, Message::Done(_));
             let _ = sender.send(message);
-            is_done
+            if is_done { Received::Done } else { Received::Progress }
         };
         let worker = platform::work::send(W::NAME, &platform::work::encode(&work), receive)?;
         Ok(Self { receiver, is_cancelled: Arc::new(AtomicBool::new(false)), worker: Some(worker) })

@@ -14,6 +14,8 @@ const SHARED: &str = "shared.toml";
 /// Opens the window on the page's canvas. An error is shown in place of the window.
 pub fn open_page() {
     console_error_panic_hook::set_once();
+    // It fails if a logger has been set, which then goes on.
+    let _ = console_log::init_with_level(log::Level::Warn);
     if !page::has_window() {
         return worker::listen();
     }

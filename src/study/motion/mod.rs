@@ -270,17 +270,29 @@ impl MotionStudy {
     /// # Errors
     /// [`StudyError`].
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+        Self::observed(scene, extent, &mut |progress, _| observe(progress))
+    }
+
+    /// Measures as [`Self::new`]; the observer also receives the partial study each time a mesh is done.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn observed(
+        scene: &Scene,
+        extent: Extent,
+        observe: &mut dyn FnMut(Progress<'_>, Option<&Self>) -> ControlFlow<()>,
+    ) -> Result<Self, StudyError> {
         let plan = extent.plan();
         let samples = Samples::of(scene, plan);
         let studied = Studied { scene, samples, plan };
         let reference = MotionReference::new(scene, extent, &mut |progress| {
-            observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress })
+            observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress }, None)
         })?;
         let meshes = MeshPlan::all(scene, extent);
         let own = |mesh: &MeshPlan, cancelled: &CalledOff| Meshed::new(studied, mesh, cancelled);
         let meshed = all_done(parallel::map(&meshes, own, |done| {
             let fraction = REFERENCE_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: &sentence!("the motion on every mesh") })
+            observe(Progress { fraction, now: &sentence!("the motion on every mesh") }, None)
         }))?;
         let mut study = Self {
             scene: scene.name.clone(),
@@ -296,8 +308,9 @@ impl MotionStudy {
         let mut done = 0.0;
         for (mesh, meshed) in meshes.iter().zip(&meshed) {
             let fraction = |part: f64| before + (1.0 - before) * (done + part * mesh.weight()) / all;
-            let measured = study
-                .measure(studied, mesh, meshed, &mut |part, now| observe(Progress { fraction: fraction(part), now }));
+            let measured = study.measure(studied, mesh, meshed, &mut |part, now| {
+                observe(Progress { fraction: fraction(part), now }, None)
+            });
             match measured {
                 // Keep the measurements made so far.
                 Err(StudyError::Cancelled) if !study.measurements.is_empty() => {
@@ -306,6 +319,11 @@ impl MotionStudy {
                 }
                 measured => measured?,
             }
+            let mut so_far = study.clone();
+            so_far.is_partial = true;
+            so_far.mark_pareto();
+            // A cancellation is seen by the next mesh.
+            let _ = observe(Progress { fraction: fraction(1.0), now: &Sentence::default() }, Some(&so_far));
             done += mesh.weight();
         }
         study.mark_pareto();

@@ -93,16 +93,23 @@ impl Background {
 }
 
 fn study(scene: &Scene, extent: Extent, reporter: &Reporter<StudyProgress, Done>) -> Result<Measured, StudyError> {
-    let observe = |progress: Progress<'_>, so_far: Option<&Study>| {
+    let report = |progress: Progress<'_>, so_far: Option<Measured>| {
         reporter.report(match so_far {
-            Some(study) => StudyProgress::SoFar(Measured::Rest(study.clone())),
+            Some(measured) => StudyProgress::SoFar(measured),
             None => StudyProgress::Now(progress.fraction as f32, progress.now.clone()),
         })
     };
     match scene.analysis {
-        Analysis::Static => Study::observed(scene, extent, &mut { observe }).map(Measured::Rest),
+        Analysis::Static => {
+            let mut observe =
+                |progress: Progress<'_>, study: Option<&Study>| report(progress, study.cloned().map(Measured::Rest));
+            Study::observed(scene, extent, &mut observe).map(Measured::Rest)
+        }
         Analysis::Dynamic => {
-            MotionStudy::new(scene, extent, &mut |progress| observe(progress, None)).map(Measured::Motion)
+            let mut observe = |progress: Progress<'_>, study: Option<&MotionStudy>| {
+                report(progress, study.cloned().map(Measured::Motion))
+            };
+            MotionStudy::observed(scene, extent, &mut observe).map(Measured::Motion)
         }
     }
 }

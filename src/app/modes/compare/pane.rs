@@ -330,6 +330,11 @@ impl Pane {
                 SolveUpdate::None => return false,
                 SolveUpdate::Done(Ok(solved)) => break Body::Here(Box::new(solved.snapshot.bodies.simulation)),
                 SolveUpdate::Done(Err(rejected)) => break Body::Refused((&rejected.error).into()),
+                // A worker has ended before it had a model.
+                SolveUpdate::Died if away.solve.is_cancelled() => {
+                    self.given = None;
+                    break Body::None;
+                }
                 SolveUpdate::Died => break Body::Refused(sentence!("the solve ended unexpectedly")),
             }
         };

@@ -1,5 +1,5 @@
-//! Background work on a page: workers with an instance of the module of their own, which receive requests and send results
-//! as data. Work that is not data is done between two frames.
+//! Background work on a page. Every worker has its own instance of the module, receives requests and sends results as
+//! data. Work that is not data is done between two frames.
 
 use std::cell::RefCell;
 use std::fmt::{self, Debug, Formatter};
@@ -9,9 +9,12 @@ use std::rc::Rc;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
-use web_sys::{DedicatedWorkerGlobalScope, ErrorEvent, MessageEvent, WorkerOptions, WorkerType};
+use web_sys::{DedicatedWorkerGlobalScope, MessageEvent, WorkerOptions, WorkerType};
 
 use crate::app::platform::web::browser;
+
+/// Largest number of workers that wait for a request. Each keeps the most memory that it has used.
+const MOST_IDLE: usize = 2;
 
 thread_local! {
     /// Workers that wait for a request.
@@ -42,8 +45,18 @@ pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     ciborium::from_reader(bytes).inspect_err(|error| log::error!("message of a worker: {error}")).ok()
 }
 
-/// Receiver of the messages of a worker. It returns `true` for the last message.
-type Receive = Rc<RefCell<Option<Box<dyn FnMut(&[u8]) -> bool>>>>;
+/// State of a request after a message of its worker.
+pub(crate) enum Received {
+    /// More messages follow.
+    Progress,
+    /// The request is done.
+    Done,
+    /// The message cannot be read, and the worker is ended.
+    Unreadable,
+}
+
+/// Receiver of the messages of a worker.
+type Receive = Rc<RefCell<Option<Box<dyn FnMut(&[u8]) -> Received>>>>;
 
 /// Worker with a request. Dropping it cancels the request.
 pub(crate) struct Worker {
@@ -51,7 +64,7 @@ pub(crate) struct Worker {
     worker: Rc<RefCell<Option<web_sys::Worker>>>,
     receive: Receive,
     _message: Closure<dyn FnMut(MessageEvent)>,
-    _error: Closure<dyn FnMut(ErrorEvent)>,
+    _error: Closure<dyn FnMut(JsValue)>,
 }
 
 impl Worker {
@@ -79,7 +92,7 @@ impl Debug for Worker {
 ///
 /// # Errors
 /// The browser cannot start another worker.
-pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> bool + 'static) -> io::Result<Worker> {
+pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> Received + 'static) -> io::Result<Worker> {
     let failed = |error: JsValue| io::Error::other(browser::message(&error));
     let own = match IDLE.with_borrow_mut(Vec::pop) {
         Some(worker) => worker,
@@ -91,18 +104,23 @@ pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> boo
         let (worker, receive) = (worker.clone(), receive.clone());
         Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
             let bytes = js_sys::Uint8Array::new(&event.data()).to_vec();
-            let is_last = receive.borrow_mut().as_mut().is_none_or(|receive| receive(&bytes));
-            if is_last {
-                receive.take();
-                IDLE.with_borrow_mut(|idle| idle.extend(worker.take()));
-            }
+            let received = receive.borrow_mut().as_mut().map_or(Received::Done, |receive| receive(&bytes));
+            let close: fn(&web_sys::Worker) = match received {
+                Received::Progress => return browser::wake(),
+                Received::Done => rest,
+                Received::Unreadable => web_sys::Worker::terminate,
+            };
+            receive.take();
+            worker.take().iter().for_each(close);
             browser::wake();
         })
     };
     let error = {
         let (worker, receive) = (worker.clone(), receive.clone());
-        Closure::<dyn FnMut(ErrorEvent)>::new(move |event: ErrorEvent| {
-            log::error!("a worker failed: {}", event.message());
+        Closure::<dyn FnMut(JsValue)>::new(move |event: JsValue| {
+            // A worker whose module cannot be loaded fails with an event without a message.
+            let message = js_sys::Reflect::get(&event, &"message".into()).ok().and_then(|text| text.as_string());
+            log::error!("a worker failed: {}", message.unwrap_or_default());
             worker.take().iter().for_each(web_sys::Worker::terminate);
             receive.take();
             browser::wake();
@@ -111,8 +129,21 @@ pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> boo
     own.set_onmessage(Some(message.as_ref().unchecked_ref()));
     own.set_onerror(Some(error.as_ref().unchecked_ref()));
     let request = js_sys::Array::of2(&name.into(), &js_sys::Uint8Array::from(request));
-    own.post_message(&request).map_err(failed)?;
+    own.post_message(&request).inspect_err(|_| own.terminate()).map_err(failed)?;
     Ok(Worker { worker, receive, _message: message, _error: error })
+}
+
+/// Keeps a worker for another request, or ends it if enough are kept.
+fn rest(worker: &web_sys::Worker) {
+    worker.set_onmessage(None);
+    worker.set_onerror(None);
+    IDLE.with_borrow_mut(|idle| {
+        if idle.len() < MOST_IDLE {
+            idle.push(worker.clone());
+        } else {
+            worker.terminate();
+        }
+    });
 }
 
 /// Starts a worker with the module of this page.
