@@ -312,4 +312,22 @@ mod tests {
         let Ok(Model::Existing(own)) = &solve.model else { panic!("no model") };
         assert_eq!(*own.0.simulation.state(), rest);
     }
+
+    /// While a load is dragged, every solve is cancelled before its end.
+    #[test]
+    fn a_cancelled_solve_on_the_displayed_mesh_goes_on_until_its_first_state() {
+        let mut scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();
+        let bodies = Bodies { simulation: Simulation::new(&scene).unwrap(), linear: None };
+        scene.solver.method = MethodKind::Newton;
+        let mut solve = RemoteSolve::start(request(&scene, Model::Existing(Box::new((bodies, None))))).unwrap();
+        solve.cancelled.set(Instant::now().checked_sub(GRACE));
+        let first = loop {
+            match solve.next(true) {
+                Update::Progress(Progress::Snapshot(shown)) => break Some(shown.bodies.simulation.iterations()),
+                Update::Done(_) | Update::Died => break None,
+                Update::None | Update::Progress(Progress::Phase(_)) => {}
+            }
+        };
+        assert_eq!(first, Some(1));
+    }
 }
