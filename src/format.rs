@@ -33,14 +33,14 @@ pub fn count(n: impl Into<u64>, what: &str) -> String {
 #[must_use]
 pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
-    let mut words = String::new();
+    let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {
         if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            words.push(',');
+            text.push(',');
         }
-        words.push(digit);
+        text.push(digit);
     }
-    words
+    text
 }
 
 /// SI prefixes and their powers of ten.

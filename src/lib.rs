@@ -96,6 +96,9 @@ pub mod exact_beam;
 pub mod export;
 #[doc(hidden)]
 pub mod format;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod image;
 #[doc(hidden)]
 pub mod material;
 #[doc(hidden)]
@@ -103,9 +106,6 @@ pub mod mesh;
 #[doc(hidden)]
 pub mod method;
 mod model;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod picture;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod plot;

@@ -17,7 +17,7 @@ use common::rust_files;
 /// Layers from the lowest to the highest, with their files and folders in `src`. The longest matching entry counts;
 /// `lib` is the crate's root.
 const LAYERS: &[(&str, &[&str])] = &[
-    ("foundations", &["format", "sentence", "timings", "simd", "picture"]),
+    ("foundations", &["format", "sentence", "timings", "simd", "image"]),
     ("model", &["model"]),
     ("kinematics", &["rotation", "displacement", "material", "state", "exact_beam"]),
     ("element", &["element"]),

@@ -12,7 +12,7 @@ use common::pictures::{difference, lab, read_png};
 use egui::{Key, Theme};
 use egui_kittest::Harness;
 use warpbeam::app::{Lab, Language, parse_panes, picture};
-use warpbeam::picture::Picture;
+use warpbeam::image::Picture;
 use warpbeam::render::Gpu;
 
 /// Size of the window in pixels, wide enough for the panel.

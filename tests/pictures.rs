@@ -6,7 +6,7 @@ mod common;
 use common::pictures::{difference, distance, lab, pixel, read_png};
 use common::{program, scene, stderr, warpbeam};
 use warpbeam::app::picture;
-use warpbeam::picture::Picture;
+use warpbeam::image::Picture;
 use warpbeam::render::Gpu;
 
 /// The golden comparison detects a beam that bends a little more.

@@ -163,7 +163,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     });
     let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene) };
     drop(watch);
-    let (words, table) = match (&beam, &path) {
+    let (summary, table) = match (&beam, &path) {
         (Some(curve), path) => {
             // A path without events adds nothing to the curve.
             let path = path.as_ref().filter(|path| !text::events(path).is_empty());
@@ -181,7 +181,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
         let drawing = plot::figure(&path_chart::figure(path, &scene, &ordinate, &ToString::to_string));
         if is_png { drawing.picture()?.write_png(&picture)? } else { export::write_text(&picture, &drawing.svg())? }
     }
-    text::print(&words)?;
+    text::print(&summary)?;
     Ok(if path.is_none_or(|path| path.end.is_none()) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
 }
 

@@ -13,7 +13,7 @@ use self::args::{Cli, Command};
 use crate::assembly::SystemError;
 use crate::export::ExportError;
 use crate::format::number;
-use crate::picture::PictureError;
+use crate::image::PictureError;
 use crate::scene::{self, Analysis, Scene, SceneError};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::StudyError;

@@ -341,8 +341,8 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
     let shown = (path.states.len() / 12).max(1);
     for state in path.states.iter().step_by(shown) {
         let _ = write!(text, "{:5.1} %  ", 100.0 * state.factor);
-        if let Some(words) = driven_text(scene, path, state) {
-            let _ = write!(text, "{:<width$}  {:<15}  ", words[0], words[1]);
+        if let Some(columns) = driven_text(scene, path, state) {
+            let _ = write!(text, "{:<width$}  {:<15}  ", columns[0], columns[1]);
         }
         if let Some(u) = state.probes.first() {
             let _ = write!(text, "{:<24}", pair(*u, "m"));

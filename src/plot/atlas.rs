@@ -153,8 +153,8 @@ impl Panel {
     }
 }
 
-fn text(drawing: &mut Drawing, size: f64, at: [f64; 2], anchor: Anchor, words: &str) {
-    drawing.items.push(Item::Text(Text { size, ..Text::new(at, anchor, words) }));
+fn text(drawing: &mut Drawing, size: f64, at: [f64; 2], anchor: Anchor, content: &str) {
+    drawing.items.push(Item::Text(Text { size, ..Text::new(at, anchor, content) }));
 }
 
 /// Colours that differ in brightness (Okabe and Ito 2008).

@@ -8,7 +8,7 @@ use vello_cpu::kurbo::{self, Affine, BezPath, Cap, Join, Point, Shape as _};
 use vello_cpu::{Pixmap, RenderContext, Resources};
 
 use super::drawing::{Anchor, Color, Drawing, Item, Outline, Shape, Stroke, Text};
-use crate::picture::{CHINESE_FONT, Picture, PictureError};
+use crate::image::{CHINESE_FONT, Picture, PictureError};
 
 /// Fonts in the order in which a letter is looked for.
 static FONTS: [&[u8]; 3] = [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR, CHINESE_FONT];

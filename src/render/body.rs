@@ -402,7 +402,7 @@ fn line_strength(spacing: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::Picture;
+    use crate::image::Picture;
     use crate::render::{FORMAT, read_texture};
 
     fn drawn(gpu: &Gpu, renderer: &mut BodyRenderer, views: &[View<'_>]) -> Picture {

@@ -5,7 +5,7 @@
 
 use thiserror::Error;
 
-use crate::picture::PictureError;
+use crate::image::PictureError;
 
 mod body;
 mod camera;

@@ -1,7 +1,7 @@
 //! Read-back of a texture to memory.
 
 use super::{Gpu, RenderError};
-use crate::picture::Picture;
+use crate::image::Picture;
 
 /// Waits for all submitted work, and copies an RGBA texture to memory.
 ///

@@ -99,10 +99,11 @@ impl<'de> Deserializer<'de> for Node {
 pub(super) fn missing(table: Table) -> Option<Invalid> {
     let scene = Value::Table(table);
     let Err(Refusal::Missing(field)) = Scene::deserialize(Node(scene.clone())) else { return None };
-    KEYS.iter().filter(|(key, _)| key.rsplit('.').next() == Some(field)).find_map(|(key, words)| {
+    KEYS.iter().filter(|(key, _)| key.rsplit('.').next() == Some(field)).find_map(|(key, description)| {
         let parts: Vec<&str> = key.split('.').collect();
         let place = place_without(&scene, &parts)?;
-        let expected = units::quantity_of(key).map_or_else(|| (*words).into(), |quantity| Sentence::from(&quantity));
+        let expected =
+            units::quantity_of(key).map_or_else(|| (*description).into(), |quantity| Sentence::from(&quantity));
         Some(Invalid::new(place, sentence!("expected %{what}, got nothing", what = expected)))
     })
 }

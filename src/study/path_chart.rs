@@ -24,11 +24,11 @@ pub enum Ordinate {
 }
 
 /// Function that renders a name.
-type Words<'a> = &'a dyn Fn(&Sentence) -> String;
+type Render<'a> = &'a dyn Fn(&Sentence) -> String;
 
-/// Draws the path over the displacement or angle of the moving support, or over the load; `words` renders its names.
+/// Draws the path over the displacement or angle of the moving support, or over the load; `render` translates its names.
 #[must_use]
-pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, words: Words<'_>) -> Figure {
+pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Render<'_>) -> Figure {
     let probe = match ordinate {
         Ordinate::Path(i) | Ordinate::Component(i, _) | Ordinate::Probe(i) => *i,
         Ordinate::Usual | Ordinate::Reaction(_) => 0,
@@ -37,9 +37,9 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, words: Words<
     let displacement = |s: &PathState| s.probes.get(probe).copied().unwrap_or_else(Vector2::zeros);
     let along = Abscissa::of(path, scene);
     let mut quantities = vec![
-        Quantity::new(words(&along.name), along.unit),
-        Quantity::new(words(&sentence!("u_x of %{probe}", probe = name)), "m"),
-        Quantity::new(words(&sentence!("u_y of %{probe}", probe = name)), "m"),
+        Quantity::new(render(&along.name), along.unit),
+        Quantity::new(render(&sentence!("u_x of %{probe}", probe = name)), "m"),
+        Quantity::new(render(&sentence!("u_y of %{probe}", probe = name)), "m"),
     ];
     let axes = match (ordinate, path.driven) {
         (Ordinate::Path(_), _) => [1, 2],
@@ -52,7 +52,7 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, words: Words<
         (Ordinate::Probe(_), _) => Some(Quantity::new(format!("displacement of {name}"), "m")),
         // The other axis names the support.
         (_, Some(_)) => {
-            let name = words(&sentence!("reaction in this direction"));
+            let name = render(&sentence!("reaction in this direction"));
             Some(Quantity::new(name, if along.turns { "N m" } else { "N" }))
         }
         _ => None,
@@ -69,11 +69,11 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, words: Words<
     };
     let points: Vec<FigurePoint> = path.states.iter().map(point).collect();
     let mut series: Vec<FigureSeries> =
-        pieces(path, &points).into_iter().map(|(points, piece)| piece.series(path, points, words)).collect();
-    series.extend(bifurcations(path, &points, words));
+        pieces(path, &points).into_iter().map(|(points, piece)| piece.series(path, points, render)).collect();
+    series.extend(bifurcations(path, &points, render));
     let last = points.last().map(|point| FigurePoint { is_present: true, ..point.clone() });
     series.push(FigureSeries {
-        name: words(&sentence!("the scene")),
+        name: render(&sentence!("the scene")),
         ink: Ink::Scene,
         mark: Mark::Disc,
         may_leave: false,
@@ -145,13 +145,13 @@ enum Piece {
 }
 
 impl Piece {
-    fn series(self, path: &LoadPath, points: Vec<FigurePoint>, words: Words<'_>) -> FigureSeries {
+    fn series(self, path: &LoadPath, points: Vec<FigurePoint>, render: Render<'_>) -> FigureSeries {
         let (name, ink, mark) = match self {
             Self::Stable => ("stable", Ink::Method(MethodKind::Newton), Mark::Line),
             Self::Unstable => (unstable_text(path), Ink::Unstable, Mark::Dashes),
             Self::Jump => ("it jumps", Ink::Unstable, Mark::Dots),
         };
-        FigureSeries { name: words(&name.into()), ink, mark, may_leave: false, points }
+        FigureSeries { name: render(&name.into()), ink, mark, may_leave: false, points }
     }
 }
 
@@ -188,14 +188,14 @@ fn branches(points: &[FigurePoint], stable: &[bool]) -> Vec<(Vec<FigurePoint>, P
 fn bifurcations<'a>(
     path: &'a LoadPath,
     points: &'a [FigurePoint],
-    words: Words<'a>,
+    render: Render<'a>,
 ) -> impl Iterator<Item = FigureSeries> + 'a {
     path.bifurcations.iter().filter_map(|bifurcation| {
         let next = path.states.iter().position(|s| s.factor > bifurcation.factor)?;
         let (from, to) = (points.get(next.checked_sub(1)?)?, points.get(next)?);
         let middle = from.values.iter().zip(&to.values).map(|(a, b)| Some(0.5 * ((*a)? + (*b)?))).collect();
         Some(FigureSeries {
-            name: words(&bifurcation.label()),
+            name: render(&bifurcation.label()),
             ink: Ink::Unstable,
             mark: Mark::Disc,
             may_leave: false,

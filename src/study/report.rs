@@ -72,23 +72,23 @@ impl Study {
                     writeln!(text, "an error of {percent} %: not known, the reference's own error may be {own:.2} %");
                 continue;
             }
-            let words = self
+            let cost = self
                 .cheapest_within(percent)
                 .map_or_else(|| "not reached".to_owned(), |m| format!("{:.4} ms, {}", m.milliseconds(), m.setting));
-            let _ = writeln!(text, "an error of {percent} % costs {words}");
+            let _ = writeln!(text, "an error of {percent} % costs {cost}");
             for element in ElementKind::all() {
                 for method in METHODS.iter().map(|m| m.kind) {
                     let own = self.measurements.iter().filter(|m| {
                         (m.setting.element, m.setting.method) == (element, method) && self.error_bound(m) <= percent
                     });
-                    let words = match own.min_by_key(|m| m.time.total()) {
+                    let cost = match own.min_by_key(|m| m.time.total()) {
                         Some(m) => format!("{:.4} ms", m.milliseconds()),
                         None if method == MethodKind::Auto && percent < self.asked_percent => {
                             format!("solver.max_error_percent is {}", self.asked_percent)
                         }
                         None => "not reached".to_owned(),
                     };
-                    let _ = writeln!(text, "    {} {:<7} {words}", element.id(), method.id());
+                    let _ = writeln!(text, "    {} {:<7} {cost}", element.id(), method.id());
                 }
             }
         }

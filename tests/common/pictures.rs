@@ -7,7 +7,7 @@ use std::path::Path;
 
 use warpbeam::Simulation;
 use warpbeam::app::Lab;
-use warpbeam::picture::Picture;
+use warpbeam::image::Picture;
 use warpbeam::scene::{Analysis, Source};
 
 use super::{scene, scene_with};

@@ -121,12 +121,12 @@ pub(super) fn joined<T: AsRef<str>>(parts: impl IntoIterator<Item = T>) -> Strin
     parts.iter().map(AsRef::as_ref).collect::<Vec<&str>>().join(tr(", "))
 }
 
-/// Makes a sentence of `words`: a capital letter and a full stop.
-pub(super) fn sentence(words: &str) -> String {
+/// Makes a sentence of `text`: a capital letter and a full stop.
+pub(super) fn sentence(text: &str) -> String {
     if CURRENT.get() == Language::Chinese {
-        return format!("{words}。");
+        return format!("{text}。");
     }
-    let mut letters = words.chars();
+    let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 

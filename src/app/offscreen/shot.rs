@@ -10,7 +10,7 @@ use crate::app::modes::compare::PaneSetting;
 use crate::app::offscreen::painter::Stage;
 use crate::app::shell::lab::Lab;
 use crate::app::{AppError, ThemeChoice};
-use crate::picture::Picture;
+use crate::image::Picture;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
 use crate::scene::{IntegratorKind, Scene, Source};
 use crate::simulation::{Simulation, Status};

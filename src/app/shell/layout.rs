@@ -276,9 +276,9 @@ impl Lab {
         let painter = ui.painter_at(rect);
         let readout = self.readout();
         let errors = diagnosis::errors(&readout);
-        let (words, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
+        let (text, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
         // If there is a status bar, it shows the warning.
-        let warning = (is_bad && !self.desk.view.bars).then_some(words.as_str());
+        let warning = (is_bad && !self.desk.view.bars).then_some(text.as_str());
         self.desk.viewport.paint(&painter, ui.visuals(), &self.content(), errors, warning);
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
             let taken =
@@ -290,7 +290,7 @@ impl Lab {
             let Desk { session, viewport, .. } = &self.desk;
             let view = learn::View {
                 simulation: session.simulation(),
-                drawing: session.geometry(),
+                geometry: session.geometry(),
                 points: viewport.body().points(),
                 camera: viewport.camera(),
                 rect,
@@ -328,7 +328,7 @@ impl Lab {
         let narrow = rect.width() < 640.0;
         // In a low view there is room for one line only.
         let is_low = rect.height() < 220.0;
-        let (words, bad) = diagnosis::summary(&input);
+        let (text, bad) = diagnosis::summary(&input);
         // A card that leaves the body little room shows a good status itself.
         let is_tight = self.lesson.is_some() && rect.height() < 300.0;
         let shows_reasons = self.desk.view.why;
@@ -367,7 +367,7 @@ impl Lab {
             let tint = if bad { palette.error_chip } else { palette.panel };
             chip(tint).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
-                    ui.colored_label(if bad { palette.error } else { palette.text }, words);
+                    ui.colored_label(if bad { palette.error } else { palette.text }, text);
                     if let Some(remedy) = remedy.as_ref().filter(|_| is_low) {
                         actions.extend(help(ui, remedy));
                     }

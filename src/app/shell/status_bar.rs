@@ -233,13 +233,13 @@ fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
     for pair in points.windows(2) {
         ui.painter().line(pair.to_vec(), Stroke::new(1.5, palette.method(input.scene.solver.method)));
     }
-    let words = fill!(
+    let text = fill!(
         "Residual %{residual} after %{n} iterations",
         residual = format!("{:.1e}", input.simulation.residual()),
         n = input.simulation.iterations()
     );
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
-    response.on_hover_text(fill!("%{residual}; dashed: the tolerance", residual = words));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
+    response.on_hover_text(fill!("%{residual}; dashed: the tolerance", residual = text));
 }
 
 /// Returns the text of the current phase of a background solve.

@@ -130,7 +130,7 @@ impl BodyMesh {
     pub(crate) fn update(
         &mut self,
         simulation: &Simulation,
-        drawing: &DisplayGeometry,
+        geometry: &DisplayGeometry,
         view: &ViewOptions,
         played: Option<f64>,
     ) {
@@ -145,13 +145,13 @@ impl BodyMesh {
             self.nodes.clear();
             self.nodes.extend(places);
             let nodes = &self.nodes;
-            drawing.points(&|n| nodes[n as usize], &mut self.points);
+            geometry.points(&|n| nodes[n as usize], &mut self.points);
             if view.is_smooth() {
                 simulation.smooth_field(view.field, &mut self.nodal, &mut self.scratch, &mut self.known);
-                drawing.nodal_values(&self.known, view.field.period(), &mut self.values);
+                geometry.nodal_values(&self.known, view.field.period(), &mut self.values);
             } else {
                 simulation.field(view.field, &mut self.known);
-                drawing.values(&self.known, &mut self.values);
+                geometry.values(&self.known, &mut self.values);
             }
             self.stamp = stamp();
         }
@@ -207,16 +207,16 @@ impl BodyMesh {
     }
 
     /// Returns the input of the body's render pass.
-    pub(crate) fn frame<'a>(&'a self, drawing: &'a DisplayGeometry, wireframe: bool) -> Frame<'a> {
+    pub(crate) fn frame<'a>(&'a self, geometry: &'a DisplayGeometry, wireframe: bool) -> Frame<'a> {
         Frame {
             stamp: self.stamp,
             positions: &self.points,
-            triangles: &drawing.triangles,
+            triangles: &geometry.triangles,
             values: &self.values,
             range: self.range,
-            lines: if wireframe { &drawing.lines } else { &[] },
-            triangles_of_lines: &drawing.triangles_of_lines,
-            pieces: drawing.pieces,
+            lines: if wireframe { &geometry.lines } else { &[] },
+            triangles_of_lines: &geometry.triangles_of_lines,
+            pieces: geometry.pieces,
             map: self.map,
             line_color: self.line_color,
             background: self.background,

@@ -26,7 +26,7 @@ use crate::simulation::SupportReaction;
 pub(crate) struct Overlay<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
-    pub drawing: &'a DisplayGeometry,
+    pub geometry: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
     pub camera: Camera,
     /// Positions of the nodes, m.
@@ -88,13 +88,13 @@ pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
 /// Paints the same under a colour bar that ends `below` points from the top; the arrow of gravity is placed under it.
 fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, below: f32) {
     let palette = Palette::new(visuals);
-    let Overlay { drawing, system, camera, .. } = *overlay;
+    let Overlay { geometry, system, camera, .. } = *overlay;
     let projection = Projection { camera, rect };
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
-        for line in &drawing.outline {
+        for line in &geometry.outline {
             // Shorter pieces, points, would fade in the antialiasing; they are joined to the next one.
             const SHORTEST: f64 = 2.0;
-            let mut points = line.iter().map(|&p| drawing.point(p, place));
+            let mut points = line.iter().map(|&p| geometry.point(p, place));
             let Some(mut from) = points.next() else { continue };
             let mut points = points.peekable();
             while let Some(to) = points.next() {
@@ -243,7 +243,7 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     let (positions, pattern) = (overlay.positions, overlay.system.pattern());
     let stroke = Stroke::new(1.5, palette.support);
     let mut drawn = vec![false; positions.len()];
-    for side in &overlay.drawing.boundary {
+    for side in &overlay.geometry.boundary {
         let both = [0, 1].map(|axis| side.ends().iter().all(|&end| pattern.fixed(end)[axis]));
         if both == [false, false] {
             continue;

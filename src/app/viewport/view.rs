@@ -493,7 +493,7 @@ impl Viewport {
         let overlay = Overlay {
             scene: shown.scene(),
             system: shown.system(),
-            drawing: session.geometry(),
+            geometry: session.geometry(),
             options: content.options,
             camera: self.camera(),
             positions: &self.body.nodes,

@@ -225,7 +225,7 @@ pub(crate) fn install(ctx: &egui::Context) {
 
 /// Adds the font for the characters that egui's own fonts lack.
 fn add_font(ctx: &egui::Context) {
-    let data = egui::FontData::from_static(crate::picture::CHINESE_FONT);
+    let data = egui::FontData::from_static(crate::image::CHINESE_FONT);
     let place = |family| InsertFontFamily { family, priority: FontPriority::Lowest };
     let families = vec![place(FontFamily::Proportional), place(FontFamily::Monospace)];
     ctx.add_font(FontInsert::new("Noto Sans SC", data, families));

@@ -310,8 +310,8 @@ fn summary(rivals: &[Rival]) -> String {
     for r in rivals {
         let mesh = r.cells.map_or_else(|| "as meshed".to_owned(), |[along, across]| format!("{along}×{across}"));
         let until = |at: Option<Moment>| {
-            let words = |at: Moment| format!("{:.1} ({} steps)", milliseconds(at.time), at.steps);
-            at.map_or_else(|| "never".to_owned(), words)
+            let text = |at: Moment| format!("{:.1} ({} steps)", milliseconds(at.time), at.steps);
+            at.map_or_else(|| "never".to_owned(), text)
         };
         let _ = writeln!(
             text,

@@ -100,16 +100,16 @@ impl MotionStudy {
                 continue;
             }
             let best = self.fastest_within(percent);
-            let words = best.map_or_else(|| "not reached".to_owned(), time_text);
-            let _ = writeln!(text, "an error of {percent} % costs {words}");
+            let cost = best.map_or_else(|| "not reached".to_owned(), time_text);
+            let _ = writeln!(text, "an error of {percent} % costs {cost}");
             for integrator in INTEGRATORS {
                 let own = self.fastest_of(percent, |m| m.setting.integrator == integrator.kind);
-                let words = own.map_or_else(|| "not reached".to_owned(), time_text);
-                let _ = writeln!(text, "    {:<16} {words}", integrator.id);
+                let cost = own.map_or_else(|| "not reached".to_owned(), time_text);
+                let _ = writeln!(text, "    {:<16} {cost}", integrator.id);
             }
         }
         let real = self.fastest_of(1.0, |m| m.milliseconds <= REAL_TIME);
-        let words = real.map_or_else(
+        let cost = real.map_or_else(
             || match self.fastest_within(1.0) {
                 None => "no measured setting is within 1 %".to_owned(),
                 Some(fastest) => {
@@ -121,7 +121,7 @@ impl MotionStudy {
                 format!("within 1 %, the fastest setting runs at {times:.0} times real time: {}", m.setting)
             },
         );
-        let _ = writeln!(text, "{words}\n");
+        let _ = writeln!(text, "{cost}\n");
     }
 
     /// Adds the effect of the time step on error and energy, on the scene's mesh.
@@ -183,13 +183,13 @@ impl MotionStudy {
 
     /// Adds the settings without an error, and the reason.
     fn unfinished(&self, text: &mut String) {
-        for (ending, words) in [
+        for (ending, label) in [
             (Ending::Stopped, "stopped before the end"),
             (Ending::CutShort, "stopped early: too many steps to the end"),
         ] {
             let those: Vec<_> = self.measurements.iter().filter(|m| m.ending == ending).collect();
             if !those.is_empty() {
-                let _ = writeln!(text, "{} {words}:", count(those.len() as u64, "setting"));
+                let _ = writeln!(text, "{} {label}:", count(those.len() as u64, "setting"));
             }
             for m in those {
                 let _ = writeln!(text, "    {} ({:.0} ms per simulated second)", m.setting, m.milliseconds);

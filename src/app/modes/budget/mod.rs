@@ -204,7 +204,7 @@ fn settings(
             if ui.button(tr("Measure")).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
-            let words = match (budget.error, budget.study) {
+            let text = match (budget.error, budget.study) {
                 (Some(error), _) => RichText::new(said(error)).small().color(ui.visuals().error_fg_color),
                 (None, None) => RichText::new(tr("Nothing measured yet: it takes about a minute.")).small(),
                 (None, Some(_)) if !budget.current => {
@@ -219,7 +219,7 @@ fn settings(
                     RichText::new(fill!("Error against %{reference}.", reference = study.reference_text())).small()
                 }
             };
-            ui.add(egui::Label::new(words).truncate());
+            ui.add(egui::Label::new(text).truncate());
         }
     });
     let time = NumberField {
@@ -272,9 +272,9 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let words = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error_percent()), m.text());
+            let text = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error_percent()), m.text());
             let label = ui.add(
-                Button::selectable(m.is_applied_to(budget.scene), RichText::new(words).font(FontId::monospace(12.0)))
+                Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
                     .truncate(),
             );
             if label.on_hover_text(m.parts()).clicked() {
@@ -317,8 +317,8 @@ fn legend(ui: &mut Ui, moves: bool) {
             ui.label(RichText::new(tr(id)).small().strong().color(color));
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
-        let words = RichText::new(fill!("%{shapes}; line: Pareto front", shapes = shapes)).small();
-        ui.add(egui::Label::new(words).truncate());
+        let text = RichText::new(fill!("%{shapes}; line: Pareto front", shapes = shapes)).small();
+        ui.add(egui::Label::new(text).truncate());
     });
 }
 

@@ -177,12 +177,12 @@ pub(super) fn aim(
 /// Returns the area of a pane's body for the render pass.
 pub(super) fn view<'a>(
     place: Option<Rect>,
-    (shape, drawing): (&'a BodyMesh, &'a DisplayGeometry),
+    (body_mesh, geometry): (&'a BodyMesh, &'a DisplayGeometry),
     camera: Camera,
     wireframe: bool,
     pixels_per_point: f32,
 ) -> Option<View<'a>> {
-    Some(View { viewport: viewport(place?, pixels_per_point), frame: shape.frame(drawing, wireframe), camera })
+    Some(View { viewport: viewport(place?, pixels_per_point), frame: body_mesh.frame(geometry, wireframe), camera })
 }
 
 /// Processes the pointer over a pane; moving the view moves it in all panes.
@@ -210,8 +210,8 @@ pub(super) fn follow(
 pub(super) struct PaneBody<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
-    pub drawing: &'a DisplayGeometry,
-    pub shape: &'a BodyMesh,
+    pub geometry: &'a DisplayGeometry,
+    pub body_mesh: &'a BodyMesh,
     /// Outline of the reference solution, m.
     pub exact: &'a [Vec<Vector2<f64>>],
     /// Simulated time, s.
@@ -226,10 +226,10 @@ impl PaneBody<'_> {
             apart: false,
             scene: self.scene,
             system: self.system,
-            drawing: self.drawing,
+            geometry: self.geometry,
             options: input.view,
             camera,
-            positions: &self.shape.nodes,
+            positions: &self.body_mesh.nodes,
             ghost: None,
             exact: self.exact,
             errors: Errors::default(),
@@ -240,7 +240,7 @@ impl PaneBody<'_> {
             mouse_spring: None,
             reactions: &[],
             playback: still,
-            color_range: self.shape.range,
+            color_range: self.body_mesh.range,
             warning: None,
         };
         overlay::body(&ui.painter_at(place), place, &overlay, ui.visuals());

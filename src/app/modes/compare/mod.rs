@@ -170,7 +170,7 @@ impl Compare {
     pub(crate) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
         let camera = self.camera();
         let seen = self.panes.iter().filter_map(|pane| {
-            grid::view(pane.place, (&pane.shape, &pane.drawing), camera, wireframe, pixels_per_point)
+            grid::view(pane.place, (&pane.body_mesh, &pane.geometry), camera, wireframe, pixels_per_point)
         });
         seen.collect()
     }
@@ -231,7 +231,7 @@ impl Compare {
 
     fn presets(&mut self, ui: &mut Ui, input: &CompareInput<'_>, shows_trace: bool) {
         let elements: Vec<ElementKind> = input.common.scene.elements().collect();
-        let join = |words: Vec<&str>| words.join(" | ");
+        let join = |names: Vec<&str>| names.join(" | ");
         let methods = join(METHODS_PRESET.iter().map(|method| tr(method.id())).collect());
         let meshed = join(elements.iter().map(|element| element.id()).collect());
         let method = (input.common.scene.solver.method == MethodKind::Warped).then_some(MethodKind::Newton);
@@ -330,7 +330,7 @@ impl Compare {
         let any = self.panes.iter().any(|pane| pane.range.is_some() && !pane.has_failed());
         let counted = self.panes.iter().filter(|pane| !any || !pane.has_failed()).filter_map(|pane| pane.range);
         let range = view.fixed_range.unwrap_or(grid::common_range(counted));
-        self.panes.iter_mut().for_each(|pane| pane.shape.range = range);
+        self.panes.iter_mut().for_each(|pane| pane.body_mesh.range = range);
     }
 
     /// Fits the camera to all bodies and the reference solution, unless the user has moved it. Panes that have not
@@ -348,11 +348,11 @@ impl Compare {
             let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
             let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
                 self.panes.iter().filter(|pane| pane.is_sound()).partition(|pane| is_linear(pane));
-            bounds = others.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
+            bounds = others.iter().flat_map(|pane| pane.body_mesh.points()).fold(bounds, grow);
             // The solution of linear theory may be so large that the other bodies would be shown too small.
             const LARGEST: f64 = 1.5;
             let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
-            let with = linear.iter().flat_map(|pane| pane.shape.points()).fold(bounds, grow);
+            let with = linear.iter().flat_map(|pane| pane.body_mesh.points()).fold(bounds, grow);
             let known = !others.is_empty() || reference.is_some();
             if !known || size_of(with) < LARGEST * size_of(bounds) {
                 bounds = with;
@@ -414,7 +414,7 @@ impl Compare {
     fn result(&self, ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         let palette = Palette::new(ui.visuals());
         let setting = pane.setting.of(input.common.scene);
-        let (bad, words) = match pane.doing() {
+        let (bad, text) = match pane.doing() {
             Doing::Refused(reason) => (true, sentence(&said(reason))),
             Doing::Rests(end) => match end.status.failure_sentence() {
                 Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = said(&reason))),
@@ -448,20 +448,20 @@ impl Compare {
             left = at.right() + 12.0;
         }
         let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
-        let mut job = egui::text::LayoutJob::simple_singleline(words.clone(), FontId::proportional(size), ink);
+        let mut job = egui::text::LayoutJob::simple_singleline(text.clone(), FontId::proportional(size), ink);
         job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left - 4.0).max(0.0));
         let galley = painter.layout_job(job);
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
         painter.galley(at.min, galley, ink);
         let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));
-        let spoken = format!("{name}: {}: {error}{words}", setting.text());
+        let spoken = format!("{name}: {}: {error}{text}", setting.text());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
         let tip = fill!(
             "Error: relative error of the first probe's displacement vector, compared with %{reference}. Time and \
              iterations: of a solve from rest.",
             reference = reference_text(input.reference)
         );
-        response.on_hover_text(format!("{words}\n{tip}"));
+        response.on_hover_text(format!("{text}\n{tip}"));
     }
 
     /// Shows the overlays of a pane's body.
@@ -475,8 +475,8 @@ impl Compare {
         let reach = HitTargets {
             mesh: system.as_ref().map(|system| system.mesh()),
             camera,
-            positions: &pane.shape.nodes,
-            outline: &pane.drawing.boundary,
+            positions: &pane.body_mesh.nodes,
+            outline: &pane.geometry.boundary,
             handles: &handles,
             scales: controller.scales([place.width(), place.height()].map(f64::from)),
         };
@@ -487,8 +487,8 @@ impl Compare {
         if let (Some(system), Some(scene)) = (pane.system(), pane.scene()) {
             let exact: &[_] =
                 input.reference.filter(|_| input.common.view.exact).map_or(&[], |reference| &reference.outline);
-            let (drawing, shape, hot) = (&pane.drawing, &pane.shape, pane.pointer.hot_handle());
-            let body = PaneBody { scene, system, drawing, shape, exact, time: 0.0, hot };
+            let (geometry, body_mesh, hot) = (&pane.geometry, &pane.body_mesh, pane.pointer.hot_handle());
+            let body = PaneBody { scene, system, geometry, body_mesh, exact, time: 0.0, hot };
             body.paint(ui, place, camera, &input.common, &self.still);
         }
         if number == 0 {
@@ -517,10 +517,10 @@ impl Compare {
         let font = FontId::proportional(SMALL);
         let middle = rect.center().y;
         let mut x = rect.left() + 12.0;
-        let mut entry = |words: &str, mark: Mark, color: Color32| {
+        let mut entry = |text: &str, mark: Mark, color: Color32| {
             mark.paint(&painter, pos2(x, middle), color);
             let at = pos2(x + Mark::WIDTH + 6.0, middle);
-            let place = painter.text(at, Align2::LEFT_CENTER, tr(words), font.clone(), palette.secondary);
+            let place = painter.text(at, Align2::LEFT_CENTER, tr(text), font.clone(), palette.secondary);
             x = place.right() + 16.0;
         };
         if view.exact {
@@ -529,7 +529,7 @@ impl Compare {
         if view.rest_outline {
             entry("rest", Mark::Outline, palette.rest);
         }
-        let Some(range) = self.panes.first().map(|pane| pane.shape.range) else { return };
+        let Some(range) = self.panes.first().map(|pane| pane.body_mesh.range) else { return };
         grid::color_key(ui, rect, x, view, range);
     }
 }
@@ -560,11 +560,11 @@ fn pick<T: Copy + PartialEq>(
 }
 
 fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut dyn FnMut(&mut Ui)) {
-    let (words, text) = (format!("{pane} {}", tr(what)), tr(text));
-    let combo = ComboBox::from_id_salt(&words).selected_text(RichText::new(text)).width(width).height(420.0).truncate();
+    let (label, text) = (format!("{pane} {}", tr(what)), tr(text));
+    let combo = ComboBox::from_id_salt(&label).selected_text(RichText::new(text)).width(width).height(420.0).truncate();
     let response = combo.show_ui(ui, menu).response;
     response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::ComboBox, true, &words);
+        let mut info = WidgetInfo::labeled(Role::ComboBox, true, &label);
         info.current_text_value = Some(text.to_owned());
         info
     });
@@ -574,17 +574,17 @@ fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut
 fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &mut Option<[u32; 2]>, scene: &Scene) {
     /// Largest number of cells offered.
     const MOST: u64 = 40_000;
-    let words = |[along, across]: [u32; 2]| format!("{along}×{across}");
+    let mesh_text = |[along, across]: [u32; 2]| format!("{along}×{across}");
     let Some(beam) = &scene.beam else {
         return combo(ui, pane, "mesh", "as meshed", width, &mut |ui| {
             ui.label(tr("The mesh is that of the file."));
         });
     };
     let own = beam.cells;
-    let text = words(cells.unwrap_or(own));
+    let text = mesh_text(cells.unwrap_or(own));
     combo(ui, pane, "mesh", &text, width, &mut |ui| {
         ui.set_width(200.0);
-        let about = fill!("Follows the panel, now %{setting}", setting = words(own));
+        let about = fill!("Follows the panel, now %{setting}", setting = mesh_text(own));
         if choice(ui, palette, cells.is_none(), "as in the panel", &about).clicked() {
             *cells = None;
         }
@@ -599,7 +599,7 @@ fn mesh_picker(ui: &mut Ui, palette: &Palette, pane: &str, width: f32, cells: &m
                 _ if offered[0] < own[0] => "coarser",
                 _ => "finer",
             };
-            if choice(ui, palette, *cells == Some(offered), &words(offered), about).clicked() {
+            if choice(ui, palette, *cells == Some(offered), &mesh_text(offered), about).clicked() {
                 *cells = Some(offered);
             }
         }

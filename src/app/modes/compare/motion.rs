@@ -70,8 +70,8 @@ pub struct MotionPane {
     refused: Option<Sentence>,
     /// Computing time of a step, s: an exponentially weighted mean.
     seconds: Option<f64>,
-    drawing: DisplayGeometry,
-    shape: BodyMesh,
+    geometry: DisplayGeometry,
+    body_mesh: BodyMesh,
     /// Colour range of this pane alone; all panes are drawn with a common range that contains it.
     range: [f64; 2],
     place: Option<Rect>,
@@ -86,8 +86,8 @@ impl MotionPane {
             simulation: None,
             refused: None,
             seconds: None,
-            drawing: DisplayGeometry::default(),
-            shape: BodyMesh::default(),
+            geometry: DisplayGeometry::default(),
+            body_mesh: BodyMesh::default(),
             range: [0.0; 2],
             place: None,
             pointer: Pointer::default(),
@@ -130,8 +130,8 @@ impl MotionPane {
         self.refused = made.as_ref().err().map(Sentence::from);
         self.simulation = made.ok();
         if let (Some(simulation), false) = (&self.simulation, goes_on) {
-            self.drawing = DisplayGeometry::new(simulation.system().mesh());
-            self.shape = BodyMesh::default();
+            self.geometry = DisplayGeometry::new(simulation.system().mesh());
+            self.body_mesh = BodyMesh::default();
             self.seconds = None;
         }
         self.scene = Some(wanted);
@@ -261,7 +261,7 @@ impl MotionCompare {
     pub(crate) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
         let camera = self.camera();
         let seen = self.panes.iter().filter_map(|pane| {
-            grid::view(pane.place, (&pane.shape, &pane.drawing), camera, wireframe, pixels_per_point)
+            grid::view(pane.place, (&pane.body_mesh, &pane.geometry), camera, wireframe, pixels_per_point)
         });
         seen.collect()
     }
@@ -311,15 +311,15 @@ impl MotionCompare {
     pub(crate) fn show(&mut self, ui: &mut Ui, input: &PaneInput<'_>) -> Interaction {
         for pane in &mut self.panes {
             if let Some(simulation) = &pane.simulation {
-                pane.shape.range = pane.range;
-                pane.shape.update(simulation, &pane.drawing, input.view, Some(self.played));
-                pane.range = pane.shape.range;
+                pane.body_mesh.range = pane.range;
+                pane.body_mesh.update(simulation, &pane.geometry, input.view, Some(self.played));
+                pane.range = pane.body_mesh.range;
             }
-            pane.shape.color(ui.visuals(), input.view.field);
+            pane.body_mesh.color(ui.visuals(), input.view.field);
         }
         let ranges = self.panes.iter().filter(|pane| pane.is_sound()).map(|pane| pane.range);
         let shared = input.view.fixed_range.unwrap_or(grid::common_range(ranges));
-        self.panes.iter_mut().for_each(|pane| pane.shape.range = shared);
+        self.panes.iter_mut().for_each(|pane| pane.body_mesh.range = shared);
         let whole = ui.available_rect_before_wrap();
         let Grid { cells, key } = Grid::new(whole, self.panes.len());
         for (pane, cell) in self.panes.iter_mut().zip(&cells) {
@@ -348,7 +348,7 @@ impl MotionCompare {
         let Some(first) = self.panes.iter().find_map(MotionPane::simulation) else { return };
         let rest = first.system().mesh().bounds().into();
         let sound = self.panes.iter().filter(|pane| pane.is_sound());
-        let swept = sound.flat_map(|pane| pane.shape.points()).fold(self.swept.unwrap_or(rest), grow);
+        let swept = sound.flat_map(|pane| pane.body_mesh.points()).fold(self.swept.unwrap_or(rest), grow);
         self.swept = Some(swept);
         let controller = self.controller.get_or_insert_with(|| CameraController::new(rest));
         if !self.panes.iter().any(|pane| pane.pointer.holds()) {
@@ -434,7 +434,7 @@ impl MotionCompare {
         let forces = Forces {
             scene: simulation.scene(),
             system: simulation.system(),
-            positions: &pane.shape.nodes,
+            positions: &pane.body_mesh.nodes,
             time: simulation.state().time(),
             direction: input.direction,
             opening: input.opening,
@@ -443,8 +443,8 @@ impl MotionCompare {
         let reach = HitTargets {
             mesh: Some(simulation.system().mesh()),
             camera,
-            positions: &pane.shape.nodes,
-            outline: &pane.drawing.boundary,
+            positions: &pane.body_mesh.nodes,
+            outline: &pane.geometry.boundary,
             handles: &handles,
             scales: controller.scales([place.width(), place.height()].map(f64::from)),
         };
@@ -453,10 +453,16 @@ impl MotionCompare {
         let Some(simulation) = pane.simulation() else { return wish };
         let palette = Palette::new(ui.visuals());
         let painter = ui.painter_at(place);
-        let (drawing, shape, hot) = (&pane.drawing, &pane.shape, pane.pointer.hot_handle());
+        let (geometry, body_mesh, hot) = (&pane.geometry, &pane.body_mesh, pane.pointer.hot_handle());
         let (scene, system, time) = (simulation.scene(), simulation.system(), simulation.state().time());
         let camera = self.camera();
-        PaneBody { scene, system, drawing, shape, exact: &[], time, hot }.paint(ui, place, camera, input, &self.still);
+        PaneBody { scene, system, geometry, body_mesh, exact: &[], time, hot }.paint(
+            ui,
+            place,
+            camera,
+            input,
+            &self.still,
+        );
         if number == 0 {
             overlay::scale_bar(&painter, place, &camera, &palette);
         }

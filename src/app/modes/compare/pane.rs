@@ -46,8 +46,8 @@ pub struct Pane {
     measures: bool,
     end: Option<PaneEnd>,
     system: Option<Arc<System>>,
-    pub(super) drawing: DisplayGeometry,
-    pub(super) shape: BodyMesh,
+    pub(super) geometry: DisplayGeometry,
+    pub(super) body_mesh: BodyMesh,
     /// Range of the field over the body.
     pub(super) range: Option<[f64; 2]>,
     /// Area in which the body is drawn.
@@ -219,7 +219,7 @@ impl Pane {
     /// Returns the loads, as last drawn.
     pub(super) fn forces(&self, direction: f64, opening: OpeningLoads) -> Option<Forces<'_>> {
         let (scene, system) = (self.wanted.as_ref()?, self.system.as_ref()?);
-        Some(Forces { scene, system, positions: &self.shape.nodes, time: 0.0, direction, opening })
+        Some(Forces { scene, system, positions: &self.body_mesh.nodes, time: 0.0, direction, opening })
     }
 
     /// Returns the rest position, m, of the material point under the pointer, and the pointer's position.
@@ -235,14 +235,14 @@ impl Pane {
         let (Some(system), Some(place)) = (&self.system, self.place) else { return };
         let mesh = system.mesh();
         let Some(point) = mesh.locate(rest).filter(|_| self.is_sound() && !self.is_outdated()) else { return };
-        let Some(now) = probe::place(mesh, &self.shape.nodes, point) else { return };
+        let Some(now) = probe::place(mesh, &self.body_mesh.nodes, point) else { return };
         let painter = ui.painter_at(place);
         let at = at.unwrap_or_else(|| {
             let there = Projection { camera, rect: place }.point(now);
             painter.circle_stroke(there, 4.5, Stroke::new(2.0, ui.visuals().strong_text_color()));
             there
         });
-        let value = self.shape.value_at(view, mesh, point);
+        let value = self.body_mesh.value_at(view, mesh, point);
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
@@ -452,13 +452,13 @@ impl Pane {
         if let (Body::Here(simulation), false) = (&self.body, self.measures) {
             let system = simulation.system();
             if self.system.as_ref().is_none_or(|drawn| !Arc::ptr_eq(drawn, system)) {
-                self.drawing = DisplayGeometry::new(system.mesh());
+                self.geometry = DisplayGeometry::new(system.mesh());
                 self.system = Some(system.clone());
             }
-            self.shape.update(simulation, &self.drawing, view, None);
-            self.range = Some(self.shape.range);
+            self.body_mesh.update(simulation, &self.geometry, view, None);
+            self.range = Some(self.body_mesh.range);
         }
-        self.shape.color(visuals, view.field);
+        self.body_mesh.color(visuals, view.field);
     }
 
     /// Computes the error of the result, if the reference solution is known.

@@ -14,7 +14,7 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{marker, segments, still};
 use crate::app::{NoName, free_name};
-use crate::picture::PictureError;
+use crate::image::PictureError;
 use crate::sentence::Sentence;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 

@@ -95,7 +95,7 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
     const NAME: f32 = 84.0;
     const NUMBER: f32 = 78.0;
     let name = fill!("area, %{name}", name = tr(name));
-    let words = growth.map_or_else(|| "\u{2013}".to_owned(), growth_text);
+    let text = growth.map_or_else(|| "\u{2013}".to_owned(), growth_text);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     let painter = ui.painter();
     let put = |x: f32, text: RichText| {
@@ -103,7 +103,7 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
         painter.galley(egui::pos2(x, rect.center().y - 0.5 * galley.size().y), galley, palette.text);
     };
     put(rect.left(), RichText::new(&name).size(SMALL).color(palette.secondary));
-    put(rect.left() + NAME, RichText::new(&words).size(HEADLINE).color(color));
+    put(rect.left() + NAME, RichText::new(&text).size(HEADLINE).color(color));
     let left = rect.left() + NAME + NUMBER;
     let bar =
         Rect::from_min_max(egui::pos2(left, rect.center().y - 4.0), egui::pos2(rect.right(), rect.center().y + 4.0));
@@ -112,6 +112,6 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
         let part = (growth.unwrap_or(0.0).abs() / FULL).min(1.0) as f32;
         painter.rect_filled(bar.with_max_x(bar.left() + part * bar.width()), 2.0, color);
     }
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}: {words}")));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}: {text}")));
     response.on_hover_text(tr("Area growth of the beam, compared with rest"));
 }

@@ -126,7 +126,7 @@ pub(crate) struct Shown<'a> {
 /// View that a card paints over.
 pub(crate) struct View<'a> {
     pub simulation: &'a Simulation,
-    pub drawing: &'a DisplayGeometry,
+    pub geometry: &'a DisplayGeometry,
     /// Positions of the drawn points, m.
     pub points: &'a [Vector2<f64>],
     pub camera: Camera,
@@ -257,10 +257,10 @@ impl Learn {
     }
 
     /// Moves the drawn points to their positions in the exploded view.
-    pub(crate) fn place(&self, simulation: &Simulation, drawing: &DisplayGeometry, points: &mut [Vector2<f64>]) {
+    pub(crate) fn place(&self, simulation: &Simulation, geometry: &DisplayGeometry, points: &mut [Vector2<f64>]) {
         let mesh = simulation.system().mesh();
         let mut rest = Vec::new();
-        drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
+        geometry.points(&|n| mesh.nodes()[n as usize], &mut rest);
         exploded::place(simulation, self.rotation_part, &rest, points);
     }
 
@@ -268,12 +268,12 @@ impl Learn {
     pub(crate) fn pick(&mut self, view: &View<'_>, at: Pos2) {
         let place = |p: u32| view.points.get(p as usize).map(|&p| view.place(p));
         let side = |a: Pos2, b: Pos2| (b - a).x * (at - a).y - (b - a).y * (at - a).x;
-        let found = view.drawing.triangles.iter().position(|corners| {
+        let found = view.geometry.triangles.iter().position(|corners| {
             let [Some(a), Some(b), Some(c)] = corners.map(place) else { return false };
             let sides = [side(a, b), side(b, c), side(c, a)];
             sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
         });
-        let each = view.drawing.triangles.len() / view.simulation.system().mesh().element_count().max(1);
+        let each = view.geometry.triangles.len() / view.simulation.system().mesh().element_count().max(1);
         if let Some(triangle) = found {
             self.picked = triangle / each.max(1);
         }
@@ -409,9 +409,9 @@ fn split(rect: Rect) -> (Rect, Rect) {
     const WIDEST: f32 = 470.0;
     const GUTTER: f32 = 24.0;
     const WIDEST_DRAWING: f32 = 620.0;
-    let words = (0.48 * (rect.width() - GUTTER)).min(WIDEST);
-    let drawing = rect.with_min_x(rect.left() + words + GUTTER);
-    (rect.with_max_x(rect.left() + words), drawing.with_max_x(drawing.right().min(drawing.left() + WIDEST_DRAWING)))
+    let width = (0.48 * (rect.width() - GUTTER)).min(WIDEST);
+    let drawing = rect.with_min_x(rect.left() + width + GUTTER);
+    (rect.with_max_x(rect.left() + width), drawing.with_max_x(drawing.right().min(drawing.left() + WIDEST_DRAWING)))
 }
 
 /// Shows one dot per card; a click goes to the card.
@@ -440,8 +440,8 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
 fn text(ui: &mut Ui, card: &Card) {
     let palette = Palette::new(ui.visuals());
     let is_low = is_low(ui.ctx());
-    let words = spaced(RichText::new(tr(card.text)), BODY).color(palette.text);
-    ui.add(egui::Label::new(words).wrap());
+    let text = spaced(RichText::new(tr(card.text)), BODY).color(palette.text);
+    ui.add(egui::Label::new(text).wrap());
     ui.add_space(4.0);
     let chip = egui::Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(egui::Margin::symmetric(12, 5));
     chip.show(ui, |ui| {
@@ -484,9 +484,9 @@ fn text(ui: &mut Ui, card: &Card) {
 const NOT_TRIANGLES: &str = "These numbers are for three-node triangles only.";
 
 /// Shows the reason for which a card cannot show the scene, with a button that sets up the card again.
-fn not_triangles(ui: &mut Ui, words: &str, learn: &Learn, actions: &mut Vec<Action>) {
+fn not_triangles(ui: &mut Ui, text: &str, learn: &Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        ui.label(tr(words));
+        ui.label(tr(text));
         if ui.button(tr("Back to the article\u{2019}s beam")).clicked() {
             actions.push(Action::Card(learn.card));
         }

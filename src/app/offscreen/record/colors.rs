@@ -5,7 +5,7 @@ use std::iter::repeat_n;
 
 use quantizr::{Image, Options, QuantizeResult};
 
-use crate::picture::Picture;
+use crate::image::Picture;
 
 type Color = [u8; 3];
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::RecordError;
 use super::colors::Palette;
-use crate::picture::Picture;
+use crate::image::Picture;
 
 /// Format of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

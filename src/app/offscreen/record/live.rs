@@ -13,7 +13,7 @@ use super::film::{Film, MovieFormat};
 use crate::app::language::{self, Language, count, fill, said, tr};
 use crate::app::offscreen::painter::Stage;
 use crate::app::task::thread::{Task, Update};
-use crate::picture::Picture;
+use crate::image::Picture;
 use crate::render::{Gpu, RenderError, View};
 
 /// Frames per second.
@@ -203,7 +203,7 @@ impl LiveRecording {
     /// Returns a message once the recording has ended or failed.
     pub(crate) fn poll(&self) -> Option<String> {
         match self.task.poll() {
-            Update::Done(words) => Some(words),
+            Update::Done(text) => Some(text),
             Update::Died => Some(tr("The recording ended unexpectedly").to_owned()),
             Update::Progress(()) | Update::None => None,
         }
@@ -211,20 +211,20 @@ impl LiveRecording {
 
     /// Waits until the file is complete; returns the message.
     pub(crate) fn wait(&self) -> Option<String> {
-        if let Update::Done(words) = self.task.wait() { Some(words) } else { None }
+        if let Update::Done(text) = self.task.wait() { Some(text) } else { None }
     }
 
     /// Returns the recording indicator in the window, which is not recorded.
     pub(crate) fn mark(&self, ctx: &egui::Context, view: Rect, now: f64) -> Vec<Shape> {
         let visuals = ctx.global_style().visuals.clone();
         let seconds = format!("{:.1}", self.seconds(now));
-        let words = if self.is_running() {
+        let text = if self.is_running() {
             fill!("recording %{seconds} s (V stops it)", seconds = seconds)
         } else {
             fill!("Saving %{file}", file = self.path.display())
         };
         let color = visuals.strong_text_color();
-        let galley = ctx.fonts_mut(|fonts| fonts.layout_no_wrap(words, egui::FontId::proportional(14.0), color));
+        let galley = ctx.fonts_mut(|fonts| fonts.layout_no_wrap(text, egui::FontId::proportional(14.0), color));
         const DOT: f32 = 6.0;
         // Below the line key.
         let corner = view.left_top() + egui::vec2(16.0, 44.0);
@@ -395,8 +395,8 @@ mod tests {
         let last = read_texture(&gpu, &recording.target).unwrap();
         recording.stop(&gpu, f64::from(frames) * between);
         assert!(!recording.is_running() && recording.due(9.0).is_none());
-        let words = recording.wait().unwrap();
-        assert!(words.starts_with("Saved"), "{words}");
+        let text = recording.wait().unwrap();
+        assert!(text.starts_with("Saved"), "{text}");
         let movie = decode(&path);
         assert!(movie.len() >= 3, "{}", movie.len());
         // The film has the duration of the recording, in steps of 0.04 s.
@@ -415,8 +415,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("colours.gif");
         let [first, second] = [plain([10, 20, 30], [40, 50, 60]), plain([250, 120, 10], [0, 255, 0])];
-        let words = encoded(&path, vec![(0, first.clone()), (5, second.clone()), (6, first.clone())], 10);
-        assert!(words.contains("3 pictures"), "{words}");
+        let text = encoded(&path, vec![(0, first.clone()), (5, second.clone()), (6, first.clone())], 10);
+        assert!(text.contains("3 pictures"), "{text}");
         let movie = decode(&path);
         let rgb = |p: &Picture| p.rgba.chunks(4).flat_map(|pixel| pixel[..3].to_vec()).collect::<Vec<u8>>();
         assert_eq!(movie, [(rgb(&first), 20), (rgb(&second), 4), (rgb(&first), 16)]);
@@ -436,15 +436,15 @@ mod tests {
         end_early(&path, length - 1).unwrap();
         assert_eq!(decode(&path), whole);
         // The folder does not exist.
-        let words = encoded(&folder.path().join("none/a.gif"), vec![(0, plain([1; 3], [2; 3]))], 1);
-        assert!(words.starts_with("No recording") && words.contains("a.gif"), "{words}");
+        let text = encoded(&folder.path().join("none/a.gif"), vec![(0, plain([1; 3], [2; 3]))], 1);
+        assert!(text.starts_with("No recording") && text.contains("a.gif"), "{text}");
         assert_eq!(encoded(&path, Vec::new(), 0), "Nothing was recorded");
         #[cfg(target_os = "linux")]
         {
             let full = folder.path().join("full.gif");
             std::os::unix::fs::symlink("/dev/full", &full).unwrap();
-            let words = encoded(&full, vec![(0, plain([1; 3], [2; 3]))], 1);
-            assert!(words.starts_with("No recording") && words.contains("space"), "{words}");
+            let text = encoded(&full, vec![(0, plain([1; 3], [2; 3]))], 1);
+            assert!(text.starts_with("No recording") && text.contains("space"), "{text}");
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::app::offscreen::shot::Canvas;
 use crate::app::shell::lab::Lab;
 use crate::app::viewport::color_range::range_of;
 use crate::app::{AppError, ThemeChoice};
-use crate::picture::Picture;
+use crate::image::Picture;
 use crate::render::{Gpu, RenderError};
 use crate::scene::{Analysis, Scene, Source};
 use crate::sentence::Sentence;

@@ -58,13 +58,13 @@ impl Thumbnail {
             simulation.reset();
         }
         let mesh = simulation.system().mesh();
-        let (drawing, view) = (DisplayGeometry::new(mesh), ViewOptions::default());
-        let (mut rest, mut shape) = (Vec::new(), BodyMesh::default());
-        drawing.points(&|n| mesh.nodes()[n as usize], &mut rest);
-        shape.update(&simulation, &drawing, &view, None);
-        let moved = shape.points().to_vec();
-        let BodyMesh { values, range, .. } = shape;
-        let DisplayGeometry { outline, triangles, .. } = drawing;
+        let (geometry, view) = (DisplayGeometry::new(mesh), ViewOptions::default());
+        let (mut rest, mut body_mesh) = (Vec::new(), BodyMesh::default());
+        geometry.points(&|n| mesh.nodes()[n as usize], &mut rest);
+        body_mesh.update(&simulation, &geometry, &view, None);
+        let moved = body_mesh.points().to_vec();
+        let BodyMesh { values, range, .. } = body_mesh;
+        let DisplayGeometry { outline, triangles, .. } = geometry;
         Some(Self {
             scene: SentScene(scene.clone()),
             field: view.field,
