@@ -215,10 +215,11 @@ const TESTS = {
     const toml = readFileSync("assets/scenes/article.toml", "utf8").replace(/cells = .*/, `cells = [${10 * rows}, ${rows}]`).replace('"warped"', '"newton"');
     writeFileSync(file, toml);
     const expected = native("solve", file, "--json");
+    // The last iterations of larger models depend on rounding.
+    const isLarger = unknowns > 20_000;
     const agrees = (now, expected) => {
       equal(now.unknowns, expected.dofs, "unknowns");
-      // The last iterations of larger models depend on rounding.
-      if (!process.env.WEB_UNKNOWNS) equal(now.iterations, expected.iterations, "iterations");
+      if (!isLarger) equal(now.iterations, expected.iterations, "iterations");
       nearProbes(now.probes, expected.probes, 1e-9);
     };
     const link = `?lang=en#scene=${deflateRawSync(toml).toString("base64url")}`;
@@ -242,7 +243,7 @@ const TESTS = {
       await print("dragging its load");
       writeFileSync(file, toml.replace(/force = .*/, `force = [${after.loads[0].force}]`));
       const moved = native("solve", file, "--json");
-      nearProbes(after.probes, moved.probes, 1e-5);
+      nearProbes(after.probes, moved.probes, isLarger ? 1e-5 : 1e-6);
       // A solve that is cancelled by an undo ends with the state before it.
       await page.keyboard.press("Control+z");
       await until((now) => settled(now) && JSON.stringify(now.loads) === JSON.stringify(before.loads) && now.iterations > 0, "waited for the undo");
