@@ -21,7 +21,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("model", &["model"]),
     ("kinematics", &["rotation", "displacement", "material", "state", "exact_beam"]),
     ("element", &["element"]),
-    ("mesh", &["mesh", "article"]),
+    ("mesh", &["mesh", "article", "stress/recovery"]),
     ("scene files", &["scene"]),
     ("solver", &["solver"]),
     ("assembly", &["assembly"]),

@@ -11,13 +11,11 @@ use crate::model::ElementKind;
 mod beam;
 mod gmsh;
 mod locate;
-mod recovery;
 mod refine;
 
 pub(crate) use beam::{bent, straightened};
 pub use gmsh::GmshError;
 pub use locate::MaterialPoint;
-pub use recovery::Recovery;
 
 /// Error of a mesh. Elements are numbered from 0.
 ///

@@ -19,9 +19,11 @@ use crate::sentence::{Sentence, sentence};
 use crate::state::State;
 
 mod estimate;
+mod recovery;
 mod singularity;
 
 pub use estimate::ErrorEstimate;
+pub use recovery::Recovery;
 pub use singularity::Singularity;
 
 /// Symmetric second-order tensor without shear out of the plane: stress (Pa) or strain.
@@ -165,7 +167,7 @@ pub fn visit_points(problem: &Problem, state: &State, kinematics: Kinematics, vi
     });
 }
 
-/// Stress and strain of a state at the nodes of its mesh; see [`crate::mesh::Recovery`].
+/// Stress and strain of a state at the nodes of its mesh; see [`Recovery`].
 ///
 /// The components of ε and of R are recovered, because they are smooth wherever the body is; the stresses are computed
 /// from the recovered ε and R. So all values at a node belong to one deformation.

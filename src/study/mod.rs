@@ -26,7 +26,7 @@ pub use load_path::{
     Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_text,
 };
 pub use motion::MotionStudy;
-pub use progress::{Extent, Observer, Progress, StudyError};
+pub use progress::{Extent, Observer, PartialObserver, Progress, StudyError};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub(crate) use reference::MOST_CERTIFIED;
 pub use reference::{ProbeReference, Reference, ReferenceSource};

@@ -110,6 +110,9 @@ pub struct Progress<'a> {
 /// Callback that receives the progress of a study, and cancels with [`ControlFlow::Break`].
 pub type Observer<'a> = &'a mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
 
+/// Callback as [`Observer`] that also receives the partial study `S` each time a part of it is done.
+pub type PartialObserver<'a, S> = &'a mut dyn FnMut(Progress<'_>, Option<&S>) -> ControlFlow<()>;
+
 /// Extent of a study.
 ///
 /// See [`Study::new`](crate::Study::new) for an example.

@@ -3,7 +3,6 @@
 //! A solve starts from rest, which is the hardest case; data computed once per mesh (sparsity, ordering, the factor of
 //! the stiffness at rest that `auto` keeps) already exist.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -12,7 +11,7 @@ use web_time::{Duration, Instant};
 use super::fine::{Effort, finest_element};
 use super::parallel::{self, CalledOff};
 use super::pareto;
-use super::progress::{Extent, Observer, Progress, StudyError, all_done, check};
+use super::progress::{Extent, Observer, PartialObserver, Progress, StudyError, all_done, check};
 use super::reference::{ProbeReference, Reference, end, first_probe, system_of};
 use super::timing::{expected_time, times_from_rest};
 use crate::assembly::System;
@@ -194,11 +193,7 @@ impl Study {
     ///
     /// # Errors
     /// [`StudyError`].
-    pub fn observed(
-        scene: &Scene,
-        extent: Extent,
-        observe: &mut dyn FnMut(Progress<'_>, Option<&Self>) -> ControlFlow<()>,
-    ) -> Result<Self, StudyError> {
+    pub fn observed(scene: &Scene, extent: Extent, observe: PartialObserver<'_, Self>) -> Result<Self, StudyError> {
         let meshes = meshes(scene, extent);
         let mut study = Self::begin(scene, &mut |progress| observe(progress, None))?;
         // Run the untimed part first on all cores, so that the timed part runs alone on the machine.

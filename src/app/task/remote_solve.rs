@@ -113,12 +113,7 @@ impl RemoteSolve {
                 Ok(mut own) => {
                     made = if continues { own.0.simulation.iterations() } else { 0 };
                     // A solve that is cancelled before its first snapshot leaves the model at its start.
-                    match &start {
-                        Start::Present => {}
-                        Start::Rest => own.0.simulation.reset(),
-                        // A state of another mesh does not fit and is ignored.
-                        Start::State(state) => _ = own.0.simulation.restore(state),
-                    }
+                    start.apply(&mut own.0.simulation);
                     present = Some(own.0.simulation.state().clone());
                     Model::Existing(Box::new(own))
                 }

@@ -67,6 +67,17 @@ pub(crate) enum Start {
     State(State),
 }
 
+impl Start {
+    /// Sets the state that a solve starts from. A state of another mesh does not fit and is ignored.
+    pub(crate) fn apply(&self, simulation: &mut Simulation) {
+        match self {
+            Self::Present => {}
+            Self::Rest => simulation.reset(),
+            Self::State(state) => _ = simulation.restore(state),
+        }
+    }
+}
+
 /// Request for a solve.
 #[derive(Debug)]
 pub(crate) struct SolveRequest {
@@ -186,12 +197,7 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(Progress) -> ControlFlo
     if needs_geometry {
         geometry = Some(bodies.geometry());
     }
-    match start {
-        Start::Present => {}
-        Start::Rest => bodies.simulation.reset(),
-        // A state of another mesh does not fit and is ignored.
-        Start::State(state) => _ = bodies.simulation.restore(&state),
-    }
+    start.apply(&mut bodies.simulation);
     if is_displayed && bodies.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {
         let known = bodies.linear.take();
         if report(Progress::Phase(Phase::LinearSolve)).is_continue() {

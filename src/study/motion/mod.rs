@@ -13,7 +13,7 @@ use self::reference::fine_path;
 use super::fine::finest_element;
 use super::parallel::{self, CalledOff};
 use super::pareto;
-use super::progress::{Extent, Observer, Progress, StudyError, all_done, check};
+use super::progress::{Extent, Observer, PartialObserver, Progress, StudyError, all_done, check};
 use super::reference::{first_probe, system_of};
 use super::timing::{Runs, median_time};
 use super::trade::{Setting, mesh_text};
@@ -277,11 +277,7 @@ impl MotionStudy {
     ///
     /// # Errors
     /// [`StudyError`].
-    pub fn observed(
-        scene: &Scene,
-        extent: Extent,
-        observe: &mut dyn FnMut(Progress<'_>, Option<&Self>) -> ControlFlow<()>,
-    ) -> Result<Self, StudyError> {
+    pub fn observed(scene: &Scene, extent: Extent, observe: PartialObserver<'_, Self>) -> Result<Self, StudyError> {
         let plan = extent.plan();
         let samples = Samples::of(scene, plan);
         let studied = Studied { scene, samples, plan };

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
-use super::Mesh;
+use crate::mesh::Mesh;
 
 /// Superconvergent patch recovery (Zienkiewicz and Zhu 1992, *The superconvergent patch recovery and a posteriori error
 /// estimates*, part 1): around every corner node a complete polynomial of the degree of the element's displacements is
@@ -226,7 +226,8 @@ impl Fit {
         let (mut normal, mut total) = (SMatrix::<f64, T, T>::zeros(), 0.0);
         self.coefficients.clear();
         for (_, x) in &self.points {
-            let basis = SVector::<f64, T>::from_fn(|term, _| self.terms(*x)[term]);
+            let terms = self.terms(*x);
+            let basis = SVector::<f64, T>::from_fn(|term, _| terms[term]);
             let weight = (-(self.scale * (x - about)).norm_squared() / (REACH * REACH)).exp();
             normal += weight * basis * basis.transpose();
             total += weight;
