@@ -25,13 +25,14 @@ mod widgets;
 mod window;
 
 pub use language::Language;
-pub use modes::compare::{MotionPane, MotionPaneSetting, Pane, PaneEnd, PaneSetting, PaneSettingError, parse_panes};
+pub use modes::compare::{MotionPane, MotionPaneSetting, Pane, PaneSetting, PaneSettingError, parse_panes};
 #[doc(hidden)]
 pub use modes::learn::card_count;
 pub use offscreen::record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
 pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
 pub use panel::PANEL_WIDTH;
 #[doc(hidden)]
+pub use session::compared_solve::PaneEnd;
 pub use session::recovery::{Recovery, Unsaved};
 pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;

@@ -3,7 +3,6 @@
 
 use web_time::Instant;
 
-use crate::app::platform::IS_PAGE;
 use crate::app::session::document::Document;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
@@ -272,10 +271,7 @@ impl Session {
                     Err(rejected) => self.receive_rejection(&solve, is_cancelled, *rejected),
                 }
             }
-            // A worker has ended before it had a model.
-            SolveUpdate::Died if IS_PAGE && self.background.work.solve().is_some_and(BackgroundSolve::is_cancelled) => {
-                self.background.work.take_solve();
-            }
+            SolveUpdate::Cancelled => _ = self.background.work.take_solve(),
             SolveUpdate::Died => {
                 self.roll_back();
                 self.background.work = Work::Idle;

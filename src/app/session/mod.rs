@@ -3,6 +3,8 @@
 
 mod background;
 pub(crate) mod clock;
+pub(crate) mod compared_motion;
+pub(crate) mod compared_solve;
 pub(crate) mod document;
 pub(crate) mod facts;
 pub(crate) mod history;

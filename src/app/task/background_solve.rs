@@ -7,7 +7,17 @@ use crate::app::task::thread::{Reporter, Task, Update};
 use crate::scene::{Analysis, Scene};
 
 /// Update of a background solve.
-pub(crate) type SolveUpdate = Update<Box<Snapshot>, Outcome>;
+#[derive(Debug)]
+pub(crate) enum SolveUpdate {
+    /// Nothing new.
+    None,
+    Progress(Box<Snapshot>),
+    Done(Outcome),
+    /// The solve was cancelled before it had a model.
+    Cancelled,
+    /// The solve has ended without a result.
+    Died,
+}
 
 /// Solve in a background thread, or in a worker of a web page. Dropping it cancels it.
 #[derive(Debug)]
@@ -80,14 +90,6 @@ impl BackgroundSolve {
         }
     }
 
-    /// Returns `true` if the solve has been cancelled.
-    pub(crate) fn is_cancelled(&self) -> bool {
-        match &self.runner {
-            Runner::Thread(task) => task.is_cancelled(),
-            Runner::Worker(solve) => solve.is_cancelled(),
-        }
-    }
-
     /// Returns the next update without waiting for it.
     pub(crate) fn poll(&mut self) -> SolveUpdate {
         self.next(false)
@@ -106,14 +108,17 @@ impl BackgroundSolve {
                 Runner::Worker(solve) => solve.next(waits),
             };
             return match update {
-                Update::None => Update::None,
+                Update::None => SolveUpdate::None,
                 Update::Progress(Progress::Phase(phase)) => {
                     self.phase = phase;
                     continue;
                 }
-                Update::Progress(Progress::Snapshot(snapshot)) => Update::Progress(snapshot),
-                Update::Done(outcome) => Update::Done(outcome),
-                Update::Died => Update::Died,
+                Update::Progress(Progress::Snapshot(snapshot)) => SolveUpdate::Progress(snapshot),
+                Update::Done(outcome) => SolveUpdate::Done(outcome),
+                Update::Died => match &self.runner {
+                    Runner::Worker(solve) if solve.is_cancelled() => SolveUpdate::Cancelled,
+                    _ => SolveUpdate::Died,
+                },
             };
         }
     }

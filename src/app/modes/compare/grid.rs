@@ -1,28 +1,17 @@
-//! Common parts of the panes of equilibria and the panes of motions: presets, layout, headers, bodies and the key.
+//! Common controls of the comparisons of equilibria and of motions: presets, pickers, layout and the key.
 
 use egui::emath::GuiRounding;
-use egui::{Align, Align2, FontId, Layout, Rect, RichText, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use egui::{Align, Align2, ComboBox, FontId, Layout, Rect, RichText, Role, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::Vector2;
 
 use super::setting::PANES;
-use crate::app::diagnosis::Errors;
 use crate::app::language::{fill, tr};
-use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::body_mesh::BodyMesh;
-use crate::app::viewport::camera_controller::CameraController;
-use crate::app::viewport::handle::HotHandle;
-use crate::app::viewport::overlay::{self, Overlay};
-use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Pointer, Target};
-use crate::app::viewport::projection::viewport;
-use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::load_scale::OpeningLoads;
+use crate::app::viewport::overlay;
+use crate::app::widgets::buttons::{choice, option_button};
 use crate::app::widgets::palette::{Palette, SMALL};
-use crate::assembly::System;
 use crate::format::{engineering, prefix, three_digits};
-use crate::render::display_geometry::DisplayGeometry;
-use crate::render::{Camera, View};
-use crate::scene::Scene;
+use crate::scene::{ElementKind, Scene};
 
 /// Space between panes, points.
 const GAP: f32 = 6.0;
@@ -32,18 +21,6 @@ const HEADER: f32 = 60.0;
 const KEY: f32 = 26.0;
 /// Smallest width of a pane in a row of three, points.
 const NARROWEST: f32 = 290.0;
-
-/// Common input of the comparisons of equilibria and of motions.
-pub(crate) struct PaneInput<'a> {
-    pub scene: &'a Scene,
-    pub view: &'a ViewOptions,
-    /// Direction of the arrow of a zero force, degrees.
-    pub direction: f64,
-    /// Loads that the scene opens with.
-    pub opening: OpeningLoads,
-    /// `true` if camera movements are animated.
-    pub eases: bool,
-}
 
 /// Named settings of all panes.
 pub(super) struct Preset<S> {
@@ -111,40 +88,6 @@ pub(super) fn body_place(cell: Rect) -> Rect {
     place.round_ui()
 }
 
-/// Change of a pane by its header: the pane's number, and its new setting; `None` closes the pane.
-pub(super) type PaneChange<S> = Option<(usize, Option<S>)>;
-
-/// Shows the headers and bodies of all panes in their cells; returns the change that a header asks for, and the
-/// pointer's interaction with the load of a pane.
-pub(super) fn show_panes<C, I, S>(
-    ui: &mut Ui,
-    cells: &[Rect],
-    (comparison, input): (&mut C, &I),
-    show_header: fn(&C, &mut Ui, usize, &I, &mut PaneChange<S>),
-    show_body: fn(&mut C, &Ui, usize, Rect, &I) -> Interaction,
-) -> (PaneChange<S>, Interaction) {
-    let (mut change, mut interaction) = (None, Interaction::default());
-    for (number, cell) in cells.iter().enumerate() {
-        let place = body_place(*cell);
-        header(ui, number, [*cell, place], |ui| show_header(comparison, ui, number, input, &mut change));
-        let own = show_body(comparison, ui, number, place, input);
-        if own.load.is_some() || own.restore.is_some() {
-            interaction = own;
-        }
-    }
-    (change, interaction)
-}
-
-/// Shows the header of a pane, above the area of its body.
-fn header(ui: &mut Ui, number: usize, [cell, place]: [Rect; 2], contents: impl FnOnce(&mut Ui)) {
-    let header = Rect::from_min_max(cell.min, place.right_top());
-    let inner = header.shrink2(vec2(8.0, 3.0));
-    ui.scope_builder(UiBuilder::new().max_rect(inner).id_salt(("pane", number)), |ui| {
-        ui.set_clip_rect(header.intersect(ui.clip_rect()));
-        contents(ui);
-    });
-}
-
 /// Returns the width and height, points, that all of these areas have in common.
 pub(super) fn common_size(places: impl Iterator<Item = Rect>) -> Option<[f64; 2]> {
     let sizes = places.map(|place| [place.width(), place.height()].map(f64::from));
@@ -159,92 +102,6 @@ pub(super) fn grow([low, high]: [Vector2<f64>; 2], point: &Vector2<f64>) -> [Vec
 /// Returns the smallest range that contains all colour ranges.
 pub(super) fn common_range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default()
-}
-
-/// Animates the camera towards the box that it fits.
-pub(super) fn aim(
-    ui: &Ui,
-    controller: &mut CameraController,
-    fit: impl FnOnce([Vector2<f64>; 2]) -> Camera,
-    eases: bool,
-) {
-    let dt = f64::from(ui.input(|i| i.stable_dt));
-    if controller.aim(fit(controller.whole()), eases.then_some(dt)) {
-        ui.ctx().request_repaint();
-    }
-}
-
-/// Returns the area of a pane's body for the render pass.
-pub(super) fn view<'a>(
-    place: Option<Rect>,
-    (body_mesh, geometry): (&'a BodyMesh, &'a DisplayGeometry),
-    camera: Camera,
-    wireframe: bool,
-    pixels_per_point: f32,
-) -> Option<View<'a>> {
-    Some(View { viewport: viewport(place?, pixels_per_point), frame: body_mesh.frame(geometry, wireframe), camera })
-}
-
-/// Processes the pointer over a pane; moving the view moves it in all panes.
-pub(super) fn follow(
-    ui: &Ui,
-    (number, place): (usize, Rect),
-    pointer: &mut Pointer,
-    reach: &HitTargets<'_>,
-    controller: &mut CameraController,
-) -> Interaction {
-    let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
-    let wish = pointer.follow(ui, &response, reach, Target::None);
-    match wish.camera {
-        CameraMove::None => {}
-        CameraMove::To(camera) => {
-            controller.look(camera);
-            ui.ctx().request_repaint();
-        }
-        CameraMove::Fit => controller.fit(),
-    }
-    wish
-}
-
-/// Body of a pane.
-pub(super) struct PaneBody<'a> {
-    pub scene: &'a Scene,
-    pub system: &'a System,
-    pub geometry: &'a DisplayGeometry,
-    pub body_mesh: &'a BodyMesh,
-    /// Outline of the reference solution, m.
-    pub exact: &'a [Vec<Vector2<f64>>],
-    /// Simulated time, s.
-    pub time: f64,
-    pub hot: Option<HotHandle>,
-}
-
-impl PaneBody<'_> {
-    /// Paints outlines, supports and loads over the body.
-    pub(super) fn paint(&self, ui: &Ui, place: Rect, camera: Camera, input: &PaneInput<'_>, still: &Playback) {
-        let overlay = Overlay {
-            apart: false,
-            scene: self.scene,
-            system: self.system,
-            geometry: self.geometry,
-            options: input.view,
-            camera,
-            positions: &self.body_mesh.nodes,
-            ghost: None,
-            exact: self.exact,
-            errors: Errors::default(),
-            time: self.time,
-            direction: input.direction,
-            opening: input.opening,
-            hot: self.hot,
-            mouse_spring: None,
-            reactions: &[],
-            playback: still,
-            color_range: self.body_mesh.range,
-            warning: None,
-        };
-        overlay::body(&ui.painter_at(place), place, &overlay, ui.visuals());
-    }
 }
 
 /// Paints the common colour bar at the right end of the key, with its title if there is room for it to the right of
@@ -293,4 +150,96 @@ fn cells(rect: Rect, panes: usize) -> Vec<Rect> {
         top += height + GAP;
     }
     cells
+}
+
+/// Shows a picker of a pane: a value of its own, or that of the panel.
+pub(super) fn pick<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    palette: &Palette,
+    (pane, what): (&str, &str),
+    width: f32,
+    (value, (panels, of_panel)): (&mut Option<T>, (&str, &str)),
+    entries: impl Iterator<Item = (T, &'static str, &'static str)> + Clone,
+) {
+    let id = value.and_then(|own| entries.clone().find(|entry| entry.0 == own)).map_or(panels, |entry| entry.1);
+    let mut menu = |ui: &mut Ui| {
+        ui.set_width(280.0);
+        for (kind, id, about) in entries.clone() {
+            if choice(ui, palette, *value == Some(kind), id, about).clicked() {
+                *value = Some(kind);
+            }
+        }
+        let about = fill!("Follows the panel, now %{setting}", setting = tr(panels));
+        if choice(ui, palette, value.is_none(), of_panel, &about).clicked() {
+            *value = None;
+        }
+    };
+    combo(ui, pane, what, id, width, &mut menu);
+}
+
+fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut dyn FnMut(&mut Ui)) {
+    let (label, text) = (format!("{pane} {}", tr(what)), tr(text));
+    let combo = ComboBox::from_id_salt(&label).selected_text(RichText::new(text)).width(width).height(420.0).truncate();
+    let response = combo.show_ui(ui, menu).response;
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::ComboBox, true, &label);
+        info.current_text_value = Some(text.to_owned());
+        info
+    });
+}
+
+/// Shows a picker of the elements that the scene's mesh can have.
+pub(super) fn element_picker(
+    ui: &mut Ui,
+    palette: &Palette,
+    pane: &str,
+    width: f32,
+    element: &mut Option<ElementKind>,
+    scene: &Scene,
+) {
+    let entries = scene.elements().map(|e| (e, e.id(), e.entry().about));
+    pick(ui, palette, (pane, "element"), width, (element, (scene.element().id(), "as in the panel")), entries);
+}
+
+/// Shows a picker of meshes that are finer or coarser than the panel's.
+pub(super) fn mesh_picker(
+    ui: &mut Ui,
+    palette: &Palette,
+    pane: &str,
+    width: f32,
+    cells: &mut Option<[u32; 2]>,
+    scene: &Scene,
+) {
+    /// Largest number of cells offered.
+    const MOST: u64 = 40_000;
+    let mesh_text = |[along, across]: [u32; 2]| format!("{along}×{across}");
+    let Some(beam) = &scene.beam else {
+        return combo(ui, pane, "mesh", "as meshed", width, &mut |ui| {
+            ui.label(tr("The mesh is that of the file."));
+        });
+    };
+    let own = beam.cells;
+    let text = mesh_text(cells.unwrap_or(own));
+    combo(ui, pane, "mesh", &text, width, &mut |ui| {
+        ui.set_width(200.0);
+        let about = fill!("Follows the panel, now %{setting}", setting = mesh_text(own));
+        if choice(ui, palette, cells.is_none(), "as in the panel", &about).clicked() {
+            *cells = None;
+        }
+        let coarser = own.map(|n| n.div_ceil(2));
+        let finer = [1, 2, 4, 8, 16].map(|times| own.map(|n| n.saturating_mul(times)));
+        let offered = std::iter::once(coarser).filter(|&c| c != own).chain(finer);
+        let small = offered.filter(|[a, b]| u64::from(*a) * u64::from(*b) <= MOST);
+        let other = cells.filter(|own| !small.clone().any(|offered| offered == *own));
+        for offered in small.chain(other) {
+            let about = match offered {
+                _ if offered == own => "as in the panel now; does not follow it later",
+                _ if offered[0] < own[0] => "coarser",
+                _ => "finer",
+            };
+            if choice(ui, palette, *cells == Some(offered), &mesh_text(offered), about).clicked() {
+                *cells = Some(offered);
+            }
+        }
+    });
 }

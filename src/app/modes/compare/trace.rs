@@ -4,12 +4,13 @@ use egui::{Pos2, Ui, WidgetInfo, pos2};
 use egui_plot::PlotResponse;
 use nalgebra::Vector2;
 
-use super::pane::{Doing, Pane};
+use super::pane::Pane;
 use super::setting::PaneSetting;
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
 use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::modes::explore::load_curve::{axes, displacement_text, pair, quantities, usual};
+use crate::app::session::compared_solve::Activity;
 use crate::app::session::facts::without_settings;
 use crate::app::task::lazy::{Lazy, facts};
 use crate::app::task::thread::POLL;
@@ -226,7 +227,7 @@ impl Trace {
 
     /// Records a pane's result for the current load. Returns `true` if it is new.
     pub(super) fn record(&mut self, scene: &Scene, pane: &Pane) -> bool {
-        let (Some(axis), Some((probe, good))) = (self.axis, pane.answer()) else { return false };
+        let (Some(axis), Some((probe, good))) = (self.axis, pane.solve.answer()) else { return false };
         let dot = Dot { load: axis.magnitude, u: probe.u, good };
         let setting = pane.setting.of(scene);
         let number = self.series.iter().position(|(own, _)| *own == setting).unwrap_or_else(|| {
@@ -345,8 +346,8 @@ impl Trace {
             }
             let points = dots.iter().map(|dot| self.point(dot, axis.magnitude)).collect();
             all.push(series(&name, ink, Mark::Element(element), is_linear && !stretches, points));
-            let (value, is_bad) = match (pane.answer(), pane.doing()) {
-                (_, Doing::Refused(_)) => (tr("no solution").to_owned(), true),
+            let (value, is_bad) = match (pane.solve.answer(), pane.solve.activity()) {
+                (_, Activity::Refused(_)) => (tr("no solution").to_owned(), true),
                 (Some((probe, true)), _) => (pair(probe.u), false),
                 (Some((_, false)), _) => (tr("does not converge").to_owned(), true),
                 (None, _) => (tr("iterating").to_owned(), false),
