@@ -116,7 +116,7 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
 }
 
 #[test]
-fn setters_name_what_is_not_there() {
+fn setters_name_missing_loads() {
     let mut scene = Scene::beam(4.0, 1.0).clamp("left").force("right", [0.0, -1.0]).moment("right", 2.0);
     scene.set_force(LoadId::nth(0), [1.0, 2.0]).unwrap();
     scene.set_moment(LoadId::nth(1), 3.0).unwrap();
@@ -132,7 +132,7 @@ fn setters_name_what_is_not_there() {
 }
 
 #[test]
-fn sources_that_are_none_are_refused() {
+fn invalid_sources_and_assignments_are_refused() {
     for name in ["", "no-such-scene", "/", "\0", "assets"] {
         let source = Source { name: name.into(), assignments: Vec::new() };
         assert!(open(&source).is_err(), "{name:?}");
@@ -184,7 +184,7 @@ fn solvers_take_empty_and_singular_matrices() {
 }
 
 #[test]
-fn truths_and_words_take_any_number() {
+fn exact_solutions_and_formats_take_any_number() {
     for (bad, word) in BAD.into_iter().zip(["NaN", "inf", "-inf", "1e300", "-1e300"]) {
         let beam = ClampedBeam {
             length: bad,
@@ -216,7 +216,7 @@ fn truths_and_words_take_any_number() {
 }
 
 #[test]
-fn a_scene_without_probes_has_no_truth_and_an_answer() {
+fn a_scene_without_probes_has_a_result_and_no_reference() {
     let scene = Scene::beam(4.0, 1.0).clamp("left").force("right", [0.0, -1.0]).with_method(MethodKind::Auto);
     let simulation = solved(&scene);
     assert!(simulation.solution().probes.is_empty());

@@ -38,7 +38,7 @@ fn report(simulation: &Simulation) -> AutoReport {
 /// For every scene and element and loads over five decades, the result is within the requested error of Newton's.
 /// Linear theory is used where it is accurate enough, and nowhere else.
 #[test]
-fn every_result_is_within_the_asked_error() {
+fn every_result_is_within_the_requested_error() {
     let mut served = 0;
     for (id, element) in ids_of(Analysis::Static).into_iter().flat_map(|id| scene(id).elements().map(move |e| (id, e)))
     {
@@ -73,7 +73,7 @@ fn every_result_is_within_the_asked_error() {
 
 /// Results are within the requested error of the exact beam, too, on a sufficiently fine mesh.
 #[test]
-fn results_stay_within_the_asked_error_of_the_truth() {
+fn results_stay_within_the_requested_error_of_the_reference() {
     for id in ["cantilever", "elastica"] {
         let mut scene = scene(id);
         scene.set_element(ElementKind::T6);
@@ -140,7 +140,7 @@ fn drag(mut scene: Scene, frames: u32, asked: f64) {
 }
 
 #[test]
-fn where_nothing_has_changed_nothing_is_solved() {
+fn auto_does_not_solve_an_unchanged_scene_again() {
     for factor in [1e-3, 1.0] {
         let mut scene = scaled(&scene("elastica"), factor);
         scene.solver.method = MethodKind::Auto;
@@ -189,7 +189,7 @@ fn under_small_loads_nothing_is_factorized() {
 
 /// A changed stiffness makes the old factors useless.
 #[test]
-fn a_new_stiffness_is_factorized_anew() {
+fn a_new_stiffness_is_factorized_again() {
     for factor in [1e-3, 1.0] {
         let mut scene = scaled(&scene("elastica"), factor);
         scene.solver.method = MethodKind::Auto;

@@ -97,7 +97,7 @@ type Edit = &'static dyn Fn(&mut Harness<'_, Lab>);
 
 /// Every kind of edit ends with the result of a solve.
 #[test]
-fn every_edit_goes_through_the_worker_and_ends_where_solve_ends() {
+fn every_edit_of_a_large_model_ends_with_the_result_of_solve() {
     let mut harness = harness("cantilever");
     agrees_with_solve(harness.state());
     let edits: [(&str, Edit); 9] = [
@@ -124,7 +124,7 @@ fn every_edit_goes_through_the_worker_and_ends_where_solve_ends() {
 
 /// Pausing, single steps and continuing work in the background as they do between frames.
 #[test]
-fn a_body_beside_the_window_is_paused_and_stepped() {
+fn a_body_solved_in_the_background_is_paused_and_stepped() {
     let mut harness = harness("article");
     let iterations = harness.state().simulation().iterations();
     harness.get_by_label("Step").click();
@@ -159,7 +159,7 @@ fn large() -> Scene {
 /// While a mesh is created, the previous picture stays with a status text, and the previous
 /// scene is restored on cancel.
 #[test]
-fn cancel_brings_back_what_was() {
+fn cancel_restores_the_state_before_the_edit() {
     let mut harness = harness("cantilever");
     let before = (harness.state().scene().clone(), harness.state().simulation().displacement().to_vec());
     let shown = harness.state().frame().positions.to_vec();
@@ -199,7 +199,7 @@ fn cancel_brings_back_what_was() {
 
 /// A dragged slider requests many meshes, of which few are created: one at a time, and always the last one.
 #[test]
-fn a_dragged_slider_makes_few_bodies() {
+fn a_dragged_slider_sets_up_few_models() {
     let mut harness = harness("cantilever");
     unfold(&mut harness, "Cells along");
     let slider = harness.get_by_role_and_label(Role::Slider, "Cells along").rect();
@@ -233,7 +233,7 @@ fn a_dragged_slider_makes_few_bodies() {
 
 /// An error in a mesh is found in the background and shown at its control; the scene is unchanged.
 #[test]
-fn what_is_wrong_is_said_and_nothing_is_changed() {
+fn a_refused_scene_is_reported_and_nothing_is_changed() {
     let mut harness = harness("cantilever");
     let before = harness.state().scene().clone();
     let wrong = before.clone().with_cells(20, 2).clamp("nowhere");
@@ -247,7 +247,7 @@ fn what_is_wrong_is_said_and_nothing_is_changed() {
 
 /// A dropped lab stops its background solve.
 #[test]
-fn a_dropped_lab_ends_its_worker() {
+fn a_dropped_lab_ends_its_background_solve() {
     let mut lab = {
         let scene = scene_with("cantilever", &["beam.cells=[200,20]", "solver.method=warped"]);
         let simulation = Simulation::new(&scene).unwrap();

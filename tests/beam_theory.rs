@@ -169,7 +169,7 @@ fn warped_frames_are_the_articles_frames() {
 /// Under a large load, the beam grows in linear theory and keeps its length in the warped
 /// formulation (the article's figure 1).
 #[test]
-fn linear_theory_swells_and_warping_does_not() {
+fn linear_theory_makes_the_body_grow_and_warping_does_not() {
     let scene = scene("cantilever");
     let tip_height = |scene: &Scene| {
         let simulation = solved(scene);
@@ -200,7 +200,7 @@ fn the_warped_cantilever_has_the_measured_locking_error() {
 
 /// A load too large for the iteration is reported as diverged with a finite state, and smaller loads converge again.
 #[test]
-fn too_large_a_load_diverges_in_words_and_recovers() {
+fn too_large_a_load_is_reported_as_diverged_and_the_view_recovers() {
     let heavy = scene_with("cantilever", &["load.0.force=[0,-9000]"]);
     let mut simulation = Simulation::new(&heavy).unwrap();
     let status = simulation.solve().clone();

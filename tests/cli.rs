@@ -159,7 +159,7 @@ fn json_has_every_field_of_the_contract() {
 
 /// A motion has the same object with additional fields. Its energy ledger balances, and its energy drift is small.
 #[test]
-fn json_of_a_motion_has_its_books() {
+fn json_of_a_motion_has_its_energy_ledger() {
     for integrator in ["implicit-euler", "tr-bdf2", "energy-momentum"] {
         let choice = format!("dynamics.integrator={integrator}");
         let json = solve_json(&["swing", "--set", &choice, "--set", "dynamics.duration=0.5"]);
@@ -169,7 +169,7 @@ fn json_of_a_motion_has_its_books() {
         let energy = |key: &str| json["energy"][key].as_f64().unwrap_or_else(|| panic!("{integrator}: {key}"));
         let lost = energy("dissipated") + energy("integrator") - energy("pulses") - energy("hands");
         let sum = energy("kinetic") + energy("elastic") - energy("external") + lost;
-        assert!(sum.abs() < 1e-9 * energy("external"), "{integrator}: the sum of the books is {sum} J");
+        assert!(sum.abs() < 1e-9 * energy("external"), "{integrator}: the terms of the ledger sum to {sum} J");
         assert!(json["energy_drift"].as_f64().unwrap() < 1e-6);
         assert!(json["momentum"]["linear"][1].as_f64().unwrap() < 0.0 && json["momentum"]["angular"].is_number());
     }
@@ -181,7 +181,7 @@ fn json_of_a_motion_has_its_books() {
 }
 
 #[test]
-fn the_axial_bar_is_its_own_check() {
+fn the_axial_bar_has_the_analytic_displacement_energy_and_reaction() {
     let json = solve_json(&["stretch"]);
     assert!((json["probes"][0]["u"][0].as_f64().unwrap() - 0.4).abs() < 1e-9);
     assert!((json["energy"]["elastic"].as_f64().unwrap() - 10_000.0).abs() < 1e-3);
@@ -295,7 +295,7 @@ fn a_motion_is_written_as_a_table() {
         let sum = |row: &[f64]| row[from..from + 5].iter().sum::<f64>() - row[from + 5] - row[from + 6];
         let largest = rows.iter().flat_map(|r| &r[from..]).fold(0.0_f64, |m, v| m.max(v.abs()));
         for row in &rows {
-            assert!((sum(row) - sum(&rows[0])).abs() < 1e-9 * largest, "{id}, {integrator}: the books of {row:?}");
+            assert!((sum(row) - sum(&rows[0])).abs() < 1e-9 * largest, "{id}, {integrator}: the ledger of {row:?}");
         }
         // The velocity is the derivative of the displacement, for steps that resolve it.
         let h = rows[1][0] - rows[0][0];
@@ -396,7 +396,7 @@ fn failed_writes_end_with_exit_code_2() {
 /// Ctrl-C ends a long command, which writes its results up to then.
 #[cfg(target_os = "linux")]
 #[test]
-fn an_interrupted_command_leaves_what_it_has() {
+fn an_interrupted_command_writes_its_partial_result() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("swing.csv");
     let args = ["solve", "swing", "--json", "--set", "dynamics.duration=1e5", "--out", "swing.csv"];
@@ -447,7 +447,7 @@ fn an_interrupted_command_leaves_what_it_has() {
 /// A progress bar is shown on a terminal only.
 #[cfg(target_os = "linux")]
 #[test]
-fn what_takes_long_shows_a_bar_on_a_terminal() {
+fn long_commands_show_a_progress_bar_on_a_terminal() {
     let args = ["solve", "swing", "--set", "dynamics.duration=60"];
     let quiet = warpbeam(&args);
     assert_eq!((quiet.status.code(), stderr(&quiet).as_str()), (Some(0), ""));
@@ -616,7 +616,7 @@ fn unreadable_files_and_wrong_usage_get_one_clear_message() {
 
 /// A solve without a result gives its reason in JSON, as in the text output.
 #[test]
-fn json_says_why_a_solve_failed() {
+fn json_states_why_a_solve_failed() {
     let args = ["solve", "cantilever", "--set", "solver.max_iterations=2"];
     let words = stdout(&warpbeam(&args));
     let json: serde_json::Value = serde_json::from_str(&stdout(&warpbeam(&[&args[..], &["--json"]].concat()))).unwrap();
@@ -691,7 +691,7 @@ fn paths_are_any_bytes() {
 }
 
 #[test]
-fn shells_and_man_know_every_command() {
+fn completions_and_the_man_page_have_every_command() {
     let words = ["solve", "no-certificate", "extremes"];
     for shell in ["bash", "zsh", "fish"] {
         let script = stdout(&warpbeam(&["completions", shell]));
@@ -705,7 +705,7 @@ fn shells_and_man_know_every_command() {
 }
 
 #[test]
-fn without_a_display_run_says_so_and_draws() {
+fn without_a_display_run_reports_it_and_writes_a_picture() {
     let folder = tempfile::tempdir().unwrap();
     for args in [&[][..], &["run", "stretch"]] {
         let output = warpbeam_in(folder.path(), args);
@@ -719,7 +719,7 @@ fn without_a_display_run_says_so_and_draws() {
 }
 
 #[test]
-fn without_an_adapter_shot_says_what_to_install() {
+fn without_an_adapter_shot_names_the_package_to_install() {
     let folder = tempfile::tempdir().unwrap();
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_warpbeam"))
         .args(["shot", "article", "-o", "x.png"])
@@ -735,7 +735,7 @@ fn without_an_adapter_shot_says_what_to_install() {
 }
 
 #[test]
-fn curve_prints_linear_theory_beside_the_truth_and_every_method() {
+fn curve_prints_linear_theory_the_reference_and_every_method() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.csv");
     let output = warpbeam(&["curve", "elastica", "--out", path.to_str().unwrap()]);
@@ -815,7 +815,7 @@ fn curve_follows_an_arch_through_its_limit_load() {
 
 /// Under a force beyond its limit load the arch jumps, which is reported; a bending beam does not jump.
 #[test]
-fn a_jump_is_said() {
+fn a_jump_is_reported() {
     let json = solve_json(&["jump", "--no-truth"]);
     assert_eq!((&json["jumped"], &json["stable"]), (&true.into(), &true.into()));
     let at = json["jumped_at"].as_f64().unwrap();
@@ -833,7 +833,7 @@ fn a_jump_is_said() {
 
 /// The reaction of every support is in JSON and in the text output. Displacements and rotations may have units.
 #[test]
-fn solve_tells_the_reaction_of_every_support() {
+fn solve_prints_the_reaction_of_every_support() {
     let set = ["--set", "support.1.turn=30°", "--set", "support.1.displacement=[-5 mm, 0 mm]"];
     let json = solve_json(&[&["snap", "--no-truth"][..], &set].concat());
     let supports = json["supports"].as_array().unwrap();

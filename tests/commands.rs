@@ -24,7 +24,7 @@ const LARGE: [&str; 5] = ["cantilever", "--set", "beam.cells=[400,40]", "--set",
 
 /// A result that exists is printed, whatever was being computed when the signal came.
 #[test]
-fn static_commands_end_with_what_there_is() {
+fn interrupted_static_commands_print_their_partial_result() {
     let folder = tempfile::tempdir().unwrap();
     for signal in [Signal::SIGINT, Signal::SIGTERM] {
         let args = [&["solve", "--json", "--reference", "full"][..], &LARGE].concat();
@@ -193,7 +193,7 @@ fn names_of_probes_are_fields_and_differ() {
 
 /// Results report their limitations, in the text output and in JSON.
 #[test]
-fn results_say_what_limits_them() {
+fn results_name_their_limits() {
     for (args, expected) in [
         (&["cook"][..], "errors refer to the polygon of the file's straight sides"),
         (&["article"], "the largest stress is at the end of a support, where it grows without limit"),

@@ -100,7 +100,7 @@ fn panes_agree_with_solves(harness: &Harness<'_, Lab>) {
 }
 
 #[test]
-fn presets_make_panes_that_say_what_solves_of_their_own_say() {
+fn presets_make_panes_with_the_results_of_independent_solves() {
     let mut harness = harness_of("article", scene("article"));
     harness.run();
     harness.key_press(Key::K);
@@ -163,7 +163,7 @@ fn panes_agree_with_solves_of(lab: &Lab, number: usize) {
 }
 
 #[test]
-fn what_does_not_converge_is_named() {
+fn panes_that_do_not_converge_are_named() {
     let harness = compared("article", "warped:t3,warped:t6,newton:t6");
     let labels = labels(&harness);
     let failed = labels.iter().find(|label| label.starts_with("Pane 2: warped t6 5×1: ")).unwrap();
@@ -343,7 +343,7 @@ fn painted(harness: &Harness<'_, Lab>, begin: &str) -> Vec<(egui::Pos2, String)>
 
 /// Every pane shows the value at the point of the body under the pointer, for any mesh.
 #[test]
-fn every_pane_says_its_value_at_the_point_under_the_pointer() {
+fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
     let mut harness = compared("article", "linear,warped,newton:t6");
     let panes = |lab: &Lab| -> Vec<egui::Rect> { lab.panes().iter().map(|pane| pane.place().unwrap()).collect() };
     let places = panes(harness.state());

@@ -47,7 +47,7 @@ fn swing_error(kind: IntegratorKind, rate: usize, iterations: u32) -> f64 {
 }
 
 #[test]
-fn a_swing_follows_the_truth() {
+fn a_swing_follows_the_reference_solution() {
     for (kind, bounds) in [(TR_BDF2, [0.025, 0.008, 0.003]), (ENERGY_MOMENTUM, [0.025, 0.009, 0.004])] {
         for (rate, bound) in [60, 120, 240].into_iter().zip(bounds) {
             let error = swing_error(kind, rate, 1);
@@ -238,7 +238,7 @@ fn the_discrete_gradient_is_exact() {
 /// Energy–momentum has no dissipation beyond its tolerance: the energy decreases by the
 /// dissipation of the damping only.
 #[test]
-fn energy_momentum_books_only_its_tolerance() {
+fn energy_momentum_loses_energy_within_its_tolerance_only() {
     let mut scene = with("swing", ENERGY_MOMENTUM, 1.0 / 120.0, 0, 2.0).moment("right", 20.0);
     scene.dynamics.damping.stiffness = 2e-3;
     scene.solver.tolerance = 1e-11;
@@ -249,7 +249,7 @@ fn energy_momentum_books_only_its_tolerance() {
 
 /// Stiffness damping does not resist rotation: a body that rotates without deforming keeps its angular momentum.
 #[test]
-fn damping_by_stiffness_leaves_turning_alone() {
+fn stiffness_proportional_damping_does_not_damp_rotation() {
     let mut scene = with("spin", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 5.0);
     scene.material.young = 1e8;
     scene.dynamics.damping.stiffness = 0.01;
@@ -388,7 +388,7 @@ fn distance(scene: &Scene, methods: [MethodKind; 2]) -> (f64, Simulation) {
 const NEWTON_AND_AUTO: [MethodKind; 2] = [MethodKind::Newton, MethodKind::Auto];
 
 #[test]
-fn auto_moves_as_newton_does_within_the_asked_error() {
+fn auto_moves_as_newton_does_within_the_requested_error() {
     const ASKED: [f64; 3] = [10.0, 1.0, 0.1];
     for (id, kind) in ids_of(Analysis::Dynamic).into_iter().flat_map(|id| IMPLICIT.map(|kind| (id, kind))) {
         let mut scene = scene(id);
@@ -439,7 +439,7 @@ fn auto_swings_as_well_with_far_fewer_factorizations() {
 
 /// Under small loads linear theory is used for as long as its phase is accurate; under large loads it is not.
 #[test]
-fn auto_uses_linear_theory_where_it_serves() {
+fn auto_uses_linear_theory_where_it_is_accurate_enough() {
     for kind in IMPLICIT {
         let mut small = with("swing", kind, 1.0 / 60.0, 1, 4.0);
         let large = small.clone();
@@ -496,7 +496,7 @@ fn auto_is_reproduced_to_the_last_bit() {
 /// Old factors must not spoil the conservation of energy–momentum, and switches to and from
 /// linear theory must be recorded.
 #[test]
-fn auto_keeps_what_energy_momentum_keeps() {
+fn auto_conserves_the_energy_that_energy_momentum_conserves() {
     let scene = with("swing", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 10.0).with_method(MethodKind::Auto);
     assert!(drift(&run(&scene)).abs() <= 1e-6);
     let scene = with("spin", ENERGY_MOMENTUM, 1.0 / 60.0, 0, 10.0).with_method(MethodKind::Auto);
@@ -508,7 +508,7 @@ fn auto_keeps_what_energy_momentum_keeps() {
 
 /// A body at rest is grabbed, pulled, and released with another material: the motion is the same as under Newton.
 #[test]
-fn auto_follows_a_hand_and_edits() {
+fn auto_follows_a_grab_and_edits() {
     for kind in IMPLICIT {
         let mut scene = with("swing", kind, 1.0 / 120.0, 1, 1e3);
         scene.scale_loads(1e-6);
@@ -543,7 +543,7 @@ fn auto_follows_a_hand_and_edits() {
 
 /// The decisions are reported in JSON and in the text output.
 #[test]
-fn auto_says_what_it_did() {
+fn auto_reports_its_decisions() {
     let args = ["swing", "--set", "solver.method=\"auto\"", "--set", "dynamics.duration=0.5"];
     let json = solve_json(&args);
     let number = |key: &str| json["auto"][key].as_u64().unwrap();
@@ -561,7 +561,7 @@ fn auto_is_finite_everywhere() {
 
 /// A body is at rest if nothing has moved for half a second and ten steps, and no pulse will follow.
 #[test]
-fn a_body_at_rest_is_said_to_be() {
+fn a_body_at_rest_is_reported_as_at_rest() {
     for h in [1.0 / 60.0, 0.125] {
         let mut scene = Scene::beam(3.0, 0.3).with_cells(4, 1).clamp("left").moving(EULER, h);
         scene = scene.with_material(Material::new(1e8, 0.3)).force("right", [0.0, 10.0]).pulse(1.5, 0.5);
@@ -604,7 +604,7 @@ fn the_last_pulse_ends_when_its_load_does() {
 
 /// A ledger that is kept continues; a ledger that is switched on again starts from the current state.
 #[test]
-fn a_ledger_taken_up_again_begins_anew() {
+fn a_resumed_ledger_starts_with_the_present_energy() {
     let mut simulation = Simulation::new(&scene("swing")).unwrap();
     let ledger = |simulation: &Simulation| *simulation.motion().unwrap().ledger();
     (0..10).for_each(|_| drop(simulation.step().clone()));
@@ -613,7 +613,7 @@ fn a_ledger_taken_up_again_begins_anew() {
     assert_eq!(ledger(&simulation), kept);
     simulation.keep_ledger(false);
     (0..10).for_each(|_| drop(simulation.step().clone()));
-    assert_eq!(ledger(&simulation), kept, "nothing is booked");
+    assert_eq!(ledger(&simulation), kept, "nothing is recorded");
     simulation.keep_ledger(true);
     let anew = ledger(&simulation);
     assert_eq!((anew.start, anew.throughput), (anew.total(), 0.0));
@@ -651,7 +651,7 @@ fn the_critical_step_follows_edits() {
 
 /// The work of pulses and the mouse spring is force times displacement, by the trapezoidal rule over short steps.
 #[test]
-fn works_are_forces_times_ways() {
+fn work_is_force_times_displacement() {
     for (kind, close) in [(EULER, 1e-9), (TR_BDF2, 2e-3), (ENERGY_MOMENTUM, 2e-3), (SYMPLECTIC, 2e-3)] {
         let h = if kind == SYMPLECTIC { 1e-4 } else { 1.0 / 480.0 };
         let steps = (0.5 / h) as u32;
@@ -710,7 +710,7 @@ fn works_are_forces_times_ways() {
 
 /// Dissipation is recorded as damping: under mass damping a, a first mode loses 1 − exp(−a t) of its energy.
 #[test]
-fn damping_is_booked_as_damping() {
+fn damping_is_recorded_as_damping() {
     for kind in [TR_BDF2, ENERGY_MOMENTUM, SYMPLECTIC] {
         for (mass, stiffness) in [(0.5, 0.0), (0.0, 2e-3)] {
             let mut scene = beam(6, 10.0).moving(kind, if kind == SYMPLECTIC { 1e-4 } else { 1.0 / 480.0 });
@@ -732,7 +732,7 @@ fn damping_is_booked_as_damping() {
 
 /// A switch to or from linear theory changes the energy of a state, which the ledger records.
 #[test]
-fn a_change_of_theory_is_booked() {
+fn a_change_of_theory_is_recorded_in_the_ledger() {
     let mut scene = with("swing", TR_BDF2, 1.0 / 60.0, 1, 4.0).with_method(MethodKind::Auto);
     scene.scale_loads(4e-3);
     let mut simulation = Simulation::new(&scene).unwrap();
@@ -751,7 +751,7 @@ fn a_change_of_theory_is_booked() {
 
 /// A free body starts with its scene's velocity and with its spin about its centre. It is stopped when it is far away.
 #[test]
-fn a_body_starts_as_its_scene_says() {
+fn a_body_starts_with_the_velocity_and_spin_of_its_scene() {
     let mut scene = Scene::beam(2.0, 1.0).with_cells(6, 3).moving(TR_BDF2, 0.5).probe("end", "right");
     (scene.start.velocity, scene.start.spin, scene.dynamics.duration) = ([3.0, -1.5], 0.7, 1e6);
     scene.solver.method = MethodKind::Linear;
@@ -793,7 +793,7 @@ fn a_body_starts_as_its_scene_says() {
 
 /// After an edit, a motion continues like one that starts in this state, independent of any cached data.
 #[test]
-fn an_edited_motion_goes_on_as_a_new_one_would() {
+fn an_edited_motion_continues_as_a_new_one() {
     for method in [MethodKind::Linear, MethodKind::Newton, MethodKind::Auto] {
         for kind in [EULER, TR_BDF2, ENERGY_MOMENTUM] {
             let mut scene = with("swing", kind, 1.0 / 60.0, 1, 1e3).with_method(method);
@@ -873,7 +873,7 @@ fn one_solve_is_exact_in_linear_theory() {
 
 /// A free body moves with its velocity, however a step is divided.
 #[test]
-fn halved_steps_make_up_the_step() {
+fn the_halves_of_a_step_add_up_to_it() {
     let mut scene = with("spin", ENERGY_MOMENTUM, 0.4, 0, 4.0);
     scene.material.young = 2e4;
     (scene.start.spin, scene.start.velocity) = (12.0, [0.5, -0.25]);
@@ -887,7 +887,7 @@ fn halved_steps_make_up_the_step() {
 
 /// With the damping ratio ξ = (a/ω + b ω)/2, the critical step is 2 (√(1 + ξ²) − ξ)/ω.
 #[test]
-fn damping_shortens_the_critical_step_as_theory_says() {
+fn damping_shortens_the_critical_step_as_in_theory() {
     let scene = beam(6, 10.0);
     let simulation = Simulation::new(&scene).unwrap();
     let mass = Mass::new(simulation.system(), scene.material.area_density());
@@ -907,7 +907,7 @@ fn damping_shortens_the_critical_step_as_theory_says() {
 
 /// Supported unknowns have neither velocity nor displacement, whatever the body is started with.
 #[test]
-fn supports_stop_what_they_hold() {
+fn supports_stop_the_nodes_that_they_hold() {
     let mut scene = beam(6, 10.0).with_method(MethodKind::Newton);
     (scene.start.velocity, scene.start.spin) = ([1.0, 2.0], 3.0);
     let mut simulation = Simulation::new(&scene).unwrap();

@@ -75,7 +75,7 @@ fn equations_are_shared_and_kept() {
 
 /// A mesh given by the caller is kept by every edit and never replaced by the scene's own.
 #[test]
-fn a_mesh_of_ones_own_survives_every_edit() {
+fn a_mesh_given_by_the_caller_is_kept_by_every_edit() {
     let scene = scene("elastica");
     let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
     let finer = mesh.refined();
@@ -157,7 +157,7 @@ fn a_refused_edit_changes_nothing() {
 
 /// A snapshot keeps the state of a search at one instant, and can continue by itself to the same end.
 #[test]
-fn a_snapshot_stays_and_can_go_on() {
+fn a_snapshot_is_unchanged_and_can_continue() {
     for method in METHODS.iter().map(|method| method.kind) {
         let mut start = scene("article");
         start.solver.method = method;

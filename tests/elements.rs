@@ -278,7 +278,7 @@ fn q4_is_the_textbooks_element() {
 /// Energy, force and Hessian in a strongly deformed state equal those of W(x) = ½ d Ke d, d = Rᵀ(x − x̄) − (X − X̄),
 /// computed with matrices and finite differences.
 #[test]
-fn q4_energy_is_that_of_the_turned_element() {
+fn q4_energy_is_the_linear_energy_in_the_rotated_frame() {
     const STEP: f64 = 1e-5;
     let mut scene = Scene::named("One").with_material(material(Plane::Strain));
     scene.analysis = warpbeam::scene::Analysis::Dynamic;
@@ -331,7 +331,7 @@ fn q4_energy_is_that_of_the_turned_element() {
 /// A uniform traction is distributed over a side: half to each end of a straight side, Simpson's weights if it has a
 /// middle node. On a curved side, the weights sum to its length, and are symmetric if the nodes are.
 #[test]
-fn a_traction_is_shared_out_along_a_side() {
+fn a_traction_is_distributed_along_a_side() {
     let line = [Vector2::new(1.0, 2.0), Vector2::new(2.5, 4.0), Vector2::new(4.0, 6.0)];
     let close = |found: &[f64], expected: &[f64]| {
         assert_eq!(found.len(), expected.len());
@@ -350,7 +350,7 @@ fn a_traction_is_shared_out_along_a_side() {
 
 /// A small rotation gives no strain, up to a rounding error relative to the squared angle.
 #[test]
-fn a_small_turn_strains_nothing() {
+fn a_small_rotation_causes_no_strain() {
     for angle in [1e-9_f64, 1e-6, 1e-4] {
         let (s, half) = (angle.sin(), (0.5 * angle).sin());
         let h = Matrix2::new(-2.0 * half * half, -s, s, -2.0 * half * half);

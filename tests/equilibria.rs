@@ -313,7 +313,7 @@ fn steps_shrink_by_rho() {
 
 /// Supports fix exactly their unknowns, node by node.
 #[test]
-fn supports_fix_what_they_say() {
+fn supports_fix_the_components_that_they_name() {
     let scene = Scene::beam(4.0, 1.0).with_cells(4, 2).clamp("left").support([4.0, -0.5], &[Axis::Y]);
     let simulation = Simulation::new(&scene.support([4.0, 0.5], &[Axis::X])).unwrap();
     let (mesh, pattern) = (simulation.system().mesh(), simulation.system().pattern());
@@ -432,7 +432,7 @@ fn reactions_balance_moments() {
 /// If nothing else converges, `auto` applies the load in steps, as Newton's method does, with the same result. Out of
 /// iterations, it keeps an equilibrium of less load.
 #[test]
-fn auto_takes_load_steps_where_it_must() {
+fn auto_takes_load_steps_where_needed() {
     for (id, factor) in [("cantilever", 30.0), ("elastica", 30.0)] {
         let mut scene = scene(id);
         scene.scale_loads(factor);
@@ -461,7 +461,7 @@ fn auto_takes_load_steps_where_it_must() {
 
 /// The warped iteration reports why it ends: it converges, stalls, or diverges.
 #[test]
-fn the_warped_iteration_says_why_it_ends() {
+fn the_warped_iteration_reports_why_it_ends() {
     let end = |factor: f64, tolerance: f64| {
         let mut scene = scene("cantilever").with_method(MethodKind::Warped);
         scene.scale_loads(factor);
@@ -487,7 +487,7 @@ fn the_warped_iteration_says_why_it_ends() {
 
 /// The body starts from rest if a new support fixes an unknown that has moved; otherwise it keeps its state.
 #[test]
-fn a_support_on_what_has_moved_starts_over() {
+fn a_support_on_moved_nodes_restarts_the_search() {
     let scene = Scene::beam(10.0, 1.0).with_cells(10, 2).clamp("left").force("right", [50.0, -300.0]);
     let mut scene = scene.with_method(MethodKind::Newton);
     scene.solver.max_iterations = 100;

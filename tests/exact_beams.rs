@@ -99,7 +99,7 @@ fn very_large_loads_are_followed() {
 }
 
 #[test]
-fn scenes_with_a_truth_are_recognised() {
+fn scenes_with_an_exact_solution_are_recognised() {
     for id in ["article", "cantilever", "gravity", "elastica", "roll-up", "incline", "column"] {
         assert!(matches!(ExactBeam::of(&scene(id)), Some(ExactBeam::Cantilever(_))), "{id}");
     }

@@ -64,7 +64,7 @@ fn label(harness: &Harness<'_, Lab>, begin: &str) -> String {
 }
 
 #[test]
-fn a_wrong_displacement_of_the_right_length_is_seen_as_wrong() {
+fn a_wrong_displacement_of_the_right_length_has_an_error() {
     let cantilever = scene_with("cantilever", &[FORCE]);
     let exact = Reference::of(&cantilever).unwrap().first().unwrap().displacement;
     let harness = compared(cantilever.clone(), "linear,newton");

@@ -92,7 +92,7 @@ fn shipped_meshes_are_read_with_their_curved_sides() {
 }
 
 #[test]
-fn what_cannot_be_used_is_said_with_its_line() {
+fn unusable_mesh_files_are_refused_with_the_line() {
     let cases = [
         (
             "4.1 0 8",
@@ -249,7 +249,7 @@ fn held_parts_are_solved() {
 /// Two squares share node 3 only. If only one is supported, the other can rotate about the node, which is refused with
 /// the node's number. With another support, or with a second common node, the mesh is accepted.
 #[test]
-fn a_part_that_hangs_on_a_node_is_refused() {
+fn a_part_connected_at_one_node_only_is_refused() {
     let hinged = |second: &str| {
         let text = SQUARE.replacen("1 5 1 5\n2 1 0 5\n1\n2\n3\n4\n5\n", "1 7 1 7\n2 1 0 7\n1\n2\n3\n4\n5\n6\n7\n", 1);
         let text = text.replacen("9 9 0\n", "2 1 0\n2 2 0\n1 2 0\n", 1);
@@ -397,7 +397,7 @@ fn quadrilaterals_are_read() {
 }
 
 #[test]
-fn shapes_that_do_not_fit_are_refused_with_a_remedy() {
+fn elements_of_another_shape_are_refused_with_a_remedy() {
     let mixed = mixed();
     let cases = [
         (QUADS, ElementKind::T3, "expected triangles for t3, got 2 quadrilaterals of 2: set element = \"q4\""),

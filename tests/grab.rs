@@ -73,7 +73,7 @@ fn a_pulled_body_settles_where_the_spring_balances() {
 /// Under a pointer that jumps wildly, every motion stays finite under every integrator, and its energy ledger balances.
 /// Implicit motions are never stopped; explicit ones may run away, in about one of ten cases, and are then stopped.
 #[test]
-fn no_pointer_is_too_wild() {
+fn random_pulls_never_break_a_motion() {
     for id in ids_of(Analysis::Dynamic) {
         for (integrator, element) in INTEGRATORS.iter().flat_map(|i| ELEMENTS.iter().map(move |e| (i, e))) {
             let mut scene = scene(id);
@@ -111,7 +111,7 @@ fn no_pointer_is_too_wild() {
 
 /// Non-finite targets and missing elements are refused, and a new mesh releases the spring.
 #[test]
-fn a_hand_needs_a_body_and_a_place() {
+fn a_grab_needs_a_point_of_the_mesh_and_a_finite_target() {
     let mut simulation = held(&scene("jelly"));
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(simulation.pull_to(Vector2::new(bad, 0.0)).is_err());
@@ -131,7 +131,7 @@ fn a_hand_needs_a_body_and_a_place() {
 /// The spring pulls the free end of a bent beam, below its force limit and far beyond it: the balancing force is the
 /// negative gradient of the energy, by finite differences.
 #[test]
-fn a_hand_pulls_down_the_gradient_of_its_energy() {
+fn the_mouse_spring_force_is_the_negative_gradient_of_its_energy() {
     const STEP: f64 = 1e-6;
     const FACTOR: f64 = 0.7;
     let scene = Scene::beam(4.0, 1.0).with_cells(4, 1).clamp("left").with_method(MethodKind::Newton);
@@ -177,7 +177,7 @@ fn a_hand_pulls_down_the_gradient_of_its_energy() {
 
 /// The energy of the spring is smooth where its force reaches its limit.
 #[test]
-fn a_hands_energy_is_smooth_at_its_reach() {
+fn the_mouse_spring_energy_is_smooth_at_its_reach() {
     let scene = Scene::beam(4.0, 1.0).with_cells(4, 1).clamp("left").with_method(MethodKind::Newton);
     let mut simulation = Simulation::new(&scene).unwrap();
     assert!(simulation.grab(simulation.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap()));
@@ -196,7 +196,7 @@ fn a_hands_energy_is_smooth_at_its_reach() {
 /// On a supported body that is stiffer than that, it is ten times as stiff as the body at the grabbed point. In linear
 /// theory one solve finds the equilibrium.
 #[test]
-fn a_hand_is_as_firm_as_it_says() {
+fn the_mouse_spring_has_its_stated_stiffness() {
     let scene = Scene::beam(4.0, 1.0).with_cells(8, 2).with_material(Material::new(1e6, 0.3));
     let mut free = Simulation::new(&scene.clone().moving(IntegratorKind::TrBdf2, 1e-3)).unwrap();
     let point = free.system().mesh().locate(Vector2::new(3.7, 0.2)).unwrap();
@@ -283,7 +283,7 @@ fn a_body_goes_along_with_a_steady_pointer() {
 /// If a grabbed body gets a support, it stays grabbed, and the spring's stiffness is entered correctly in the new
 /// matrix, so that steps converge as before.
 #[test]
-fn a_hand_keeps_its_hold_when_a_support_comes() {
+fn a_grab_survives_a_new_support() {
     let mut scene = Scene::beam(2.0, 0.5).with_cells(8, 2).with_material(Material::new(1e5, 0.3));
     scene.material.density = 100.0;
     let mut scene = scene.moving(IntegratorKind::EnergyMomentum, 1.0 / 60.0);
@@ -309,7 +309,7 @@ fn a_hand_keeps_its_hold_when_a_support_comes() {
 /// An explicit step limits the spring's stiffness to a quarter of the moved mass over h². Against the stiffness of a
 /// beam, it displaces a corner accordingly, and the corner comes to rest there, because the damping is limited too.
 #[test]
-fn an_explicit_step_softens_the_hand() {
+fn an_explicit_step_limits_the_stiffness_of_the_mouse_spring() {
     let static_scene = Scene::beam(1.0, 0.5).with_cells(3, 1).with_material(Material::new(1e6, 0.3)).clamp("left");
     let corner = Vector2::new(1.0, 0.25);
     let moved = |force: [f64; 2]| {
@@ -353,7 +353,7 @@ fn an_explicit_step_softens_the_hand() {
 /// After a jelly has been pulled hard and released, the drift is a share of the energy from the spring: almost zero for
 /// energy–momentum, the usual dissipation for implicit Euler, and no gain of energy for any integrator.
 #[test]
-fn a_hard_pull_leaves_a_drift_that_says_something() {
+fn a_hard_pull_leaves_the_expected_drift_of_every_integrator() {
     for (integrator, range) in [
         (IntegratorKind::EnergyMomentum, -0.02..0.02),
         (IntegratorKind::TrBdf2, -0.5..0.1),
@@ -386,7 +386,7 @@ fn a_hard_pull_leaves_a_drift_that_says_something() {
 
 /// The drift of a free motion is the lost share of its initial energy; a body at rest has lost nothing.
 #[test]
-fn the_drift_is_a_share_of_what_was_put_in() {
+fn the_drift_is_relative_to_the_energy_input() {
     let mut spin = scene("spin");
     spin.dynamics.integrator = IntegratorKind::ImplicitEuler;
     let mut simulation = Simulation::new(&spin).unwrap();

@@ -325,7 +325,7 @@ fn every_sentence_of_the_library_is_in_the_catalogue() {
 
 /// The names of the library are in the catalogue, too.
 #[test]
-fn everything_of_the_library_that_has_a_name_is_in_the_catalogue() {
+fn every_named_entry_of_the_library_is_in_the_catalogue() {
     let known = catalogue();
     let mut texts: Vec<String> = Vec::new();
     texts.extend(METHODS.iter().flat_map(|entry| [entry.id, entry.about]).map(str::to_owned));
@@ -346,7 +346,7 @@ fn everything_of_the_library_that_has_a_name_is_in_the_catalogue() {
 
 /// Translations have the placeholders of their English texts, and no English words.
 #[test]
-fn translations_have_the_places_of_what_they_translate() {
+fn translations_have_the_placeholders_of_their_originals() {
     let places = |text: &str| -> BTreeSet<String> {
         text.split("%{").skip(1).map(|rest| rest.split_once('}').unwrap().0.to_owned()).collect()
     };

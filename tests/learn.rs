@@ -85,7 +85,7 @@ fn minus(text: &str) -> String {
 
 /// Keys switch between the cards; leaving restores the previous scene, body and view.
 #[test]
-fn leaving_restores_what_was() {
+fn leaving_learn_restores_the_previous_scene() {
     let mut harness = harness([1280.0, 800.0]);
     harness.get_by_label("Step").click();
     harness.run();
@@ -188,7 +188,7 @@ fn the_area_grows_under_linear_theory() {
 
 /// Card 2 shows F, R and S of the clicked triangle.
 #[test]
-fn a_clicked_triangle_says_its_f_r_and_s() {
+fn a_clicked_triangle_shows_its_f_r_and_s() {
     let mut harness = at_card(2);
     for element in [6, 0, 3] {
         let (rest, now) = corners(harness.state(), element);
@@ -217,7 +217,7 @@ fn a_clicked_triangle_says_its_f_r_and_s() {
 
 /// Card 3: every triangle is rotated back by its own R, and the slider moves the triangles back together.
 #[test]
-fn triangles_are_turned_back_onto_their_shape_at_rest() {
+fn rotated_triangles_are_rotated_back_onto_their_rest_shape() {
     let mut harness = at_card(3);
     let drawn = |lab: &Lab, element: usize| {
         let frame = lab.frame();
@@ -355,7 +355,7 @@ fn the_residual_falls_by_rho() {
 
 /// Card 7: ρ is above 1, so that `warped` diverges, while `newton` converges.
 #[test]
-fn beyond_rho_one_newton_gets_there() {
+fn newton_converges_where_rho_exceeds_one() {
     let mut harness = at_card(7);
     assert!(!harness.state().simulation().status().is_success());
     assert!(text_containing(&harness, "rho = ").contains("rho = 1.3"), "{:?}", texts(&harness));
@@ -394,7 +394,7 @@ fn locking_has_each_elements_error() {
 
 /// Card 9: the table has the fastest setting within the error, as it was measured.
 #[test]
-fn the_trade_is_measured_when_asked() {
+fn the_trade_off_is_measured_on_request() {
     let mut harness = at_card(9);
     assert!(harness.query_by_label_contains("Nothing measured yet").is_some());
     harness.get_by_label("Measure").click();
@@ -508,7 +508,7 @@ fn the_panel_is_folded_away_on_the_cards() {
 
 /// Card 1: the view has room for the largest force of the slider, and does not move while the force is dragged.
 #[test]
-fn growth_is_seen_as_growth() {
+fn the_camera_does_not_hide_the_growth_of_the_body() {
     for size in [[1280.0, 800.0], [900.0, 600.0], [640.0, 480.0]] {
         let mut harness = harness(size);
         harness.state_mut().show_card(1);

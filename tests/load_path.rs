@@ -82,7 +82,7 @@ fn moved_supports_do_the_work_that_is_stored() {
 }
 
 #[test]
-fn a_path_that_is_called_off_says_so() {
+fn a_cancelled_path_is_reported_as_interrupted() {
     let mut asked = 0;
     let path = LoadPath::follow(&scene("jump"), &mut |_| {
         asked += 1;

@@ -28,7 +28,7 @@ fn meshes_without_area_are_refused_and_clockwise_triangles_turned() {
 
 /// An invalid mesh gives an error that names the problem; nothing panics later.
 #[test]
-fn what_is_no_mesh_is_refused() {
+fn files_without_a_mesh_are_refused() {
     let triangles = || vec![0, 1, 2, 0, 2, 3];
     let mesh = |nodes, element, connectivity, edges| Mesh::new(nodes, element, connectivity, edges).map(|_| ());
     let none = BTreeMap::new;
@@ -66,7 +66,7 @@ fn what_is_no_mesh_is_refused() {
 
 /// A mesh of the caller, with its own edges, can be solved like any other.
 #[test]
-fn a_mesh_of_ones_own_is_solved_on() {
+fn a_mesh_given_by_the_caller_is_used() {
     let mesh = Mesh::new(square(), ElementKind::T3, vec![0, 1, 2, 0, 2, 3], edge("foot", &[&[0, 1]])).unwrap();
     let scene = Scene::named("Square").clamp("foot").force([0.0, 1.0], [1000.0, 0.0]).probe("corner", [1.0, 1.0]);
     let mut simulation = Simulation::with_mesh(&scene, mesh).unwrap();

@@ -28,7 +28,7 @@ fn expected_work(turns: f64) -> f64 {
 
 /// The loads do the work M θ for any number of turns of the edge: twice the stored energy, by Clapeyron's theorem.
 #[test]
-fn the_work_of_a_moment_counts_full_turns() {
+fn the_work_of_a_moment_counts_full_rotations() {
     for turns in [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, -1.0] {
         let mut simulation = Simulation::new(&rolled(turns)).unwrap();
         // Steps of half a turn: a beam rolled up twice in one step finds other equilibria.
@@ -91,7 +91,7 @@ fn rolled_state(problem: &Problem, angle: f64) -> State {
 
 /// f_ext is the negative gradient of the loads' potential, before and beyond a full turn.
 #[test]
-fn the_force_is_the_gradient_of_the_potential_beyond_a_full_turn() {
+fn the_force_is_the_gradient_of_the_potential_beyond_a_full_rotation() {
     const STEP: f64 = 1e-6;
     const FACTOR: f64 = 0.7;
     let problem = problem();

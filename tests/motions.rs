@@ -196,7 +196,7 @@ fn the_past_ends_at_the_present_and_begins_with_the_scene() {
 /// Other integrators go back together with the body to the displayed time. One that did not run then
 /// starts from the body's state.
 #[test]
-fn companions_go_back_along() {
+fn companions_return_to_the_same_moment() {
     let mut harness = harness("swing");
     harness.state_mut().compare_with(IntegratorKind::ImplicitEuler);
     harness.run_steps(20);
@@ -258,7 +258,7 @@ fn is_said(harness: &mut Harness<'_, Lab>, frames: u32) -> bool {
 /// A clip that is pressed into its own base is reported once. No other built-in scene intersects
 /// itself, at rest or in its result.
 #[test]
-fn a_body_that_passes_through_itself_says_so_once() {
+fn a_body_that_crosses_itself_is_reported_once() {
     let mut clip = harness("clip");
     assert!(is_said(&mut clip, 200));
     clip.run_steps(100);

@@ -59,7 +59,7 @@ fn tip(lab: &Lab) -> [f64; 2] {
 
 /// Dragging the force slider gives the deflection that `solve` gives for that force.
 #[test]
-fn dragging_the_force_slider_bends_the_beam_as_solve_says() {
+fn dragging_the_force_slider_bends_the_beam_as_solve_does() {
     let mut harness = harness("cantilever");
     let before = (force(harness.state()), tip(harness.state()));
     let slider = harness.get_by_role_and_label(Role::Slider, "Force").rect();
@@ -160,7 +160,7 @@ fn values_out_of_range_are_refused_with_a_message() {
 
 /// A refused text stays in its field, where it can be corrected; Escape restores the value.
 #[test]
-fn a_refused_text_stays_to_be_mended() {
+fn a_refused_text_stays_for_correction() {
     let mut harness = harness("cantilever");
     let before = force(harness.state());
     for refused in ["12 kg", "-5"] {
@@ -200,7 +200,7 @@ fn a_refused_text_stays_to_be_mended() {
 
 /// A body with inverted elements is reported, even if its equations are solved.
 #[test]
-fn inside_out_is_said() {
+fn an_inside_out_body_is_reported() {
     let mut harness = harness("cantilever");
     let words = "inverted elements";
     assert!(harness.query_by_label_contains(words).is_none());
@@ -273,7 +273,7 @@ fn run_pause_step_and_reset() {
 
 /// An edit while paused leaves an outdated picture; the window reports this and offers the step.
 #[test]
-fn a_picture_older_than_its_load_says_so() {
+fn a_displayed_state_of_an_earlier_load_is_marked() {
     let mut harness = harness("article");
     harness.get_by_label("Step").click();
     harness.run();
@@ -304,7 +304,7 @@ fn space_on_a_focused_button_is_the_buttons() {
 
 /// Text typed into a number field goes to the field, even if it is completed within one frame.
 #[test]
-fn keys_that_end_a_text_in_their_frame_are_the_texts() {
+fn keys_that_end_a_text_edit_do_not_act_on_the_window() {
     let mut harness = harness("article");
     let converged = harness.state().simulation().iterations();
     harness.get_by_role_and_label(Role::SpinButton, "Force").click();
@@ -417,7 +417,7 @@ fn remedies_are_one_click_away() {
 
 /// If ρ is above 1 although the result has converged, the window explains why.
 #[test]
-fn rho_beyond_one_beside_a_converged_bar_is_explained() {
+fn rho_above_one_with_a_converged_bar_is_explained() {
     let mut harness = harness("article");
     harness.get_by_label("explain").click();
     harness.run();
@@ -434,7 +434,7 @@ fn rho_beyond_one_beside_a_converged_bar_is_explained() {
 }
 
 #[test]
-fn presets_set_the_material_and_the_fold_says_it() {
+fn presets_set_the_material_and_the_collapsed_header_names_it() {
     let mut harness = harness("article");
     assert!(harness.query_by_label("Material: rubber, 1 MPa").is_some());
     unfold(&mut harness, "Young E");
@@ -498,7 +498,7 @@ fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
 }
 
 #[test]
-fn a_diverging_iteration_is_said_in_words_and_the_panel_lives_on() {
+fn a_diverging_iteration_is_reported_and_the_panel_keeps_working() {
     let mut harness = harness("cantilever");
     type_into(&mut harness, "Force", "9000");
     assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
@@ -650,7 +650,7 @@ fn a_support_is_dragged_and_its_reaction_is_shown() {
 /// The window shows for a result: certificate, ρ with an explanation, the error relative to the
 /// exact beam, and the load curve.
 #[test]
-fn results_are_certified_and_compared_with_the_truth() {
+fn results_are_certified_and_compared_with_the_reference() {
     let mut harness = harness("elastica");
     let json = solve_json(&["elastica"]);
     unfold(&mut harness, "stable");
@@ -802,7 +802,7 @@ fn decisions_are_shown() {
 
 /// The window's fonts have every letter of its texts.
 #[test]
-fn no_text_has_letters_that_the_fonts_lack() {
+fn the_fonts_have_every_letter_of_the_texts() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut texts = Vec::new();
     for folder in ["app", "method", "element", "model", "scene", "simulation"] {
@@ -1034,7 +1034,7 @@ fn integrators_are_compared_in_panes() {
 
 /// While the reference solution is computed, the error field says so and shows the progress.
 #[test]
-fn the_error_says_that_the_reference_is_being_computed() {
+fn the_error_shows_that_the_reference_is_being_computed() {
     let mut harness = harness_of("cook");
     let says = |harness: &Harness<'_, Lab>| harness.query_by_label_contains("computing the reference: ").is_some();
     let mut frames = 0;

@@ -13,7 +13,7 @@ use warpbeam::{Material, Plane, Scene};
 
 /// A body that is stretched by S and rotated by R has F = R S everywhere, and its stress follows from the strain S − I.
 #[test]
-fn a_turned_and_stretched_body_has_its_f_r_and_s_at_every_point() {
+fn a_rotated_and_stretched_body_has_its_f_r_and_s_at_every_point() {
     let rotation = Rotation::from_angle(1.1);
     let stretch = Matrix2::new(1.2, 0.07, 0.07, 0.9);
     let f = rotation.matrix() * stretch;

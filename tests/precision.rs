@@ -392,7 +392,7 @@ fn the_bound_of_rounding_holds_out_of_balance() {
 /// A solve that ends at the limit of precision reports the bound of its rounding error; one that stops above that bound
 /// does not.
 #[test]
-fn working_precision_is_called_what_it_is() {
+fn a_residual_at_its_rounding_floor_counts_as_converged() {
     for element in ElementKind::all() {
         for method in [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton] {
             let simulation = at_its_floor(slender(element, method));

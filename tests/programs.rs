@@ -44,7 +44,7 @@ macro_rules! programs {
             include!(concat!("programs/", $name, ".rs"));
 
             #[test]
-            fn it_builds_the_scene_and_runs() {
+            fn the_program_builds_the_scene_and_runs() {
                 let written = include_str!(concat!("programs/", $name, ".rs"));
                 super::check($name, written, &super::Built::built(scene()), &$scene);
                 main().unwrap();
@@ -142,7 +142,7 @@ fn the_diagonals_of_a_beam_are_set() {
 }
 
 #[test]
-fn a_mesh_that_is_not_there_is_refused() {
+fn a_missing_mesh_file_is_refused() {
     let error = Scene::mesh_file("nowhere.msh", "assets/meshes").unwrap_err();
     assert!(error.to_string().contains("nowhere.msh"), "{error}");
 }

@@ -152,7 +152,7 @@ fn a_motion_ends_at_its_duration() {
 }
 
 #[test]
-fn a_pulse_shorter_than_a_step_is_said_to_be() {
+fn a_pulse_shorter_than_a_step_is_reported() {
     let said = |duration: &str| {
         let set = format!("load.1.pulse={{start=0.2,duration={duration}}}");
         stdout(&warpbeam(&["solve", "sway", "--set", &set, "--set", "dynamics.duration=0.3"]))

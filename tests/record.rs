@@ -93,7 +93,7 @@ fn a_motion_is_recorded_in_every_format() {
 
 /// Camera and colours are fixed: nothing changes at the clamp and in the legend.
 #[test]
-fn camera_and_colours_stand_still() {
+fn camera_and_colours_stay_the_same_through_a_recording() {
     let folder = tempfile::tempdir().unwrap();
     record(folder.path(), &["swing", "--seconds", "1", "--fps", "5", "--size", "400x300", "-o", "frames"]);
     let pictures = decode_folder(&folder.path().join("frames"));
@@ -106,7 +106,7 @@ fn camera_and_colours_stand_still() {
 }
 
 #[test]
-fn rates_are_what_the_format_has_and_slow_motion_is_slow() {
+fn rates_are_rounded_to_those_of_the_format_and_slow_motion_is_slow() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let short = ["swing", "--size", "64x64", "--seconds", "0.2"];
@@ -146,7 +146,7 @@ fn a_search_is_recorded_iteration_by_iteration() {
 
 /// A motion that explodes is recorded up to that point.
 #[test]
-fn an_explosion_is_recorded_and_said() {
+fn an_unstable_motion_is_recorded_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["record", "swing", "--set", "dynamics.integrator=symplectic-euler", "--size", "64x64", "-o", "a.gif"];
     let output = warpbeam_in(folder.path(), &args);

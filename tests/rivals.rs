@@ -37,7 +37,7 @@ fn rapier_rests_where_we_do() {
 }
 
 #[test]
-fn rapier_says_what_it_cannot_have() {
+fn rapier_refuses_scenes_that_it_cannot_model() {
     let swing = Swing { solver: RapierSolver::Fem, frequency_factor: 0.05, damping: 1.0, cg_iterations: 20 };
     let end = nalgebra::Vector2::new(0.0, 1.0);
     for (id, set) in

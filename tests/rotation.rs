@@ -143,7 +143,7 @@ fn rotations_agree_with_the_svd() {
 }
 
 #[test]
-fn any_four_numbers() {
+fn the_polar_factor_is_exact_or_undefined_for_any_four_numbers() {
     bolero::check!().with_type().with_iterations(20_000).cloned().for_each(|[a, b, c, d]: [f64; 4]| {
         let f = Matrix2::new(a, b, c, d);
         if f.iter().all(|v| v.is_finite()) {
@@ -155,7 +155,7 @@ fn any_four_numbers() {
 }
 
 #[test]
-fn a_turned_stretch_gives_back_its_turn() {
+fn the_rotation_of_a_rotated_stretch_is_recovered() {
     let parts = (-3.1..3.1f64, -3.0..3.0f64, -3.0..3.0f64, 0.0..3.1f64);
     bolero::check!().with_generator(parts).with_iterations(20_000).cloned().for_each(|(angle, p, q, axis)| {
         let v = Rotation::from_angle(axis).matrix();
@@ -186,7 +186,7 @@ fn the_previous_rotation_is_kept_where_none_is_defined() {
 
 /// Every SIMD lane gives the result of a single element, independent of the other lanes.
 #[test]
-fn elements_side_by_side_have_the_rotations_of_one_by_one() {
+fn elements_in_simd_lanes_have_the_rotations_of_single_ones() {
     let ordinary = [Matrix2::new(0.3, -1.0, 2.0, 0.7), Matrix2::identity(), Matrix2::new(-1.0, 0.1, 0.0, -3.0)];
     let others = [
         Matrix2::new(1.0, 0.2, -0.2, 1.0),

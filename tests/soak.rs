@@ -49,7 +49,7 @@ fn resident() -> Option<u64> {
 
 /// The swing moves for a long time and is pulled by a mouse spring now and then.
 #[test]
-fn a_swing_goes_on() {
+fn a_long_swing_with_pulls_stays_stable_and_keeps_no_memory() {
     let mut scene = scene("swing");
     scene.beam.as_mut().unwrap().cells = [10, 1];
     scene.set_element(ElementKind::T3);
@@ -95,7 +95,7 @@ fn on_the_body(lab: &Lab, part: f64) -> egui::Pos2 {
 
 /// A window whose body is dragged at random keeps running and shows finite values.
 #[test]
-fn a_window_is_played_with() {
+fn random_input_never_breaks_the_window() {
     for id in ["jelly", "flick", "article"] {
         let mut harness = Harness::builder().with_size([1000.0, 700.0]).build_ui_state(
             |ui, lab: &mut Lab| {

@@ -202,7 +202,7 @@ fn stresses_of_a_beam_are_those_of_the_book() {
 /// In a scene rotated by 37°, the Cauchy stresses rotate with the body, and quantities
 /// relative to the body are unchanged.
 #[test]
-fn stresses_turn_with_the_body() {
+fn stresses_rotate_with_the_body() {
     let turn = Rotation::from_angle(37f64.to_radians());
     let load = 1e-4 * YOUNG / 12.0;
     for kind in ElementKind::all() {
@@ -229,7 +229,7 @@ fn stresses_turn_with_the_body() {
 /// A bar is pulled to 18 % strain: Cauchy's stress is the force on the current section, which is thinner in both
 /// directions; Biot's is the force on the section at rest. The strain is reported as beyond the material law's range.
 #[test]
-fn cauchy_is_the_force_on_the_area_there_is() {
+fn cauchy_stress_is_the_force_per_deformed_area() {
     for kind in ElementKind::all() {
         let pull = 0.18 * YOUNG;
         let scene = Scene::beam(4.0, 1.0)
@@ -320,7 +320,7 @@ fn the_mesh_error_is_about_the_true_one() {
 
 /// The estimate detects elements that lock, however well the solution has converged.
 #[test]
-fn the_mesh_error_shouts_where_elements_lock() {
+fn the_mesh_error_is_large_where_elements_lock() {
     let t3 = common::scene("elastica").with_element(ElementKind::T3).with_cells(20, 1);
     let article = common::scene_with("article", &["solver.method=\"newton\""]);
     // Six-node triangles fifty times as long as high lock in volume: the error is 65 %.

@@ -55,7 +55,7 @@ fn single_rows_of_bending_elements_are_studied() {
 /// The progress of a study never decreases and reaches its end. The element that converges fastest is measured first,
 /// and the measurements of each element are listed from coarse to fine.
 #[test]
-fn a_study_says_how_far_it_is_and_has_the_likely_answers_first() {
+fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
     let (mut last, mut elements) = (0.0, Vec::new());
     let mut observe = |progress: warpbeam::study::Progress<'_>, so_far: Option<&Study>| {
         assert!((last..=1.0 + 1e-9).contains(&progress.fraction), "from {last} to {}", progress.fraction);
@@ -150,7 +150,7 @@ fn a_swing_is_studied() {
 /// The progress of a motion study never decreases. Cancelled during timed or untimed runs, the
 /// study keeps its measurements.
 #[test]
-fn a_study_of_a_motion_says_how_far_it_is_and_keeps_what_is_measured() {
+fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
     let scene = scene_with("swing", &["dynamics.duration=0.1"]);
     let until = |is_enough: &dyn Fn(usize, usize) -> bool| {
         let (mut last, mut timed, mut meshes) = (0.0, 0, Vec::new());
@@ -211,7 +211,7 @@ fn the_reference_equals_an_independent_trajectory() {
 }
 
 #[test]
-fn what_cannot_be_studied_is_refused() {
+fn scenes_that_cannot_be_studied_are_refused() {
     let refused = |scene: &Scene| MotionStudy::new(scene, Extent::Quick, &mut go_on).unwrap_err();
     assert_eq!(refused(&scene("cantilever")), StudyError::AtRest);
     assert_eq!(refused(&scene_with("swing", &["probe=[]"])), StudyError::NoProbe);
@@ -233,7 +233,7 @@ fn what_cannot_be_studied_is_refused() {
 /// Tuning refuses to choose a setting if no bound of the error below the requested one is known: a block sheared until
 /// its elements invert, a force on the measured point, and an error smaller than the reference's.
 #[test]
-fn tuning_does_not_claim_what_is_not_known() {
+fn tuning_refuses_demands_below_the_known_error() {
     let block = scene_with("shear", &["load.0.force=[1e6,0]"]);
     let point = Scene::beam(2.0, 1.0).clamp("left").force([2.0, 0.5], [0.0, -100.0]).probe("tip", [2.0, 0.5]);
     for (name, scene, asked) in [("block", block, 5.0), ("point", point, 1.0), ("shear", scene("shear"), 0.01)] {
@@ -316,7 +316,7 @@ fn study_of_a_motion_writes_its_files() {
 /// For any stiffness, step and weight, a motion ends with a message and finite numbers. Implicit integrators run to the
 /// end, and no integrator gains energy.
 #[test]
-fn motions_at_the_extremes_end_in_words() {
+fn motions_at_the_extremes_end_with_a_stated_reason() {
     let cases = cases(Extent::Quick);
     assert!(cases.len() >= 72);
     for case in cases {

@@ -30,7 +30,7 @@ fn clamped() -> Scene {
 
 /// Edges that are moved apart along x and together along y strain all elements equally, whatever their shape.
 #[test]
-fn edges_that_are_moved_strain_a_patch_alike() {
+fn moved_edges_strain_a_patch_uniformly() {
     let (a, b) = (0.03, -0.05);
     for (element, method) in ELEMENTS.iter().flat_map(|e| METHODS.iter().map(move |m| (e, m))) {
         let scene = Scene::beam(2.0, 1.0)
@@ -76,7 +76,7 @@ fn edges_that_are_moved_strain_a_patch_alike() {
 
 /// If all supports rotate about one point, the body rotates with them without stress, by any angle.
 #[test]
-fn a_rigid_turn_of_all_supports_leaves_no_stress() {
+fn a_rigid_rotation_of_all_supports_leaves_no_stress() {
     let centre = Vector2::new(3.0, 2.0);
     for (element, method) in ELEMENTS.iter().flat_map(|e| METHODS.iter().map(move |m| (e, m))) {
         for angle in [0.4, 3.0, -7.0] {
@@ -114,7 +114,7 @@ fn a_rigid_turn_of_all_supports_leaves_no_stress() {
 
 /// A rotating clamp carries a cantilever along. Its weight then bends it like a cantilever built in that direction.
 #[test]
-fn a_turned_clamp_is_another_direction_of_the_weight() {
+fn a_rotated_clamp_equals_a_rotated_gravity() {
     for method in METHODS.iter().filter(|m| m.kind != MethodKind::Linear) {
         let mut straight = Scene::beam(10.0, 1.0).with_method(method.kind).clamp("left").probe("tip", "right");
         straight.solver.max_error_percent = 1e-6;
@@ -131,7 +131,7 @@ fn a_turned_clamp_is_another_direction_of_the_weight() {
 /// A rotation of more than a full turn winds up the beam: it differs from the state at rest with
 /// the same support positions.
 #[test]
-fn a_full_turn_of_one_end_is_not_rest() {
+fn a_full_rotation_of_one_end_is_not_rest() {
     let mut scene = Scene::beam(20.0, 0.5).with_cells(40, 1).clamp("left").clamp("right");
     scene.move_support(SupportId::nth(1), [-8.0, 0.0], TAU).unwrap();
     scene.solver.max_iterations = 300;
@@ -390,7 +390,7 @@ fn the_arch_passes_its_limit_load() {
 }
 
 #[test]
-fn what_supports_cannot_do_is_refused_with_its_reason() {
+fn invalid_supports_are_refused_with_a_reason() {
     let refused = |scene: &Scene| match Simulation::new(scene) {
         Err(error @ SimulationError::System(_)) => error.to_string(),
         other => format!("{other:?}"),

@@ -199,7 +199,7 @@ fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
 
 /// A drag moves the object that was pressed, even if the pointer has moved on before the next frame.
 #[test]
-fn a_press_takes_what_was_under_it_however_late_the_frame() {
+fn a_press_acts_on_the_target_under_it_in_late_frames_too() {
     let mut harness = harness("cantilever");
     let (camera, pos) = (harness.state().camera(), tip(harness.state()));
     harness.hover_at(pos);
@@ -287,7 +287,7 @@ const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Pausing a motion does not pause the static scene that replaces it.
 #[test]
-fn a_scene_that_comes_back_is_solved() {
+fn a_scene_opened_while_another_is_paused_is_solved() {
     let mut harness = harness("article");
     harness.get_by_role_and_label(Role::ComboBox, "Scene").click();
     harness.run();
@@ -305,7 +305,7 @@ fn a_scene_that_comes_back_is_solved() {
 
 /// A drag is one undo step, whatever its intermediate values; steps are undone and redone in order.
 #[test]
-fn edits_are_undone_and_done_again() {
+fn edits_are_undone_and_redone() {
     let mut harness = harness("cantilever");
     assert!(!harness.state().can_undo() && !harness.state().can_redo());
     let start = harness.state().scene().clone();
@@ -566,7 +566,7 @@ fn a_wheel_in_the_gallery_does_not_zoom_the_view() {
 
 /// The gallery lists all scenes with descriptions, fits in a window of any size, and can be operated by keys.
 #[test]
-fn the_gallery_is_gone_through_by_keys() {
+fn the_gallery_is_navigated_by_keys() {
     for size in [[640.0, 480.0], [1280.0, 800.0]] {
         let mut harness = harness("cantilever");
         harness.set_size(size.into());
@@ -605,7 +605,7 @@ fn the_gallery_is_gone_through_by_keys() {
 /// The tooltip shows the field's value at the pointer. A click opens a card with the numbers of the point, and a click
 /// on the card closes it.
 #[test]
-fn the_body_says_its_values_and_a_click_keeps_them() {
+fn the_values_under_the_pointer_are_shown_and_a_click_keeps_them() {
     let mut harness = harness("article");
     let at = Vector2::new(2.2, 0.3);
     let pos = on_body(harness.state(), at);
@@ -668,7 +668,7 @@ fn the_body_says_its_values_and_a_click_keeps_them() {
 
 /// The view does not follow a body that has not converged, because it may be anywhere.
 #[test]
-fn the_view_does_not_follow_what_has_not_converged() {
+fn the_view_does_not_follow_unconverged_states() {
     let mut harness = harness("cantilever");
     let camera = harness.state().camera();
     let mut heavy = harness.state().scene().clone();
@@ -687,7 +687,7 @@ fn the_view_does_not_follow_what_has_not_converged() {
 
 /// An animated view moves for some frames, ends where the view without animation is, and then nothing is redrawn.
 #[test]
-fn the_view_eases_to_where_it_would_jump() {
+fn the_eased_view_ends_where_the_other_jumps() {
     let mut jumps = harness("elastica");
     let mut eases = harness("elastica");
     eases.state_mut().set_easing(true);
@@ -813,7 +813,7 @@ fn settings_go_from_one_lab_to_the_next() {
 
 /// A moment is applied to an edge that can rotate, whatever the names of the edges, and moves the body there.
 #[test]
-fn a_moment_goes_on_an_edge_that_can_turn() {
+fn a_moment_needs_an_edge_that_can_rotate() {
     for (id, moment, held) in [("bracket", "200", "wall"), ("cook", "1", "clamp"), ("bridge", "500", "right")] {
         let mut harness = harness(id);
         let before = harness.state().simulation().displacement().to_vec();

@@ -59,7 +59,7 @@ fn units_are_read_to_the_last_digit() {
 }
 
 #[test]
-fn what_is_none_is_named() {
+fn wrong_units_are_refused_with_the_expected_ones() {
     for (text, unit, message) in [
         ("12 kN", "Pa", "`12 kN` is a force (N); expected a pressure (Pa)"),
         ("3 mm", "N", "`3 mm` is a length (m); expected a force (N)"),

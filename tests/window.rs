@@ -329,7 +329,7 @@ fn a_slider_is_dragged_the_picture_changes_and_close_exits_0() {
 }
 
 #[test]
-fn the_window_survives_what_windows_go_through() {
+fn the_window_survives_being_minimized_and_resized() {
     let Some(desktop) = Desktop::start() else { return };
     let window = Window::open(&desktop, &["run", "cantilever"]);
     let before = window.settle();
@@ -381,7 +381,7 @@ fn an_idle_window_uses_no_processor() {
 /// A motion ends at rest, where nothing is redrawn. The body follows the pointer, comes to rest again after release,
 /// and a reset shows the same motion with the same end.
 #[test]
-fn a_body_in_motion_is_pulled_let_go_and_reset() {
+fn a_body_in_motion_is_pulled_released_and_reset() {
     let Some(desktop) = Desktop::start() else { return };
     // The damping is strong enough that the body rests after some seconds.
     let window = Window::open(&desktop, &["run", "jelly", "--set", "dynamics.damping.mass=15"]);
@@ -573,7 +573,7 @@ fn movie(path: &std::path::Path) -> Option<(usize, f64)> {
 
 /// The key V records the window until it is pressed again or the window is closed.
 #[test]
-fn v_records_the_window_with_its_hands() {
+fn v_records_the_window_while_the_body_is_pulled() {
     let Some(desktop) = Desktop::start() else { return };
     let folder = tempfile::tempdir().unwrap();
     let window = Window::open_in(&desktop, folder.path(), &["run", "jelly"]);

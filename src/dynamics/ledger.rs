@@ -183,7 +183,7 @@ mod tests {
     /// Energy added by the integrator is compared with the energy at the earlier time, the change of the potential, and
     /// the work since; losses never count.
     #[test]
-    fn a_gain_is_measured_by_what_was_there_and_done() {
+    fn an_energy_gain_is_relative_to_the_initial_energy_and_the_work() {
         let before = Ledger {
             kinetic: 3.0,
             elastic: 2.0,

@@ -444,7 +444,7 @@ mod tests {
     use crate::format::{editable, engineering};
 
     #[test]
-    fn what_is_shown_reads_back() {
+    fn displayed_numbers_are_read_back_unchanged() {
         for unit in ["N", "Pa", "m", "m/s²", "N m", "s", "1/s", "°", "kg/m³", "", "%"] {
             for value in [30_000.0, -0.25, 1e6, 0.016, 1234.5, 2.1e11, 1e-9, 9.81] {
                 let shown = editable(value, unit);

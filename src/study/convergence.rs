@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_converge_has_a_large_bound_or_none() {
+    fn unconverged_results_have_a_large_bound_or_none() {
         assert_eq!(remaining_error(&sequence(0.1, 0.5, 1), false), None);
         for q in [0.95, 1.0, 1.1] {
             let changes = 0.1 * q - 0.1 * q * q;

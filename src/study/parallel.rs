@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_come_in_order_and_work_is_called_off() {
+    fn results_come_in_order_and_work_is_cancelled() {
         let items: Vec<u32> = (0..1000).collect();
         let squares = map(&items, |n, _| n * n, |_| ControlFlow::Continue(()));
         assert!(squares.iter().zip(&items).all(|(square, n)| *square == Some(n * n)));
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_has_begun_is_told_that_it_is_called_off() {
+    fn running_work_is_notified_of_its_cancellation() {
         // Without the flag neither item would end.
         let until_told = |_: &u32, cancelled: &CalledOff| {
             while cancelled.flow().is_continue() {

@@ -18,7 +18,7 @@ mod tests {
     use super::front;
 
     #[test]
-    fn the_front_is_what_no_other_beats() {
+    fn the_front_has_the_settings_that_no_other_beats() {
         let pairs = [(1.0, 9.0), (2.0, 3.0), (2.0, 3.0), (2.0, 4.0), (3.0, 3.0), (4.0, 1.0), (0.1, f64::INFINITY)];
         assert_eq!(front(&pairs), [true, true, false, false, false, true, false]);
     }

@@ -202,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn meshes_have_about_the_unknowns_that_are_asked() {
+    fn meshes_have_about_the_requested_unknowns() {
         for element in ElementKind::all() {
             for unknowns in UNKNOWNS {
                 let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]);

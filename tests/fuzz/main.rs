@@ -255,7 +255,7 @@ fn the_gmsh_reader_reads_or_refuses_any_file() {
 
 /// Scenes and meshes that are too large are refused before memory is allocated for them.
 #[test]
-fn the_enormous_is_refused_before_it_is_allocated() {
+fn enormous_models_are_refused_before_allocation() {
     let built_in = registry::find("article").unwrap().toml;
     for cells in ["[100000, 100000]", "[4294967295, 1]", "[100000, 3]"] {
         let text = built_in.replacen("cells = [5, 1]", &format!("cells = {cells}"), 1);

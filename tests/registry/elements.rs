@@ -16,35 +16,44 @@ use warpbeam::{Axis, ElementKind, Load, Material, Plane, Scene, State, Status};
 use crate::{Test, suite};
 
 const TESTS: &[Test<ElementKind>] = &[
-    ("its_id_is_the_word_of_scene_files", its_id_is_the_word_of_scene_files),
+    ("the_id_is_the_name_in_scene_files", the_id_is_the_name_in_scene_files),
     ("shape_functions_are_one_at_their_node_and_zero_at_others", shape_functions_are_one_at_their_node),
     ("shape_functions_sum_to_one", shape_functions_sum_to_one),
     ("local_gradients_are_derivatives", local_gradients_are_derivatives),
     ("sides_run_around", sides_run_around),
-    ("rules_integrate_what_they_must", rules_integrate_what_they_must),
+    (
+        "quadrature_rules_integrate_the_products_of_shape_functions",
+        quadrature_rules_integrate_the_products_of_shape_functions,
+    ),
     ("values_at_points_are_interpolated", values_at_points_are_interpolated),
     ("children_and_lattice_cover_the_cell", children_and_lattice_cover_the_cell),
-    ("clockwise_elements_are_turned_over", clockwise_elements_are_turned_over),
+    ("clockwise_elements_are_reversed", clockwise_elements_are_reversed),
     ("refinement_keeps_the_body", refinement_keeps_the_body),
     ("material_points_are_found_in_curved_elements", material_points_are_found_in_curved_elements),
     ("patch_test", patch_test),
     ("uniform_traction_gives_uniform_strain", uniform_traction_gives_uniform_strain),
     ("fields_of_a_uniform_stretch", fields_of_a_uniform_stretch),
-    ("the_strains_at_points_hold_the_energy", the_strains_at_points_hold_the_energy),
+    ("the_strains_at_points_add_up_to_the_energy", the_strains_at_points_add_up_to_the_energy),
     ("areas_and_inversions_are_those_of_the_map", areas_and_inversions_are_those_of_the_map),
-    ("points_are_seen_with_the_rotation_around_them", points_are_seen_with_the_rotation_around_them),
+    ("the_rotation_at_points_is_the_local_one", the_rotation_at_points_is_the_local_one),
     ("rigid_motions_give_no_force_and_no_energy", rigid_motions_give_no_force_and_no_energy),
     ("the_force_is_the_gradient_of_the_energy", the_force_is_the_gradient_of_the_energy),
     ("the_tangent_is_the_derivative_of_the_force", the_tangent_is_the_derivative_of_the_force),
     ("the_stiffness_and_the_offset_make_up_the_force", the_stiffness_and_the_offset_make_up_the_force),
-    ("its_positive_part_of_g_is_no_less_than_g", its_positive_part_of_g_is_no_less_than_g),
-    ("between_two_states_it_works_by_the_energys_difference", between_two_states_it_works_by_the_energys_difference),
-    ("damping_is_the_stiffness_at_rest_and_blind_to_turning", damping_is_the_stiffness_at_rest_and_blind_to_turning),
+    ("the_positive_part_of_g_is_no_less_than_g", the_positive_part_of_g_is_no_less_than_g),
+    (
+        "the_work_between_two_states_is_the_difference_of_energies",
+        the_work_between_two_states_is_the_difference_of_energies,
+    ),
+    (
+        "damping_is_the_stiffness_at_rest_and_does_not_damp_rotation",
+        damping_is_the_stiffness_at_rest_and_does_not_damp_rotation,
+    ),
     ("works_are_reciprocal", works_are_reciprocal),
     ("a_moment_is_a_couple", a_moment_is_a_couple),
     ("the_energy_norm_converges_at_its_rate", the_energy_norm_converges_at_its_rate),
     ("stress_is_that_of_the_bent_beam", stress_is_that_of_the_bent_beam),
-    ("stress_turns_with_the_body", stress_turns_with_the_body),
+    ("stress_rotates_with_the_body", stress_rotates_with_the_body),
 ];
 
 pub fn trials() -> Vec<Trial> {
@@ -56,7 +65,7 @@ fn samples(entry: &ElementType) -> Vec<[f64; 2]> {
     (entry.cell.lattice)(5).points.into_iter().map(|[x, y]| [0.9 * x + 0.03, 0.9 * y + 0.02]).collect()
 }
 
-fn its_id_is_the_word_of_scene_files(kind: ElementKind) {
+fn the_id_is_the_name_in_scene_files(kind: ElementKind) {
     let word = toml::Value::try_from(kind).unwrap();
     assert_eq!(word.as_str(), Some(kind.id()));
     assert_eq!(kind.entry().kind, kind);
@@ -132,7 +141,7 @@ fn integrate(entry: &ElementType, pieces: u32, g: impl Fn([f64; 2]) -> f64) -> f
     sum
 }
 
-fn rules_integrate_what_they_must(kind: ElementKind) {
+fn quadrature_rules_integrate_the_products_of_shape_functions(kind: ElementKind) {
     let entry = kind.entry();
     let apply =
         |rule: &[RulePoint], g: &dyn Fn([f64; 2]) -> f64| -> f64 { rule.iter().map(|p| p.weight * g(p.at)).sum() };
@@ -264,7 +273,7 @@ fn is_inside(x: &Vector2<f64>) -> bool {
     x.x > 1e-9 && x.x < 2.0 - 1e-9 && x.y.abs() < 1.0 - 1e-9
 }
 
-fn clockwise_elements_are_turned_over(kind: ElementKind) {
+fn clockwise_elements_are_reversed(kind: ElementKind) {
     let mesh = irregular_mesh(kind);
     let entry = kind.entry();
     let over = entry.turned_over();
@@ -399,7 +408,7 @@ fn fields_of_a_uniform_stretch(kind: ElementKind) {
 
 /// The energy of the strains at the quadrature points is the elastic energy. These strains include the
 /// part of an element's own modes.
-fn the_strains_at_points_hold_the_energy(kind: ElementKind) {
+fn the_strains_at_points_add_up_to_the_energy(kind: ElementKind) {
     for plane in [Plane::Stress, Plane::Strain] {
         let problem = problem(&irregular_scene(plane), kind);
         let (elements, moduli) = (problem.system().elements(), problem.material().membrane());
@@ -451,7 +460,7 @@ fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
 
 /// In a body whose ends are rotated against each other by more than two radians, the rotation at every quadrature point
 /// is close to the local one.
-fn points_are_seen_with_the_rotation_around_them(kind: ElementKind) {
+fn the_rotation_at_points_is_the_local_one(kind: ElementKind) {
     let scene = Scene::beam(16.0, 1.0).with_cells(16, 1).with_element(kind).clamp("left");
     let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
     let radius = 6.0;
@@ -550,7 +559,7 @@ fn the_tangent_is_the_derivative_of_the_force(kind: ElementKind) {
 
 /// A + max(G, 0) lowers no eigenvalue: it exceeds A + G by a positive semidefinite matrix, in
 /// compression, tension and bending.
-fn its_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
+fn the_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Stress), kind);
     for (along, across) in [(0.9, 0.9), (1.1, 1.05), (0.8, 1.2)] {
         let start = state(&problem, |x| bent(Vector2::new(along * x.x, across * x.y)));
@@ -566,7 +575,7 @@ fn its_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
 
 /// The work of the force between two states, however far apart, is the difference of their energies. The force has no
 /// resultant and no moment.
-fn between_two_states_it_works_by_the_energys_difference(kind: ElementKind) {
+fn the_work_between_two_states_is_the_difference_of_energies(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Strain), kind);
     let (system, moduli) = (problem.system(), problem.material().membrane());
     let turned = |degrees: f64, place: fn(Vector2<f64>) -> Vector2<f64>| {
@@ -597,7 +606,7 @@ fn between_two_states_it_works_by_the_energys_difference(kind: ElementKind) {
 
 /// At rest, the viscous matrix is the stiffness of its moduli. In any state the viscous force is linear in the velocity
 /// with the given matrix, which is positive semidefinite, and zero for a rigid motion.
-fn damping_is_the_stiffness_at_rest_and_blind_to_turning(kind: ElementKind) {
+fn damping_is_the_stiffness_at_rest_and_does_not_damp_rotation(kind: ElementKind) {
     use warpbeam::element::StrainRate;
     let problem = problem(&irregular_scene(Plane::Strain), kind);
     let (system, moduli) = (problem.system(), problem.material().membrane());
@@ -872,7 +881,7 @@ fn stress_is_that_of_the_bent_beam(kind: ElementKind) {
 }
 
 /// A scene rotated by 37° has the same stresses and the same rotations relative to the body.
-fn stress_turns_with_the_body(kind: ElementKind) {
+fn stress_rotates_with_the_body(kind: ElementKind) {
     let turn = Rotation::from_angle(37.0 / 180.0 * PI);
     let scene = moment_beam(kind, 500.0).with_cells(20, 1).force("right", [30.0, -20.0]);
     let mut straight = Simulation::new(&scene).unwrap();

@@ -14,11 +14,11 @@ use crate::{Test, suite};
 type Entry = &'static IntegratorEntry;
 
 const TESTS: &[Test<Entry>] = &[
-    ("its_error_goes_with_the_power_of_the_step_it_says", its_error_goes_with_the_power_of_the_step_it_says),
+    ("the_error_has_the_stated_order_in_the_step", the_error_has_the_stated_order_in_the_step),
     ("a_free_body_falls", a_free_body_falls),
     ("a_pulse_leaves_its_impulse", a_pulse_leaves_its_impulse),
     ("the_ledger_closes", the_ledger_closes),
-    ("damping_takes_what_rayleigh_says", damping_takes_what_rayleigh_says),
+    ("damping_removes_the_energy_of_rayleighs_formula", damping_removes_the_energy_of_rayleighs_formula),
     ("linear_theory_is_the_limit_of_small_loads", linear_theory_is_the_limit_of_small_loads),
     ("motion_is_reproduced_to_the_last_bit", motion_is_reproduced_to_the_last_bit),
 ];
@@ -33,7 +33,7 @@ fn step(entry: Entry, implicit: f64) -> f64 {
 }
 
 /// For three steps, each half of the one before, the differences of the results fall by 2 to the integrator's order.
-fn its_error_goes_with_the_power_of_the_step_it_says(entry: Entry) {
+fn the_error_has_the_stated_order_in_the_step(entry: Entry) {
     // The explicit integrator is stable only at steps this much smaller.
     let (coarse, steps): (f64, u32) = if entry.is_explicit() { (1.0 / 7680.0, 3840) } else { (1.0 / 480.0, 240) };
     let tip = |halvings: u32| {
@@ -115,18 +115,18 @@ fn the_ledger_closes(entry: Entry) {
     assert_eq!(*simulation.status(), Status::Finished);
     let ledger = *simulation.motion().unwrap().ledger();
     assert!(ledger.imbalance().abs() < 1e-11 * ledger.throughput, "{ledger:?}");
-    for (what, booked) in [
+    for (what, recorded) in [
         ("dissipated", ledger.dissipated),
         ("pulses", ledger.pulses.abs()),
         ("hands", ledger.mouse_spring.abs()),
         ("edits", ledger.edits.abs()),
     ] {
-        assert!(booked > 1e-3, "{what} {booked}");
+        assert!(recorded > 1e-3, "{what} {recorded}");
     }
 }
 
 /// Rayleigh damping: after whole periods, a small first mode keeps exp(−(a + b ω²) t) of its energy.
-fn damping_takes_what_rayleigh_says(entry: Entry) {
+fn damping_removes_the_energy_of_rayleighs_formula(entry: Entry) {
     let rate: f64 = if entry.is_explicit() { 7680.0 } else { 960.0 };
     let kept = |mass: f64, stiffness: f64| {
         let mut scene = beam(8, 10.0).moving(entry.kind, 1.0 / rate);

@@ -11,28 +11,28 @@ use crate::common::{scene, scene_with};
 use crate::{Test, suite};
 
 const TESTS: &[Test<MethodKind>] = &[
-    ("its_id_is_the_word_of_scene_files", its_id_is_the_word_of_scene_files),
-    ("its_colours_are_its_own", its_colours_are_its_own),
+    ("the_id_is_the_name_in_scene_files", the_id_is_the_name_in_scene_files),
+    ("no_other_method_has_the_same_colour", no_other_method_has_the_same_colour),
     ("an_axial_bar_stretches_by_pl_over_ea", an_axial_bar_stretches_by_pl_over_ea),
     ("without_load_nothing_moves", without_load_nothing_moves),
     ("extremes_stay_finite", extremes_stay_finite),
-    ("an_edit_ends_where_a_start_at_rest_does", an_edit_ends_where_a_start_at_rest_does),
-    ("a_hopeless_load_leaves_no_trace", a_hopeless_load_leaves_no_trace),
-    ("a_restored_state_goes_on_as_the_saved_one", a_restored_state_goes_on_as_the_saved_one),
-    ("a_running_state_says_so", a_running_state_says_so),
+    ("an_edited_load_has_the_solution_of_a_start_at_rest", an_edited_load_has_the_solution_of_a_start_at_rest),
+    ("a_huge_load_does_not_affect_later_solves", a_huge_load_does_not_affect_later_solves),
+    ("a_restored_state_continues_as_the_saved_one", a_restored_state_continues_as_the_saved_one),
+    ("a_running_state_is_reported_as_running", a_running_state_is_reported_as_running),
 ];
 
 pub fn trials() -> Vec<Trial> {
     suite("method", METHODS.iter().map(|m| (m.id.to_owned(), m.kind)), TESTS)
 }
 
-fn its_id_is_the_word_of_scene_files(kind: MethodKind) {
+fn the_id_is_the_name_in_scene_files(kind: MethodKind) {
     let word = toml::Value::try_from(kind).unwrap();
     assert_eq!(word.as_str(), Some(kind.id()));
     assert_eq!(kind.entry().kind, kind);
 }
 
-fn its_colours_are_its_own(kind: MethodKind) {
+fn no_other_method_has_the_same_colour(kind: MethodKind) {
     for dark in [false, true] {
         let same = METHODS.iter().filter(|m| color(m.id, dark) == color(kind.id(), dark));
         assert_eq!(same.count(), 1);
@@ -126,7 +126,7 @@ fn difference(a: &Simulation, b: &Simulation) -> f64 {
 }
 
 /// After any edit of a solved body, the result is that of a solve from rest.
-fn an_edit_ends_where_a_start_at_rest_does(method: MethodKind) {
+fn an_edited_load_has_the_solution_of_a_start_at_rest(method: MethodKind) {
     let start = with_method(scene_with("cantilever", &["solver.tolerance=1e-10"]), method);
     let edits: &[&[&str]] = &[
         &["load.0.force=[0,-1300]"],
@@ -157,7 +157,7 @@ fn an_edit_ends_where_a_start_at_rest_does(method: MethodKind) {
 }
 
 /// After a hopelessly large load, any edit that can be solved is solved.
-fn a_hopeless_load_leaves_no_trace(method: MethodKind) {
+fn a_huge_load_does_not_affect_later_solves(method: MethodKind) {
     for id in ["article", "cantilever"] {
         for force in [1e12, -1e12, 1e15] {
             let mut simulation = ended(&with_method(scene(id), method));
@@ -182,7 +182,7 @@ fn a_hopeless_load_leaves_no_trace(method: MethodKind) {
     }
 }
 
-fn a_restored_state_goes_on_as_the_saved_one(method: MethodKind) {
+fn a_restored_state_continues_as_the_saved_one(method: MethodKind) {
     let mut simulation = ended(&with_method(scene("cantilever"), method));
     let saved = simulation.state().clone();
     simulation.set_force(LoadId::nth(0), [0.0, 500.0]).unwrap();
@@ -200,7 +200,7 @@ fn a_restored_state_goes_on_as_the_saved_one(method: MethodKind) {
     assert!(simulation.restore(other.state()).is_err());
 }
 
-fn a_running_state_says_so(method: MethodKind) {
+fn a_running_state_is_reported_as_running(method: MethodKind) {
     let mut simulation = Simulation::new(&with_method(scene("cantilever"), method)).unwrap();
     assert_eq!((simulation.status(), simulation.status().id()), (&Status::Running, "running"));
     assert!(simulation.status().failure().is_none());

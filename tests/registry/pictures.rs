@@ -16,8 +16,8 @@ use crate::common::{stderr, warpbeam};
 use crate::{Test, suite};
 
 const TESTS: &[Test<&'static str>] = &[
-    ("it_is_the_golden_one_on_dark", |id| it_is_the_golden_one(id, "dark")),
-    ("it_is_the_golden_one_on_light", |id| it_is_the_golden_one(id, "light")),
+    ("the_picture_is_golden_on_dark", |id| the_picture_is_golden(id, "dark")),
+    ("the_picture_is_golden_on_light", |id| the_picture_is_golden(id, "light")),
     ("the_body_is_drawn_where_the_solver_says", the_body_is_drawn_where_the_solver_says),
 ];
 
@@ -27,7 +27,7 @@ pub fn trials() -> Vec<Trial> {
 
 /// Compares the output of `warpbeam shot` with the golden picture, without the panel (whose
 /// times differ from run to run).
-fn it_is_the_golden_one(id: &'static str, theme: &str) {
+fn the_picture_is_golden(id: &'static str, theme: &str) {
     const TOLERANCE: f64 = 2e-3;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("shot.png");

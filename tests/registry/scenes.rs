@@ -15,8 +15,8 @@ use crate::common::{ids_of, scene, scene_ids};
 use crate::{Test, suite};
 
 const TESTS: &[Test<&'static str>] = &[
-    ("it_says_what_it_shows_and_measures", it_says_what_it_shows_and_measures),
-    ("it_survives_the_way_through_toml", it_survives_the_way_through_toml),
+    ("the_scene_has_a_description_and_a_probe", the_scene_has_a_description_and_a_probe),
+    ("the_scene_is_unchanged_by_writing_and_reading_toml", the_scene_is_unchanged_by_writing_and_reading_toml),
 ];
 
 const STATIC: &[Test<&'static str>] = &[
@@ -27,8 +27,8 @@ const STATIC: &[Test<&'static str>] = &[
 ];
 
 const DYNAMIC: &[Test<&'static str>] = &[
-    ("it_runs_to_its_end", it_runs_to_its_end),
-    ("every_integrator_and_element_moves_it", every_integrator_and_element_moves_it),
+    ("the_scene_runs_to_its_end", the_scene_runs_to_its_end),
+    ("the_scene_moves_under_every_integrator_and_element", the_scene_moves_under_every_integrator_and_element),
 ];
 
 pub fn trials() -> Vec<Trial> {
@@ -44,7 +44,7 @@ pub fn trials() -> Vec<Trial> {
 }
 
 /// Every integrator that is not explicit runs a dynamic scene to its end, and its energy ledger balances.
-fn it_runs_to_its_end(id: &'static str) {
+fn the_scene_runs_to_its_end(id: &'static str) {
     for integrator in INTEGRATORS.iter().filter(|i| !i.is_explicit()) {
         let mut scene = scene(id);
         scene.dynamics.integrator = integrator.kind;
@@ -62,7 +62,7 @@ fn it_runs_to_its_end(id: &'static str) {
 }
 
 /// Runs a few steps of every integrator on every element, explicit integrators within their critical step.
-fn every_integrator_and_element_moves_it(id: &'static str) {
+fn the_scene_moves_under_every_integrator_and_element(id: &'static str) {
     let elements = scene(id).elements();
     for (integrator, element) in INTEGRATORS.iter().flat_map(|i| elements.clone().map(move |e| (i, e.entry()))) {
         let mut scene = scene(id);
@@ -89,11 +89,11 @@ fn every_file_is_built_in() {
     assert_eq!(names, scene_ids().into_iter().map(str::to_owned).collect());
 }
 
-fn it_says_what_it_shows_and_measures(id: &'static str) {
+fn the_scene_has_a_description_and_a_probe(id: &'static str) {
     assert!(!scene(id).about.is_empty() && !scene(id).probes.is_empty());
 }
 
-fn it_survives_the_way_through_toml(id: &'static str) {
+fn the_scene_is_unchanged_by_writing_and_reading_toml(id: &'static str) {
     let scene = scene(id);
     let again = Scene::from_toml_in(&scene.to_toml().unwrap(), "assets/scenes".as_ref()).unwrap();
     assert_eq!(scene, again);

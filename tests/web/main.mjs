@@ -295,6 +295,12 @@ const TESTS = {
       const there = await until(settled, "waited for the linked scene");
       equal(JSON.stringify(there.loads), JSON.stringify(edited.loads), "loads");
       nearProbes(there.probes, edited.probes, 1e-6);
+      for (const damaged of [link.slice(0, -40), `${link}!`]) {
+        await page.goto("about:blank");
+        await open(damaged.slice(address.length));
+        await page.waitForFunction(() => document.getElementById("message").role === "alert", null, { timeout: PATIENCE });
+        equal((await page.textContent("#message")).split(" (")[0], "The scene in the link cannot be read. Copy the whole link again.", "message");
+      }
     });
   },
 

@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_that_cannot_keep_up_slows_the_motion_and_says_so() {
+    fn a_slow_machine_slows_the_motion_and_reports_it() {
         let mut clock = RealTimeClock::default();
         let mut made = 0;
         for i in 0..60 {
@@ -188,7 +188,7 @@ mod tests {
         assert!(clock.begin(3600.0, 0.01) <= 10);
     }
     #[test]
-    fn what_vibrates_fast_is_shown_a_period_a_second() {
+    fn fast_vibrations_are_slowed_to_one_period_per_second() {
         let offered: Vec<String> =
             [0.5, 10.0, 16.0, 41.3, 4873.0].into_iter().filter_map(speed_of_period).map(fraction).collect();
         assert_eq!(offered, ["1/41", "1/4900"]);

@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_goes_back_to_the_same_moment() {
+    fn all_motions_return_to_the_same_moment() {
         // The steps are too long for explicit integrators.
         for integrator in INTEGRATORS.iter().filter(|entry| !entry.is_explicit()) {
             let (mut playback, mut simulation, states) = falling(integrator.kind);

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_undone_and_done_again_and_an_edit_forgets_those_undone() {
+    fn steps_are_undone_and_redone_and_an_edit_clears_the_redo_steps() {
         let mut edits = UndoHistory::default();
         assert_eq!(edits.undo(snapshot(0.0)), None);
         edits.record(snapshot(0.0), None);
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_taken_back_cannot_be_done_again() {
+    fn a_rolled_back_edit_cannot_be_redone() {
         let mut edits = UndoHistory::default();
         (0..4).for_each(|force| edits.record(snapshot(f64::from(force)), None));
         edits.take_back(7);
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_one_press_edits_is_one_step_and_the_past_is_bounded() {
+    fn edits_of_one_press_are_one_undo_step_and_the_history_is_bounded() {
         let mut edits = UndoHistory::default();
         for force in 0..5 {
             edits.record(snapshot(f64::from(force)), Some("Force"));

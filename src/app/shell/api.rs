@@ -166,12 +166,6 @@ impl Lab {
         self.desk.session.linear()
     }
 
-    /// Returns the displacement of the linear solution, m, if there is one.
-    #[must_use]
-    pub fn linear_displacement(&self) -> Option<&[Vector2<f64>]> {
-        self.linear().map(Simulation::displacement)
-    }
-
     /// Returns the area of the view in the window, points.
     #[must_use]
     pub fn view_rect(&self) -> Rect {

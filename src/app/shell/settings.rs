@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_that_make_no_sense_are_those_of_the_first_run() {
+    fn invalid_settings_are_replaced_by_defaults() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("settings.toml");
         for text in ["theme = 3", "not toml at all [", "size = [0.0, nan]", "color = \"smell\"\nsize = [1e9, 2.0]"] {

@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_look_is_there_and_later_ones_ease_and_arrive() {
+    fn the_first_camera_is_set_at_once_and_later_ones_ease() {
         let mut controller = CameraController::new(REST);
         assert!(!controller.aim(fitted(&controller), Some(0.016)));
         let first = controller.camera();
@@ -145,7 +145,7 @@ mod tests {
 
     /// The position after a given time does not depend on the number of frames.
     #[test]
-    fn the_way_depends_on_the_time_and_not_on_the_frames() {
+    fn the_path_of_the_camera_depends_on_time_and_not_on_frames() {
         let after = |frames: u32| {
             let mut controller = CameraController::new(REST);
             controller.aim(fitted(&controller), None);
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn without_time_it_is_there_at_once() {
+    fn without_animation_the_camera_is_set_at_once() {
         let mut controller = CameraController::new(REST);
         controller.aim(fitted(&controller), None);
         controller.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);

@@ -162,7 +162,7 @@ mod tests {
 
     /// The mapping is its own inverse for both senses of rotation; twice the opening angle is twice the moment.
     #[test]
-    fn angles_tell_moments() {
+    fn the_angle_of_the_arrow_is_proportional_to_the_moment() {
         for moment in [0.0, 1e-3, -1.0, 12.0, -500.0, 3e4, 1e5, -1e7] {
             let back = arrow(moment).moment_of(arrow(moment).sweep());
             assert!((back - moment).abs() <= 1e-9 * (moment.abs() + 1e-3), "{moment} {back}");
@@ -199,7 +199,7 @@ mod tests {
 
     /// The window's y axis points down: moving up on the right side is counter-clockwise.
     #[test]
-    fn a_pointer_turns_about_the_middle() {
+    fn a_pointer_rotates_about_the_centre() {
         let (right, above) = (egui::pos2(130.0, 100.0), egui::pos2(100.0, 70.0));
         assert!((arrow(1.0).angle_between(right, above) - TAU / 4.0).abs() < 1e-6);
         assert!((arrow(1.0).angle_between(above, right) + TAU / 4.0).abs() < 1e-6);

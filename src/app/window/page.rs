@@ -1,11 +1,13 @@
 //! Window on a web page: its scene and its language are in the page's address.
 
+use std::error::Error;
+
 use crate::app::language::Language;
 use crate::app::platform::page::{self, Address};
 use crate::app::platform::{self, files};
 use crate::app::shell::settings::Settings;
 use crate::app::window::{Display, opens_in_background, run_with, worker};
-use crate::scene::{Scene, Source, registry};
+use crate::scene::{Source, registry};
 use crate::simulation::Simulation;
 
 /// Name of a scene that came with the page's address.
@@ -19,32 +21,25 @@ pub fn open_page() {
     if !page::has_window() {
         return worker::listen();
     }
-    if let Err(message) = open(Address::read()) {
-        page::fail(&message);
+    if let Err(error) = open(Address::read()) {
+        page::fail(&error.to_string());
     }
 }
 
-fn open(address: Address) -> Result<(), String> {
+fn open(address: Address) -> Result<(), Box<dyn Error>> {
     let name = match address.toml {
         Some(toml) => files::add(SHARED, toml?),
         None => address.scene.as_deref().unwrap_or(registry::DEFAULT).into(),
     };
     let source = Source { name, assignments: Vec::new() };
-    let scene = files::open(&source).map_err(|error| error.to_string())?;
-    let simulation = simulate(&scene)?;
+    let scene = files::open(&source)?;
+    // A large model is meshed in the background.
+    let simulation = if opens_in_background(&scene) { None } else { Some(Simulation::new(&scene)?) };
     let stored = Settings::file().filter(|file| platform::settings::read(file).is_ok());
     let mut settings = stored.as_deref().map(Settings::load).unwrap_or_default();
     if let Some(language) = address.language.or_else(|| page::language().filter(|_| stored.is_none())) {
         settings.language = if language.starts_with("zh") { Language::Chinese } else { Language::English };
     }
-    let display = Display::open().map_err(|error| error.to_string())?;
-    run_with(display, (source, scene, simulation), settings, address.card).map_err(|error| error.to_string())
-}
-
-/// Sets up a scene that is not so large that it is meshed in the background.
-fn simulate(scene: &Scene) -> Result<Option<Simulation>, String> {
-    match opens_in_background(scene) {
-        true => Ok(None),
-        false => Simulation::new(scene).map(Some).map_err(|error| error.to_string()),
-    }
+    let display = Display::open()?;
+    Ok(run_with(display, (source, scene, simulation), settings, address.card)?)
 }

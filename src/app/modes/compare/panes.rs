@@ -100,6 +100,10 @@ pub(super) trait ComparedPane {
 
     /// Returns the displayed scene and its simulated time, s, if there is one; and the display.
     fn parts(&mut self) -> (Option<(&Scene, f64)>, &mut PaneDisplay);
+
+    fn display_mut(&mut self) -> &mut PaneDisplay {
+        self.parts().1
+    }
 }
 
 /// Change of a pane by its header: its new setting; `None` closes the pane.
@@ -169,7 +173,7 @@ impl<P: ComparedPane> Panes<P> {
     pub(super) fn share_colors(&mut self, view: &ViewOptions, counts: impl Fn(&P) -> bool) -> [f64; 2] {
         let counted = self.list.iter().filter(|pane| counts(pane)).filter_map(|pane| pane.display().range);
         let range = view.fixed_range.unwrap_or(grid::common_range(counted));
-        self.list.iter_mut().for_each(|pane| pane.parts().1.body_mesh.range = range);
+        self.list.iter_mut().for_each(|pane| pane.display_mut().body_mesh.range = range);
         range
     }
 
@@ -177,7 +181,7 @@ impl<P: ComparedPane> Panes<P> {
     pub(super) fn lay_out(&mut self, ui: &Ui) -> Grid {
         let grid = Grid::new(ui.available_rect_before_wrap(), self.list.len());
         for (pane, cell) in self.list.iter_mut().zip(&grid.cells) {
-            pane.parts().1.place = Some(grid::body_place(*cell));
+            pane.display_mut().place = Some(grid::body_place(*cell));
         }
         grid
     }

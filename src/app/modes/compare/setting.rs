@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_setting_is_refused_with_what_was_expected() {
+    fn invalid_pane_settings_are_refused_with_the_expected_form() {
         for text in ["", "wraped", "t5", "10x", "0", "-1", "1.5"] {
             let error = text.parse::<PaneSetting>().unwrap_err();
             assert_eq!(error, PaneSettingError::Unknown { part: text.to_owned() });

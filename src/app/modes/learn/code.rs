@@ -192,7 +192,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_stop_at_the_lines_that_have_numbers_and_go_round() {
+    fn steps_visit_the_numbered_lines_in_a_cycle() {
         let mut line = 0;
         let mut stops = vec![line];
         for ended in [false, false, false, false, false, false, false, false, true] {

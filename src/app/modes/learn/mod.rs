@@ -544,7 +544,7 @@ mod tests {
     }
 
     #[test]
-    fn every_card_sets_up_a_scene_and_says_something() {
+    fn every_card_sets_up_a_scene_and_has_a_text() {
         for card in CARDS {
             let (_, mut scene) = article().unwrap();
             (card.setup.edit)(&mut scene);

@@ -276,7 +276,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn delays_are_what_formats_have() {
+    fn delays_are_rounded_to_the_units_of_the_format() {
         for (rate, hundredths) in [(25, 4), (50, 2), (30, 3), (100, 2), (1, 100), (4, 25)] {
             assert_eq!(MovieFormat::Gif.delay(rate), Delay { numerator: hundredths, denominator: 100 });
         }
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_is_the_smallest_rectangle() {
+    fn the_changed_rectangle_is_the_smallest() {
         let before = vec![0; 20];
         let mut now = before.clone();
         assert_eq!(changed(&before, &now, 5), Rect { left: 0, top: 0, width: 1, height: 1 });

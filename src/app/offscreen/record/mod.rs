@@ -512,7 +512,7 @@ mod tests {
 
     /// An unstable motion does not make the view infinitely large.
     #[test]
-    fn what_explodes_leaves_the_picture() {
+    fn an_unstable_motion_leaves_the_picture() {
         let swing = simulation("swing", &["dynamics.integrator=symplectic-euler", "dynamics.time_step=0.001"]);
         let size = {
             let (low, high) = swing.system().mesh().bounds();

@@ -1,11 +1,13 @@
 //! Page around the window: its address, its title, its messages, and the report that tests read.
 
 use std::cell::{Cell, RefCell};
+use std::string::FromUtf8Error;
 
-use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
+use base64::{DecodeError, Engine as _};
 use miniz_oxide::deflate::compress_to_vec;
-use miniz_oxide::inflate::decompress_to_vec_with_limit;
+use miniz_oxide::inflate::{DecompressError, decompress_to_vec_with_limit};
+use thiserror::Error;
 use wasm_bindgen::prelude::*;
 use web_sys::{Blob, DragEvent, UrlSearchParams};
 use winit::event_loop::EventLoopProxy;
@@ -28,13 +30,26 @@ thread_local! {
     static REPORT: RefCell<String> = RefCell::default();
 }
 
+/// Error of the scene in a link.
+#[derive(Debug, Error)]
+pub(crate) enum LinkError {
+    #[error("{DAMAGED} ({0})")]
+    Encoding(#[from] DecodeError),
+    #[error("{DAMAGED} ({0})")]
+    Compression(#[from] DecompressError),
+    #[error("{DAMAGED} ({0})")]
+    Text(#[from] FromUtf8Error),
+}
+
+const DAMAGED: &str = "The scene in the link cannot be read. Copy the whole link again.";
+
 /// Request in the address of the page.
 #[derive(Debug, Default)]
 pub(crate) struct Address {
     /// Name of a built-in scene.
     pub scene: Option<String>,
     /// TOML text of a scene, or the reason for which the link has none.
-    pub toml: Option<Result<String, String>>,
+    pub toml: Option<Result<String, LinkError>>,
     /// Language of the window.
     pub language: Option<String>,
     /// Number of a card of Learn, from 1.
@@ -70,10 +85,9 @@ pub(crate) fn language() -> Option<String> {
 }
 
 /// Returns the text of a scene in a link.
-fn decode(packed: &str) -> Result<String, String> {
-    let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed).map_err(|error| error.to_string())?;
-    let text = decompress_to_vec_with_limit(&bytes, MOST).map_err(|error| error.to_string())?;
-    String::from_utf8(text).map_err(|error| error.to_string())
+fn decode(packed: &str) -> Result<String, LinkError> {
+    let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed)?;
+    Ok(String::from_utf8(decompress_to_vec_with_limit(&bytes, MOST)?)?)
 }
 
 /// Returns the address of the page with a scene in it.

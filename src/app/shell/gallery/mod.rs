@@ -197,7 +197,7 @@ mod tests {
 
     /// A background thread makes the thumbnails of all scenes, and the work then ends.
     #[test]
-    fn thumbnails_come_in_beside_the_window() {
+    fn thumbnails_are_computed_in_the_background() {
         let ctx = Context::default();
         let mut gallery = Gallery::default();
         assert!(matches!(gallery.work, Work::NotBegun), "nothing is made before it is opened");

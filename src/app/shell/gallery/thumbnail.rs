@@ -144,7 +144,7 @@ mod tests {
 
     /// Every scene has a thumbnail, whose body is displaced: at the equilibrium, or away from the start.
     #[test]
-    fn it_shows_what_the_scene_does() {
+    fn a_thumbnail_shows_the_deformed_body() {
         for built_in in registry::BUILT_IN {
             let thumbnail = of(built_in.id);
             let size = {
@@ -173,7 +173,7 @@ mod tests {
 
     /// A cancelled thumbnail shows the body at rest.
     #[test]
-    fn it_can_be_called_off() {
+    fn a_thumbnail_can_be_cancelled() {
         let scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();
         let thumbnail = Thumbnail::of(&scene, || true).unwrap();
         assert_eq!(thumbnail.rest, thumbnail.moved);
