@@ -36,7 +36,7 @@ pub(crate) enum LinkError {
     #[error("{DAMAGED} ({0})")]
     Encoding(#[from] DecodeError),
     #[error("{DAMAGED} ({0})")]
-    Compression(#[from] DecompressError),
+    Compression(DecompressError),
     #[error("{DAMAGED} ({0})")]
     Text(#[from] FromUtf8Error),
 }
@@ -87,7 +87,8 @@ pub(crate) fn language() -> Option<String> {
 /// Returns the text of a scene in a link.
 fn decode(packed: &str) -> Result<String, LinkError> {
     let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed)?;
-    Ok(String::from_utf8(decompress_to_vec_with_limit(&bytes, MOST)?)?)
+    let text = decompress_to_vec_with_limit(&bytes, MOST).map_err(LinkError::Compression)?;
+    Ok(String::from_utf8(text)?)
 }
 
 /// Returns the address of the page with a scene in it.
