@@ -214,6 +214,29 @@ fn the_trace_keeps_its_dots_while_panes_iterate() {
     assert!(harness.state().traced().iter().all(|(_, dot)| dot[0] != 22e3));
 }
 
+/// While a dragged load makes a pane diverge, its huge stresses do not set the common range of colours.
+#[test]
+fn a_diverging_pane_does_not_set_the_range_of_colours() {
+    let mut harness = compared("cantilever", "linear,warped,newton");
+    let mut has_diverged = false;
+    // The pointer is pressed, as while a load is dragged.
+    harness.hover_at(egui::pos2(1100.0, 600.0));
+    harness.drag_at(egui::pos2(1100.0, 600.0));
+    for i in 0..60_u8 {
+        harness.hover_at(egui::pos2(1100.0, 600.0 + f32::from(i)));
+        let dragged = scene_with("cantilever", &[&format!("load.0.force=[0,-{}]", 1e3 + 1e2 * f64::from(i))]);
+        harness.state_mut().set_scene(dragged).unwrap();
+        harness.step();
+        let panes = harness.state().panes();
+        let [linear, warped] = [0, 1].map(|number| panes[number].simulation().unwrap());
+        let largest = |simulation: &Simulation| simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        has_diverged |= largest(warped) > 2.0 * largest(linear);
+        let high = panes[1].color_range()[1];
+        assert!(high < 1e6, "{high} Pa under {} N", load(harness.state().scene()));
+    }
+    assert!(has_diverged);
+}
+
 #[test]
 fn a_press_in_the_load_curve_sets_the_load() {
     let mut harness = compared("article", "linear,newton");

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use crate::app::language::Language;
+use crate::app::language::{self, Language, tr};
 use crate::app::platform::page::{self, Address};
 use crate::app::platform::{self, files};
 use crate::app::shell::settings::Settings;
@@ -27,19 +27,23 @@ pub fn open_page() {
 }
 
 fn open(address: Address) -> Result<(), Box<dyn Error>> {
+    let stored = Settings::file().filter(|file| platform::settings::read(file).is_ok());
+    let mut settings = stored.as_deref().map(Settings::load).unwrap_or_default();
+    if let Some(language) = address.language.or_else(|| page::language().filter(|_| stored.is_none())) {
+        settings.language = if language.starts_with("zh") { Language::Chinese } else { Language::English };
+    }
+    language::speak(settings.language);
     let name = match address.toml {
-        Some(toml) => files::add(SHARED, toml?),
+        Some(Ok(toml)) => files::add(SHARED, toml),
+        Some(Err(error)) => {
+            let message = tr("The scene in the link cannot be read. Copy the whole link again.");
+            return Err(format!("{message} ({error})").into());
+        }
         None => address.scene.as_deref().unwrap_or(registry::DEFAULT).into(),
     };
     let source = Source { name, assignments: Vec::new() };
     let scene = files::open(&source)?;
     // A large model is meshed in the background.
     let simulation = if opens_in_background(&scene) { None } else { Some(Simulation::new(&scene)?) };
-    let stored = Settings::file().filter(|file| platform::settings::read(file).is_ok());
-    let mut settings = stored.as_deref().map(Settings::load).unwrap_or_default();
-    if let Some(language) = address.language.or_else(|| page::language().filter(|_| stored.is_none())) {
-        settings.language = if language.starts_with("zh") { Language::Chinese } else { Language::English };
-    }
-    let display = Display::open()?;
-    Ok(run_with(display, (source, scene, simulation), settings, address.card)?)
+    Ok(run_with(Display::open()?, (source, scene, simulation), settings, address.card)?)
 }

@@ -291,11 +291,14 @@ impl Compare {
         }
     }
 
-    /// Gives all panes the same colour range, that of the equilibria, and returns it.
+    /// Gives all panes the same colour range, and returns it: that of the results, or, while there is none, that of the
+    /// panes that have not failed.
     fn share_colors(&mut self, view: &ViewOptions) -> [f64; 2] {
-        let has_result = |pane: &Pane| pane.display.range.is_some() && !pane.solve.has_failed();
-        let any = self.panes.list.iter().any(has_result);
-        self.panes.share_colors(view, |pane| !any || !pane.solve.has_failed())
+        let choices: [fn(&Pane) -> bool; 2] = [|pane| pane.solve.is_sound(), |pane| !pane.solve.has_failed()];
+        let has_range = |pane: &&Pane| pane.display.range.is_some();
+        let is_useful = |counts: &fn(&Pane) -> bool| self.panes.list.iter().filter(has_range).any(counts);
+        let counts = choices.into_iter().find(is_useful).unwrap_or(|_| true);
+        self.panes.share_colors(view, counts)
     }
 
     /// Fits the camera to all bodies and the reference solution, unless the user has moved it. Panes that have not

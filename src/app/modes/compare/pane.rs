@@ -55,6 +55,13 @@ impl Pane {
         self.display.place
     }
 
+    /// Returns the values of the displayed field at both ends of the colour map, as of the last
+    /// [`crate::app::Lab::ui`].
+    #[must_use]
+    pub fn color_range(&self) -> [f64; 2] {
+        self.display.body_mesh.range
+    }
+
     /// Returns the simulation; `None` while it is solved in the background.
     #[must_use]
     pub fn simulation(&self) -> Option<&Simulation> {

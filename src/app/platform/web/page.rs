@@ -30,18 +30,16 @@ thread_local! {
     static REPORT: RefCell<String> = RefCell::default();
 }
 
-/// Error of the scene in a link.
+/// Reason for which the scene in a link cannot be read.
 #[derive(Debug, Error)]
 pub(crate) enum LinkError {
-    #[error("{DAMAGED} ({0})")]
+    #[error("{0}")]
     Encoding(#[from] DecodeError),
-    #[error("{DAMAGED} ({0})")]
+    #[error("{0}")]
     Compression(DecompressError),
-    #[error("{DAMAGED} ({0})")]
+    #[error("{0}")]
     Text(#[from] FromUtf8Error),
 }
-
-const DAMAGED: &str = "The scene in the link cannot be read. Copy the whole link again.";
 
 /// Request in the address of the page.
 #[derive(Debug, Default)]
