@@ -6,6 +6,7 @@ mod common;
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::random;
 use nalgebra::Vector2;
@@ -139,9 +140,9 @@ impl Tally {
 
 /// Checks for random scenes that |claimed − true error| is at most the claimed own error. The true error is taken from
 /// the finer of two independent solutions, and 1.5 times their distance is allowed for their own error.
-fn judge(seeds: &[u64]) -> Tally {
+fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
     let mut tally = Tally::default();
-    for &seed in seeds {
+    for seed in seeds {
         let scene = random::scene(seed);
         let mut own = Simulation::new(&scene).unwrap();
         own.solve();
@@ -187,8 +188,10 @@ fn claimed_errors_are_true_within_the_own_error_of_the_reference() {
     let seeds: Vec<u64> = (0..300).step_by(if all { 1 } else { 5 }).collect();
     // One thread per core: the test is the only one of its program.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let next = AtomicUsize::new(0);
+    let untaken = || std::iter::from_fn(|| seeds.get(next.fetch_add(1, Ordering::Relaxed)).copied());
     let tally = std::thread::scope(|scope| {
-        let parts: Vec<_> = seeds.chunks(seeds.len().div_ceil(threads)).map(|own| scope.spawn(|| judge(own))).collect();
+        let parts: Vec<_> = (0..threads).map(|_| scope.spawn(|| judge(untaken()))).collect();
         parts.into_iter().map(|part| part.join().unwrap()).fold(Tally::default(), Tally::with)
     });
     println!("{tally:?}");
