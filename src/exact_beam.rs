@@ -3,7 +3,6 @@
 //! - the **elastica** (Euler 1744): inextensible, no shear;
 //! - the **geometrically exact beam** (Reissner 1972): with stretch and shear, shear area 5/6 of the section;
 //! - linear beam theory, P L³/3EI and its companions.
-//! - linear beam theory, P L³/3EI and its companions.
 //!
 //! A clamped beam of length L carries a dead tip force, a tip moment and a weight per rest length. With s the rest arc
 //! length, θ the section's angle, n the section force, M the bending moment:
@@ -11,10 +10,11 @@
 //! x′ = (1 + ε) t + γ m,  θ′ = M / EI,  M′ = −x′ × n,  n(s) = F + q (L − s),
 //!
 //! t = (cos θ, sin θ), m = (−sin θ, cos θ), ε = n·t / EA, γ = n·m / GA (both 0 for the elastica), θ(0) = 0, M(L) =
-//! M_tip. The equations are solved by multiple shooting with RK4, following the load from zero.
+//! M_tip. The equations are solved by multiple shooting with RK4, along the path of equilibria from zero load.
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector2};
 
+use crate::continuation::{Continuation, Critical, CriticalMode, Equations};
 use crate::model::{Analysis, Axis, Load, Place, Plane, Scene, Support};
 
 /// Clamped beam and its loads, in any consistent units.
@@ -60,10 +60,6 @@ pub struct PathPoint {
 const SEGMENTS: usize = 32;
 /// RK4 steps per segment.
 const STEPS: usize = 24;
-/// Largest number of Newton iterations per load step.
-const MAX_ITERATIONS: u32 = 20;
-/// Smallest step of the load factor.
-const SMALLEST_LOAD_STEP: f64 = 1e-4;
 
 /// θ and M at a point, and the vector from the start of the segment to it.
 #[derive(Clone, Copy)]
@@ -152,9 +148,8 @@ impl ClampedBeam {
         Some(low * low * (bending / mass).sqrt() / (length * length))
     }
 
-    /// Performs one Newton step of multiple shooting on the unknowns θₖ, Mₖ; returns the scaled size of the step, and
-    /// the sign of the determinant, which changes at a critical point.
-    fn newton_step(&self, unknowns: &mut DVector<f64>, factor: f64) -> Option<(f64, bool)> {
+    /// Linearizes multiple shooting at the unknowns θₖ, Mₖ (M in units of EI/L): returns the Jacobian and the residual.
+    fn shooting(&self, unknowns: &DVector<f64>, factor: f64) -> (DMatrix<f64>, DVector<f64>) {
         const DIFFERENCE: f64 = 1e-7;
         let scale = self.bending / self.length;
         let n = 2 * SEGMENTS;
@@ -185,18 +180,14 @@ impl ClampedBeam {
                 jacobian[(row, 2 * piece + 3)] = -1.0;
             }
         }
-        let lu = jacobian.lu();
-        let step = lu.solve(&residual)?;
-        *unknowns -= &step;
-        let size = step.amax();
-        size.is_finite().then_some((size, lu.determinant() > 0.0))
+        (jacobian, residual)
     }
 
     /// Returns the equilibria on the path from the straight beam as the load grows from zero to `largest` times the
     /// full load, at `points` equally spaced load factors; fewer points if the path cannot be followed to its end.
     ///
-    /// The sign of the shooting method's determinant changes where the equilibrium loses its stability. States with the
-    /// other sign are rejected, so the path stays on the stable branch.
+    /// The path is followed in its own length ([`crate::continuation`]). It ends where it loses its stability: where the
+    /// load stops growing along it, or another path crosses.
     #[must_use]
     pub fn path(&self, largest: f64, points: u32) -> Vec<PathPoint> {
         self.path_to_critical(largest, points).0
@@ -236,45 +227,28 @@ impl ClampedBeam {
         stations
     }
 
-    /// Visits the equilibria of [`Self::path`]; returns the load factor beyond which the path continues unstably.
+    /// Visits the equilibria of [`Self::path`]; returns the load factor of the bifurcation at which the path loses its
+    /// stability, if that is why it ends.
     fn follow(&self, largest: f64, points: u32, visit: &mut dyn FnMut(f64, &DVector<f64>)) -> Option<f64> {
-        let mut unknowns = DVector::zeros(2 * SEGMENTS);
-        let (_, side) = self.newton_step(&mut unknowns, 0.0)?;
-        let (mut reached, mut step) = (0.0_f64, 1.0 / 16.0_f64);
-        for point in 1..=points {
-            let goal = largest * f64::from(point) / f64::from(points);
-            while reached < goal {
-                let target = (reached + step).min(goal);
-                match self.converge(&unknowns, target, side) {
-                    Some(state) => {
-                        unknowns = state;
-                        reached = target;
-                        step *= 1.5;
-                    }
-                    None => {
-                        step = 0.4 * step.min(goal - reached);
-                        if step < SMALLEST_LOAD_STEP {
-                            // The critical point lies between `reached` and `target`: return their middle.
-                            return self.converge(&unknowns, target, !side).map(|_| 0.5 * (reached + target));
-                        }
-                    }
-                }
+        /// Largest number of linearizations.
+        const MAX_LINEARIZATIONS: u32 = 3000;
+        let mut shooting = Shooting { beam: self, positive: None, scratch: DVector::zeros(2 * SEGMENTS) };
+        let rest = DVector::zeros(2 * SEGMENTS);
+        let mut path = Continuation::start(&mut shooting, rest, 0.0, 1.0, MAX_LINEARIZATIONS)?;
+        let mut goals = (1..=points).map(|point| largest * f64::from(point) / f64::from(points)).peekable();
+        while goals.peek().is_some() {
+            let passed = path.step(&mut shooting).ok()?;
+            let (from, to) = (path.before().clone(), path.point().clone());
+            let end = passed.as_ref().map_or(&to, |(_, critical)| critical);
+            while let Some(&goal) = goals.peek().filter(|goal| (from.factor..=end.factor).contains(goal)) {
+                let found = path.between(&mut shooting, &from, end, goal)?;
+                visit(goal, &found.state);
+                goals.next();
             }
-            visit(goal, &unknowns);
-        }
-        None
-    }
-
-    /// Returns the equilibrium at a load factor, near `start` and with the same sign of the determinant, `side`.
-    fn converge(&self, start: &DVector<f64>, factor: f64, side: bool) -> Option<DVector<f64>> {
-        /// Largest change of an angle in a load step, rad; a larger change means another equilibrium branch.
-        const FARTHEST: f64 = 0.2;
-        let mut state = start.clone();
-        for _ in 0..MAX_ITERATIONS {
-            let (size, same_side) = self.newton_step(&mut state, factor).filter(|(size, _)| *size < 1e3)?;
-            if size < 1e-11 {
-                let near = (&state - start).iter().step_by(2).all(|d| d.abs() < FARTHEST);
-                return (near && same_side == side).then_some(state);
+            match passed {
+                None => {}
+                Some((Critical::Bifurcation(_), crossing)) => return goals.peek().map(|_| crossing.factor),
+                Some((Critical::Limit, _)) => return None,
             }
         }
         None
@@ -300,6 +274,53 @@ impl ClampedBeam {
         let bending = (f.y * l.powi(3) / 3.0 + q.y * l.powi(4) / 8.0 + self.tip_moment * l * l / 2.0) / self.bending;
         let total = f * l + q * (l * l / 2.0);
         Vector2::new(total.x * self.stretch_compliance, bending + total.y * self.shear_compliance)
+    }
+}
+
+/// Equations of multiple shooting, as a path sees them.
+struct Shooting<'a> {
+    beam: &'a ClampedBeam,
+    /// Sign of the Jacobian's determinant at rest.
+    positive: Option<bool>,
+    scratch: DVector<f64>,
+}
+
+impl Equations for Shooting<'_> {
+    type State = DVector<f64>;
+
+    fn unknowns(&self) -> usize {
+        2 * SEGMENTS
+    }
+
+    fn advance(&self, state: &mut Self::State, direction: &[f64], length: f64, _: f64) {
+        state.iter_mut().zip(direction).for_each(|(x, d)| *x += length * d);
+    }
+
+    /// The number of unstable modes is known modulo 2 only, from the sign of the determinant.
+    fn linearize(
+        &mut self,
+        state: &mut Self::State,
+        factor: f64,
+        correction: &mut [f64],
+        rate: &mut [f64],
+    ) -> Option<usize> {
+        /// Step of the central differences in the load factor.
+        const DIFFERENCE: f64 = 1e-5;
+        let (jacobian, residual) = self.beam.shooting(state, factor);
+        let lu = jacobian.lu();
+        let ahead = self.beam.shooting(state, factor + DIFFERENCE).1;
+        let behind = self.beam.shooting(state, factor - DIFFERENCE).1;
+        self.scratch = (ahead - behind) / (2.0 * DIFFERENCE);
+        correction.copy_from_slice((-lu.solve(&residual)?).as_slice());
+        rate.copy_from_slice((-lu.solve(&self.scratch)?).as_slice());
+        let positive = lu.determinant() > 0.0;
+        let changed = positive != *self.positive.get_or_insert(positive);
+        let is_finite = correction.iter().chain(&*rate).all(|v| v.is_finite());
+        is_finite.then_some(usize::from(changed))
+    }
+
+    fn critical_mode(&mut self) -> Option<CriticalMode> {
+        None
     }
 }
 

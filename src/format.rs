@@ -190,6 +190,57 @@ pub fn ticks(low: f64, high: f64, most: u32) -> Vec<f64> {
     Vec::new()
 }
 
+/// Rounding error of results, relative to the largest result of the same kind.
+const ROUNDING: f64 = 1e-10;
+
+/// Largest magnitude among results of one kind, such as all stresses of a body. A result below the rounding error of the
+/// largest one is formatted as 0.
+///
+/// ```
+/// use warpbeam::format::Context;
+/// let stresses = Context::of([2e3, 1e-10]);
+/// assert_eq!([2e3, 1e-10].map(|v| stresses.engineering(v, "Pa")), ["2 kPa", "0 Pa"]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Context {
+    /// Magnitude below which a result is rounding error.
+    rounding: f64,
+}
+
+impl Context {
+    /// Returns the context of all results of a kind; values that are not finite are ignored.
+    #[must_use]
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        Self::of_inexact(values, 0.0)
+    }
+
+    /// Returns the context of results whose error, relative to the largest one, is `error`, or that of rounding if this
+    /// is larger.
+    #[must_use]
+    pub fn of_inexact(values: impl IntoIterator<Item = f64>, error: f64) -> Self {
+        let largest = values.into_iter().filter(|v| v.is_finite()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        Self { rounding: error.max(ROUNDING) * largest }
+    }
+
+    /// Returns the value, or 0 if it is rounding error.
+    #[must_use]
+    pub fn rounded(self, value: f64) -> f64 {
+        if value.abs() < self.rounding { 0.0 } else { value }
+    }
+
+    /// Formats a result like [`engineering`].
+    #[must_use]
+    pub fn engineering(self, value: f64, unit: &str) -> String {
+        engineering(self.rounded(value), unit)
+    }
+
+    /// Formats the components of a vector like [`engineering_pair`].
+    #[must_use]
+    pub fn pair(self, values: [f64; 2], unit: &str) -> String {
+        engineering_pair(values.map(|v| self.rounded(v)), unit)
+    }
+}
+
 /// Formats both components of a vector with one prefix: `(1.5, -0.02) mm`. A component at rounding level of the other
 /// is 0.
 ///
@@ -199,7 +250,6 @@ pub fn ticks(low: f64, high: f64, most: u32) -> Vec<f64> {
 /// ```
 #[must_use]
 pub fn engineering_pair(values: [f64; 2], unit: &str) -> String {
-    const ROUNDING: f64 = 1e-10;
     let (power, symbol) = prefix(&values, unit);
     let largest = values[0].abs().max(values[1].abs());
     let [x, y] = values.map(|v| if v.abs() < ROUNDING * largest { 0.0 } else { v });
@@ -247,6 +297,19 @@ mod tests {
         }
         assert_eq!(engineering_pair([0.3, -1200.0], "N"), "(0.0003, -1.2) kN");
         assert_eq!(engineering_pair([0.0, -0.0], "N"), "(0, 0) N");
+    }
+
+    #[test]
+    fn rounding_errors_are_zero_in_their_context() {
+        let context = Context::of([f64::NAN, -3e4, 2.0, f64::INFINITY]);
+        for (value, text) in [(3e4, "30 kN"), (-2.9e-6, "0 N"), (3.1e-6, "3.1 µN"), (0.0, "0 N")] {
+            assert_eq!(context.engineering(value, "N"), text);
+        }
+        assert_eq!(context.pair([1e-6, -2e-6], "N"), "(0, 0) N");
+        assert_eq!(context.pair([1e-6, 3.0], "N"), "(0, 3) N");
+        assert_eq!(Context::of([]).engineering(1e-30, "N"), "1e-18 pN", "alone, no value is rounding error");
+        assert_eq!(Context::of_inexact([1.0], 1e-6).engineering(9e-7, "N"), "0 N");
+        assert!(context.engineering(f64::NAN, "N").contains("NaN"));
     }
 
     #[test]

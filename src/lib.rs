@@ -85,6 +85,7 @@ pub mod assembly;
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 #[doc(hidden)]
 pub mod cli;
+mod continuation;
 #[doc(hidden)]
 pub mod displacement;
 #[doc(hidden)]

@@ -19,7 +19,7 @@ use common::rust_files;
 const LAYERS: &[(&str, &[&str])] = &[
     ("foundations", &["format", "sentence", "timings", "simd", "image"]),
     ("model", &["model"]),
-    ("kinematics", &["rotation", "displacement", "material", "state", "exact_beam"]),
+    ("kinematics", &["rotation", "displacement", "material", "state", "continuation", "exact_beam"]),
     ("element", &["element"]),
     ("mesh", &["mesh", "article", "stress/recovery"]),
     ("scene files", &["scene"]),

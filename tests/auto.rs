@@ -19,7 +19,6 @@ fn scaled(scene: &Scene, factor: f64) -> Scene {
 fn run(scene: &Scene, method: MethodKind) -> Simulation {
     let mut scene = scene.clone();
     scene.solver.method = method;
-    scene.solver.max_iterations = 400;
     let mut simulation = Simulation::new(&scene).unwrap();
     simulation.solve();
     simulation

@@ -38,7 +38,7 @@ fn interrupted_static_commands_print_their_partial_result() {
     let args = [&["curve"][..], &LARGE].concat();
     let (code, out, _) = interrupted(folder.path(), &args, Signal::SIGINT);
     assert_eq!(code, Some(1), "{out}");
-    assert!(out.contains("the path ends at ") && out.contains("interrupted"), "{out}");
+    assert!(out.contains("not followed beyond ") && out.contains("interrupted"), "{out}");
     // Before the first measurement there is no setting to choose.
     let (code, _, said) = interrupted(folder.path(), &["tune", "cantilever"], Signal::SIGINT);
     assert_eq!(code, Some(1), "{said}");

@@ -63,8 +63,9 @@ fn newton_needs_few_solves() {
         for (class, lengths, alphas, bound) in [
             (0, &[10.0, 20.0, 50.0][..], &[0.01, 0.1, 1.0, 3.0, 10.0][..], 9),
             (1, &[500.0], &[0.01, 0.1, 1.0, 3.0, 10.0], 15),
-            (2, &[10.0, 20.0, 50.0], &[100.0], 40),
-            (3, &[10.0, 20.0, 50.0], &[1000.0], 80),
+            // Some of these follow the path from rest.
+            (2, &[10.0, 20.0, 50.0], &[100.0], 80),
+            (3, &[10.0, 20.0, 50.0], &[1000.0], 160),
         ] {
             for &length in lengths {
                 for &alpha in alphas {
@@ -95,7 +96,6 @@ fn every_case_of_the_box_is_certified() {
                             format!("material.plane={plane}"),
                             format!("beam.element={element}"),
                             format!("beam.cells={cells}"),
-                            "solver.max_iterations=500".to_owned(),
                         ];
                         let set: Vec<&str> = set.iter().map(String::as_str).collect();
                         let mut simulation = Simulation::new(&cantilever(length, alpha, &set)).unwrap();
@@ -306,7 +306,7 @@ fn steps_shrink_by_rho() {
         auto.iterations() > 2
             && auto.equilibrium().unwrap().step_ratio().is_some_and(|ratio| ratio > 0.0 && ratio < 0.5)
     );
-    for (rho, text) in [(1.0, "cannot converge here: ρ = 1.000"), (999.0, "ρ = 999.000"), (1e3, "ρ = 1.0e3")] {
+    for (rho, text) in [(1.0, "grows by ρ = 1.000"), (999.0, "ρ = 999.000"), (1e3, "ρ = 1.0e3")] {
         assert!(rho_text(rho).to_string().contains(text), "{}", rho_text(rho));
     }
 }

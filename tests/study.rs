@@ -83,10 +83,10 @@ fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
 /// setting on the front is dominated.
 #[test]
 fn a_swing_is_studied() {
-    let study = MotionStudy::new(&scene("swing"), Extent::Quick, &mut go_on).unwrap();
+    let study = MotionStudy::new(&scene_with("swing", &["dynamics.duration=1"]), Extent::Quick, &mut go_on).unwrap();
     let own = study.reference.error_percent;
     assert!(own > 0.0 && own < 0.5, "{own}");
-    assert!((study.duration - 1.0).abs() < 1e-9 && study.scene_duration == 2.0);
+    assert!((study.duration - 1.0).abs() < 1e-9 && study.scene_duration == 1.0);
     let at = |kind, rate: f64, iterations| -> &MotionMeasurement {
         let found = study.measurements.iter().find(|m| {
             let s = &m.setting;
@@ -185,7 +185,7 @@ fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
 #[test]
 fn the_reference_equals_an_independent_trajectory() {
     // The independent mesh has six-node triangles, twice as fine as these cells.
-    let scene = scene_with("swing", &["beam.element=t3"]);
+    let scene = scene_with("swing", &["beam.element=t3", "dynamics.duration=1"]);
     let reference = MotionReference::new(&scene, Extent::Quick, &mut go_on).unwrap();
     assert_eq!(reference.cells, Some([20, 1]));
     let rows = include_str!("data/swing.csv").lines().filter(|line| !line.starts_with('#')).skip(1);
@@ -284,10 +284,10 @@ fn study_of_a_motion_writes_its_files() {
             header.join(","),
             "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,\
              error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,\
-             resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto"
+             resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto,at_most_percent,undecided"
         );
         let rows: Vec<_> = lines.collect();
-        let text = ["element", "integrator", "method", "ending", "resolved", "energy", "pareto"];
+        let text = ["element", "integrator", "method", "ending", "resolved", "energy", "pareto", "undecided"];
         for row in &rows {
             assert_eq!(row.len(), header.len());
             let finished = row[8] == "finished";
@@ -359,4 +359,78 @@ fn scaling_is_measured() {
     assert!(folder.path().join("scaling.png").is_file());
     let moving = warpbeam(&["study", "swing", "--scaling", "--quick", "--out", out]);
     assert!(moving.status.code() == Some(2) && stderr(&moving).contains("static"), "{}", stderr(&moving));
+}
+
+/// A motion is studied over its duration, or over periods of its lowest natural frequency, however slow it is: linear
+/// theory is wrong for a body that sags.
+#[test]
+fn slow_motions_are_studied_over_their_periods() {
+    for (name, duration) in [("slow-gravity", 40_000.0..=40_000.0), ("slow-cantilever", 15.0..=16.1)] {
+        let slow = scene(&format!("tests/data/scenes/{name}.toml"));
+        let study = MotionStudy::new(&slow, Extent::Quick, &mut go_on).unwrap();
+        assert!(duration.contains(&study.duration), "{name}: {} s", study.duration);
+        let linear = study.measurements.iter().filter(|m| m.setting.method == MethodKind::Linear);
+        let model = linear.filter_map(|m| Some(m.error?.model)).fold(0.0, f64::max);
+        assert!(model > 1.0, "{name}: the error of linear theory is {model} %");
+        // The body moves through the whole of its vibration.
+        let highest = study.reference.path.iter().map(|u| u.y).fold(f64::NEG_INFINITY, f64::max);
+        let lowest = study.reference.path.iter().map(|u| u.y).fold(f64::INFINITY, f64::min);
+        assert!(highest > 0.5 * lowest && lowest < 0.0, "{name}: from {lowest} to {highest} m");
+    }
+    // A short scene with a short period, and a free body.
+    for (id, set) in [("chime", "dynamics.duration=0.01"), ("spin", "dynamics.duration=0.2")] {
+        let reference = MotionReference::new(&scene_with(id, &[set]), Extent::Quick, &mut go_on).unwrap();
+        let studied = reference.interval * reference.path.len() as f64;
+        let whole: f64 = set.split('=').nth(1).unwrap().parse().unwrap();
+        assert!(studied <= whole * (1.0 + 1e-9) && studied > 0.8 * whole, "{id}: {studied} s of {whole} s");
+    }
+}
+
+/// A stated bound of an error is its measured parts plus the reference's own error, in the summary and in the table, and
+/// ranks that the reference cannot tell apart are marked.
+#[test]
+fn bounds_of_a_study_include_the_error_of_the_reference() {
+    let study = Study::new(&scene("shear"), Extent::Quick, &mut go_on).unwrap();
+    let own = study.against.own_error_percent;
+    assert!(own > 0.0);
+    let (table, summary) = (study.table(), study.summary());
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().unwrap();
+    let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let undecided = study.undecided();
+    for ((row, m), undecided) in rows.zip(&study.measurements).zip(&undecided) {
+        let at_most: f64 = row[column("at_most_percent")].parse().unwrap();
+        assert!((at_most - m.error.bound() - own).abs() < 1e-9 * at_most, "{row:?}");
+        assert!((study.error_bound(m) - at_most).abs() < 1e-9 * at_most);
+        assert_eq!(row[column("undecided")], undecided.to_string());
+        let faster = study.measurements.iter().filter(|o| *o != m && o.milliseconds() <= m.milliseconds());
+        let best = faster.map(|o| o.error.bound()).fold(f64::INFINITY, f64::min);
+        assert_eq!(*undecided, (best - m.error.bound()).abs() < own, "{}", m.setting);
+    }
+    assert!(undecided.contains(&true) && undecided.contains(&false));
+    let front = summary.lines().skip_while(|line| !line.contains("at most, %")).skip(1);
+    let mut marked = false;
+    for (line, m) in front.zip(study.front()) {
+        let stated: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+        assert!(stated >= own && (stated - study.error_bound(m)).abs() < 1e-4, "{line}");
+        let index = study.measurements.iter().position(|o| o == m).unwrap();
+        assert_eq!(line.ends_with("(rank undecided)"), undecided[index], "{line}");
+        marked |= undecided[index];
+        // A bound within one percent costs some time.
+        let within = summary.lines().any(|line| line.starts_with("an error of 1 % costs "));
+        assert!(stated > 1.0 || within, "{summary}");
+    }
+    assert_eq!(summary.contains("rank undecided: a faster setting"), marked, "{summary}");
+    // `tune` states the same bound.
+    let demand = Demand { max_error_percent: Some(5.0), max_time_ms: None };
+    let tuning = Tuning::of(&scene("shear"), demand, &mut go_on).unwrap();
+    let bound = format!("error at most {:.4} %", tuning.study.error_bound(&tuning.chosen));
+    assert!(tuning.to_string().contains(&bound), "{tuning}");
+    let moving = MotionStudy::new(&scene_with("swing", &["dynamics.duration=.1"]), Extent::Quick, &mut go_on).unwrap();
+    let own = moving.reference.error_percent;
+    for m in moving.front() {
+        let bound = moving.error_bound(m).unwrap();
+        assert!((bound - m.error.unwrap().bound() - own).abs() < 1e-12 && moving.is_within(m, bound));
+        assert!(moving.summary().contains(&format!(" {bound:.4} ")), "{}", moving.summary());
+    }
 }

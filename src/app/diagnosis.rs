@@ -1,11 +1,12 @@
 //! Diagnosis of a result: its error and the source of the error, its status in words, and edits that would improve it.
 
+use crate::app::action::Action;
 use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::readout::Readout;
 use crate::app::widgets::palette::Palette;
 use crate::format::{self, engineering, number, two_digits};
 use crate::method::{floor_text, rho_text};
-use crate::scene::{ElementKind, MethodKind, Scene, limits};
+use crate::scene::{ElementKind, MethodKind, limits};
 use crate::simulation::{Equilibrium, Simulation, Status, probe_results};
 use crate::study::Reference;
 
@@ -50,8 +51,10 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
         let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
         Some((first.error_percent(&probe)?, probe.u))
     };
-    // A state that is not drawn has no error to show.
-    let own = percent_of(simulation).filter(|_| !input.shows_converged);
+    // A state that is not drawn, diverges, or is not the one to which loading from rest leads, has no error to show.
+    let is_elsewhere = input.path.is_some_and(|path| path.elsewhere.is_some()) && simulation.status().is_success();
+    let diverges = matches!(simulation.status(), Status::Diverged(_));
+    let own = percent_of(simulation).filter(|_| !input.shows_converged && !is_elsewhere && !diverges);
     let source = own.filter(|(error, _)| format::percent(*error) != format::percent(0.0)).map(|(_, u)| {
         if !simulation.status().is_success() {
             return ErrorSource::Iteration;
@@ -140,7 +143,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
     add(count(simulation.iterations(), "iteration"));
-    if let Some(path) = input.jump.filter(|_| simulation.status().is_success()) {
+    if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
         path.sentences().for_each(|sentence| add(said(&sentence)));
     }
     (text, inside_out || stability(simulation) == Some(false))
@@ -231,9 +234,7 @@ pub(crate) struct Remedy {
     pub text: String,
     /// Label of the button.
     pub offer: String,
-    /// Label of the control that it edits.
-    pub edits: &'static str,
-    pub scene: Box<Scene>,
+    pub action: Action,
 }
 
 /// Returns the most effective remedy; `None` if nothing is wrong or no edit helps.
@@ -247,7 +248,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     let with_newton = |text: String| {
         let mut scene = Box::new(scene.clone());
         scene.solver.method = MethodKind::Newton;
-        Remedy { text, offer: tr("Use newton").to_owned(), edits: "Method", scene }
+        Remedy { text, offer: tr("Use newton").to_owned(), action: Action::Edit("Method", scene) }
     };
     if !simulation.status().is_success() {
         let text = rho(input).filter(|&rho| rho > 1.0).map_or_else(
@@ -255,6 +256,10 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
             |rho| fill!("Cannot converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
         );
         return (scene.solver.method != MethodKind::Newton).then(|| with_newton(text));
+    }
+    if let Some(elsewhere) = input.path.and_then(|path| path.elsewhere) {
+        let (text, offer) = (sentence(&said(&elsewhere)), tr("Load from rest").to_owned());
+        return Some(Remedy { text, offer, action: Action::Reset });
     }
     let off = errors.own.filter(|&error| error > LARGE)?;
     let off = percent(off);
@@ -273,14 +278,15 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         } else {
             fill!("Try %{element}", element = better.id())
         };
-        return Some(Remedy { text, offer, edits: "Element", scene });
+        return Some(Remedy { text, offer, action: Action::Edit("Element", scene) });
     }
     let mut scene = Box::new(scene.clone());
     let beam = scene.beam.as_mut()?;
     beam.cells = beam.cells.map(|n| n.saturating_mul(2));
     let fits = f64::from(beam.cells[0]) * f64::from(beam.cells[1]) <= limits::TOTAL_CELLS.max;
     let text = fill!("%{error} error: the mesh is coarse.", error = off);
-    fits.then_some(Remedy { text, offer: tr("Refine the mesh").to_owned(), edits: "Cells along", scene })
+    let action = Action::Edit("Cells along", scene);
+    fits.then_some(Remedy { text, offer: tr("Refine the mesh").to_owned(), action })
 }
 
 /// Formats ρ with two significant digits.

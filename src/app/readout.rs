@@ -34,8 +34,8 @@ pub(crate) struct Readout<'a> {
     pub can_redo: bool,
     /// Reference solution that errors are measured against; `None` until it has been computed.
     pub reference: Option<&'a Reference>,
-    /// Jumps on the load path that starts at rest; `None` until the path has been computed.
-    pub jump: Option<&'a PathSummary>,
+    /// Load path from rest, compared with the state; `None` until it has been computed.
+    pub path: Option<PathSummary>,
     /// Spectral radius ρ of the warped iteration at the equilibrium; `None` if it has not been computed. It does not
     /// depend on the current state of the body.
     pub equilibrium_rho: Option<f64>,

@@ -11,11 +11,13 @@ use crate::scene::limits::{BUDGET_MS, MAX_ERROR_PERCENT};
 use crate::study::Effort;
 
 const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solver.accept_after iterations), \
-1 did not converge or was interrupted (the result is still printed), \
+1 did not converge, was interrupted, or gained more than 10 % of the energy put in from its integrator \
+(the result is still printed), \
 2 bad input or usage, or a result that could not be written, 3 no usable graphics adapter.";
 
 const SOLVE_FILES: &str = "--out of a static scene:
-  .csv  a row per node: node, rest_x, rest_y, x, y, u_x, u_y (m), rotation_deg,
+  .csv  a row per node: node, rest_x, rest_y, x, y, u_x, u_y (m), rotation_deg
+          (that of the strains: 0 in linear theory),
           strain_xx, _yy, _zz, _xy (Biot), stress_xx, _yy, _zz, _xy (Cauchy, Pa),
           von_mises (Cauchy, Pa), file_node (its number in the mesh file)
   .vtu  the mesh and its fields, for ParaView: at points displacement, strain,

@@ -11,11 +11,11 @@ use super::progress::Watch;
 use super::solved::{Solved, Spent};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
 use crate::export::{self, ExportError, Format, MotionWriter};
-use crate::format::count;
+use crate::format::{count, number, percent};
 use crate::plot::{self, Drawing};
 use crate::scene::{self, Analysis, Scene};
-use crate::simulation::{Deformation, Simulation, Status, StressResult};
-use crate::stress::strain_warning;
+use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult};
+use crate::stress::{inversion_warning, strain_warning};
 use crate::study::path_chart::Ordinate;
 use crate::study::{
     Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MemoryMeter, MotionStudy, PathSummary, Reference,
@@ -61,7 +61,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
             watch.flow()
         };
         let certified = Instant::now();
-        path = LoadPath::to_result(&scene, simulation.displacement(), observe);
+        path = LoadPath::to_result(&simulation, observe);
         certify_path = certified.elapsed();
     }
     let recovered = Instant::now();
@@ -69,8 +69,11 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let stress_time = recovered.elapsed();
     let sought = Instant::now();
     let is_static = scene.analysis == Analysis::Static;
+    // A state that is not the one asked for has no error.
+    let is_elsewhere = path.is_some_and(|path| path.elsewhere.is_some());
     let reference = effort
-        .filter(|_| is_static && !watch.is_cancelled() && !scene.probes.is_empty())
+        .filter(|_| is_static && status.is_success() && !is_elsewhere)
+        .filter(|_| !watch.is_cancelled() && !scene.probes.is_empty())
         .map(|effort| Reference::find(&scene, Some(&simulation), effort, &mut |progress| watch.observe(&progress)));
     let reference_time = sought.elapsed();
     let interrupted = watch.is_cancelled();
@@ -87,12 +90,16 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
             error => error.to_string(),
         });
     }
+    if is_elsewhere {
+        warnings.push("no error is stated: the reference solution is the one to which loading from rest leads".into());
+    }
     if is_static && !certifies && !no_certificate {
         let unknowns = count(simulation.system().dofs() as u64, "unknown");
         warnings.push(format!("not certified: {unknowns}; use --certificate to certify the result"));
     }
     let reference = reference.and_then(Result::ok);
     warnings.extend(reference.as_ref().map(Reference::limits).unwrap_or_default());
+    warnings.extend(limits_of_auto(&scene, &solution, reference.as_ref()));
     let solved = Solved {
         scene: &scene,
         mesh: simulation.system().mesh(),
@@ -111,7 +118,8 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         (true, status) if status.is_success() => eprintln!("warpbeam: interrupted: some results are missing"),
         _ => {}
     }
-    Ok(if interrupted { ExitCode::from(NOT_CONVERGED) } else { exit_code(&solution.status) })
+    let gained = solution.motion.is_some_and(|motion| motion.ledger.has_gained_too_much());
+    Ok(if interrupted || gained { ExitCode::from(NOT_CONVERGED) } else { exit_code(&solution.status) })
 }
 
 /// Computes a motion to its end, or until cancelled; the file, if any, then contains the steps so far.
@@ -136,11 +144,35 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &
 /// Returns sentences about the limitations of a result that are found without a reference solution.
 fn limits_of(simulation: &Simulation, stress: &StressResult) -> Vec<String> {
     let mut limits: Vec<String> = Vec::new();
-    let strain = Deformation::of(simulation.problem(), simulation.state()).max_strain;
-    limits.extend(strain_warning(strain).map(|warning| warning.to_string()));
+    let Deformation { max_strain, inverted_elements, .. } = Deformation::of(simulation.problem(), simulation.state());
+    let inversion = inversion_warning(inverted_elements, simulation.mesh().element_count());
+    limits.extend(inversion.iter().chain(&strain_warning(max_strain)).map(ToString::to_string));
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
     limits.extend(moved_points(simulation).iter().map(ToString::to_string));
     limits.extend(simulation.scene().unresolved_pulses());
+    limits.extend(simulation.motion().and_then(|motion| motion.ledger().gain_warning()).map(|gain| gain.to_string()));
+    limits
+}
+
+/// Returns sentences about errors above the one that is asked of `auto`.
+fn limits_of_auto(scene: &Scene, solution: &Solution, reference: Option<&Reference>) -> Vec<String> {
+    let Some(auto) = solution.auto.filter(|_| solution.status.is_success()) else { return Vec::new() };
+    let asked = scene.solver.max_error_percent;
+    let above = format!("above the {} % of solver.max_error_percent", number(asked));
+    let mut limits = Vec::new();
+    let estimated = 100.0 * auto.estimated_error;
+    if estimated.is_finite() && estimated > asked {
+        limits.push(format!("the estimated error of the method, {}, is {above}", percent(estimated)));
+    }
+    let probes = reference.map_or(&[][..], Reference::probes).iter().zip(&solution.probes);
+    for (known, probe) in probes {
+        let Some(known) = known else { continue };
+        let error = known.error_percent(probe).filter(|error| error - known.own_error_percent > asked);
+        limits.extend(error.map(|error| {
+            let (name, error) = (&probe.name, percent(error));
+            format!("the error of {name}, {error}, is {above}, which limits the error of the method only")
+        }));
+    }
     limits
 }
 

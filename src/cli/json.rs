@@ -6,14 +6,18 @@ use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
 use super::solved::Solved;
-use crate::scene::{Place, Scene, Support};
-use crate::simulation::{MotionResult, ProbeResult, ProbeStress, SupportReaction};
+use crate::scene::{Analysis, Place, Scene, Support};
+use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Status, StressResult, SupportReaction};
 use crate::stress::PlaneTensor;
 use crate::study::{ProbeReference, Reference};
 
 /// Formats a result.
 pub(super) fn solution(solved: &Solved<'_>) -> String {
     let Solved { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
+    // The last finite state of a diverging iteration has no meaning but its positions.
+    let diverged = matches!(solution.status, Status::Diverged(_));
+    let known = |value: f64| if diverged { Value::Null } else { number(value) };
+    let stress = if diverged { &StressResult::default() } else { stress };
     let references = reference.map_or(&[][..], Reference::probes);
     let probes = solution.probes.iter().enumerate();
     let probes: Vec<Value> =
@@ -38,11 +42,13 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         "buckles_at": path.and_then(|path| path.buckling).map(|buckling| number(buckling.factor)),
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
+        "load_fraction": (scene.analysis == Analysis::Static).then(|| number(solution.load_factor)),
+        "on_path_from_rest": path.map(|path| path.elsewhere.is_none()),
         "residual": number(solution.residual),
         "residual_floor": solution.residual_floor.map(number),
         "fixed_point_rho": certificate.fixed_point_rho.map(number),
-        "max_rotation_deg": number(deformation.max_rotation_deg),
-        "max_strain": number(deformation.max_strain),
+        "max_rotation_deg": known(deformation.max_rotation_deg),
+        "max_strain": known(deformation.max_strain),
         "inverted_elements": deformation.inverted_elements,
         "max_von_mises": stress.largest.map(|largest| json!({
             "value": number(largest.von_mises),
@@ -55,8 +61,8 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         "warnings": warnings,
         "probes": probes,
         "energy": {
-            "elastic": number(solution.energy.elastic),
-            "external": number(solution.energy.external),
+            "elastic": known(solution.energy.elastic),
+            "external": known(solution.energy.external),
             "supports": solution.energy.supports.map(number),
             // Present for motions only.
             "kinetic": solution.motion.map(|m| number(m.ledger.kinetic)),

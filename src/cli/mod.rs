@@ -1,8 +1,8 @@
 //! Commands `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `rust`, `completions` and
 //! `man`; without the feature `app`, those that need no window and no GPU.
 //!
-//! Exit codes: 0 done and converged, 1 ran but did not converge or was interrupted, 2 bad input or usage, or a result
-//! that could not be written, 3 no graphics adapter.
+//! Exit codes: 0 done and converged, 1 ran but did not converge, was interrupted or gained energy from its integrator, 2
+//! bad input or usage, or a result that could not be written, 3 no graphics adapter.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -20,6 +20,7 @@ use crate::study::StudyError;
 
 mod args;
 mod commands;
+mod contexts;
 #[cfg(feature = "app")]
 mod draw_args;
 #[cfg(feature = "app")]
@@ -36,7 +37,7 @@ mod text;
 #[cfg(feature = "app")]
 mod window;
 
-/// Exit code: ran, but did not converge, or was interrupted.
+/// Exit code: ran, but did not converge, was interrupted, or gained energy from its integrator.
 const NOT_CONVERGED: u8 = 1;
 /// Exit code: bad input or usage.
 const BAD_INPUT: u8 = 2;
@@ -157,7 +158,10 @@ fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
         SimulationError::System(SystemError::Scene(invalid)) => scene::locate(source, invalid).into(),
         error => CliError::Simulation { scene: named(source), error },
     })?;
-    warn_of_millimetres(&scene, simulation.system().size());
+    // The unit of a built-in mesh is known.
+    if source.built_in().is_none() {
+        warn_of_millimetres(&scene, simulation.system().size());
+    }
     Ok((scene, simulation))
 }
 

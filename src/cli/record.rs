@@ -34,7 +34,7 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
         return Ok(ExitCode::from(NOT_CONVERGED));
     }
     if let Some(reason) = recorded.status.failure() {
-        eprintln!("warpbeam: {}: {reason}", recorded.status.id());
+        eprintln!("warpbeam: {}: {reason}", recorded.status.word());
     }
     Ok(exit_code(&recorded.status))
 }

@@ -1,18 +1,20 @@
 //! Text output of commands.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 
 use nalgebra::Vector2;
 
 use super::CliError;
+use super::contexts::Contexts;
 use super::solved::Solved;
 use crate::export::csv_field;
 use crate::format::{count, engineering, engineering_pair, prefix};
 use crate::method::{Certificate, floor_text, rho_text};
-use crate::scene::{Analysis, Place, Scene, Support, registry};
+use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
-use crate::study::{LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_text};
+use crate::study::{Drive, LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_text};
 
 /// Prints to standard output. A closed pipe, as after `head`, is not an error.
 pub(super) fn print(text: &str) -> Result<(), CliError> {
@@ -38,22 +40,22 @@ pub(super) fn scenes() -> String {
 /// Formats a result.
 pub(super) fn solution(solved: &Solved<'_>) -> String {
     let Solved { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
+    let within = Contexts::of(solved);
     let mut text = format!(
-        "{}: element {}, {}, {} unknowns\n",
+        "{}: element {}, {}, {}\n",
         scene.name,
         scene.element().id(),
         solver_text(scene),
-        solution.dofs
+        count(solution.dofs as u64, "unknown")
     );
     let word = solution.status.word();
     let precision = if solution.residual_floor.is_some() { " to working precision" } else { "" };
     let _ = match &solution.motion {
         Some(MotionResult { time, counts, .. }) => writeln!(
             text,
-            "{word} at {} after {} of {} and {}",
+            "{word} at {} after {} and {}",
             engineering(*time, "s"),
-            count(counts.steps, "step"),
-            engineering(scene.dynamics.time_step, "s"),
+            steps_text(scene, counts.steps, *time),
             count(counts.solves, "solve"),
         ),
         None => writeln!(
@@ -66,6 +68,15 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
     if let Some(reason) = solution.status.failure() {
         let _ = writeln!(text, "  {reason}");
     }
+    if solution.load_factor < 1.0 && !solution.status.is_success() {
+        let percent = engineering(100.0 * solution.load_factor, "%");
+        let _ =
+            writeln!(text, "  the numbers below are those of the equilibrium at {percent} of {}", drive_text(scene));
+    }
+    if matches!(solution.status, Status::Diverged(_)) && solution.motion.is_none() {
+        let _ = writeln!(text, "  the last state of a diverging iteration has no meaning; solve with method newton");
+        return text;
+    }
     if let Some(floor) = solution.residual_floor {
         let _ = writeln!(text, "  {}", floor_text(floor, scene.solver.tolerance));
     }
@@ -77,9 +88,12 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
     if let Some(auto) = &solution.auto {
         let _ = writeln!(
             text,
-            "{}: estimated error {:.4} %, {}, {}",
+            "{}: {}, {}, {}",
             auto.decision,
-            100.0 * auto.estimated_error,
+            match auto.estimated_error.is_finite() {
+                true => format!("estimated error of the method {:.4} %", 100.0 * auto.estimated_error),
+                false => "no estimate of the method's error".to_owned(),
+            },
             count(auto.solves, "back substitution"),
             count(auto.factorizations, "factorization")
         );
@@ -99,27 +113,33 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         let _ = writeln!(text, "  this equilibrium is unstable: the exact tangent is not positive definite");
     }
     if let Some(rho) = fixed_point_rho {
-        let _ = writeln!(text, "{} (spectral radius)", rho_text(rho));
+        let still = match scene.solver.method == MethodKind::Warped && rho > 1.0 {
+            true => "; it converged because nothing disturbs it, as in a bar pulled along its axis",
+            false => "",
+        };
+        let _ = writeln!(text, "{} (spectral radius){still}", rho_text(rho));
     }
     let references = reference.map_or(&[][..], Reference::probes);
+    let moved_by = |u: Vector2<f64>| within.displacement.pair(u.into(), "m");
     for (i, probe) in solution.probes.iter().enumerate() {
-        let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), pair(probe.u, "m"));
+        let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), moved_by(probe.u));
         if let Some(at_probe) = stress.probes.get(i) {
-            let [ex, ey, _, exy] = at_probe.strain.components().map(|v| engineering(100.0 * v, "%"));
+            let [ex, ey, _, exy] =
+                at_probe.strain.components().map(|v| engineering(100.0 * within.strain.rounded(v), "%"));
             let _ = writeln!(
                 text,
                 "  rotation {}, strain {ex}, {ey}, shear {exy}",
-                engineering(at_probe.rotation_deg, "°")
+                within.rotation.engineering(at_probe.rotation_deg, "°")
             );
             if let Some(cauchy) = &at_probe.cauchy {
-                let [x, y, _, xy] = cauchy.components().map(|v| engineering(v, "Pa"));
-                let von_mises = engineering(cauchy.von_mises(), "Pa");
+                let [x, y, _, xy] = cauchy.components().map(|v| within.stress.engineering(v, "Pa"));
+                let von_mises = within.stress.engineering(cauchy.von_mises(), "Pa");
                 let _ = writeln!(text, "  stress (Cauchy) {x}, {y}, shear {xy}; von Mises {von_mises}");
             }
         }
         let known = references.get(i).and_then(Option::as_ref);
         if let Some((reference, error)) = known.and_then(|r| Some((r, r.error_percent(probe)?))) {
-            let (u, own) = (pair(reference.displacement, "m"), reference.own_error());
+            let (u, own) = (moved_by(reference.displacement), reference.own_error());
             let _ = writeln!(text, "  {}: {u}, error {error:.3} %, {own}", reference.source);
         }
     }
@@ -130,13 +150,13 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
     let _ = writeln!(
         text,
         "largest rotation {}, largest strain {}, inverted elements {}",
-        engineering(deformation.max_rotation_deg, "°"),
-        engineering(100.0 * deformation.max_strain, "%"),
+        within.rotation.engineering(deformation.max_rotation_deg, "°"),
+        engineering(100.0 * within.strain.rounded(deformation.max_strain), "%"),
         deformation.inverted_elements
     );
     if let Some(largest) = stress.largest {
         let node = mesh.node_name(largest.node).map_or_else(String::new, |node| format!(", node {node}"));
-        let (value, at) = (engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));
+        let (value, at) = (within.stress.engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));
         let _ = writeln!(text, "largest von Mises (Cauchy) {value}, at {at} of the rest body{node}");
     }
     let _ = match stress.mesh_error_percent {
@@ -148,11 +168,12 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         let _ = writeln!(
             text,
             "reaction {}, moment about the origin {}",
-            pair(solution.reaction.force, "N"),
-            engineering(solution.reaction.moment, "N m")
+            within.force.pair(solution.reaction.force.into(), "N"),
+            within.moment.engineering(solution.reaction.moment, "N m")
         );
     }
-    text.push_str(&reactions(scene, solution));
+    text.push_str(&reactions(scene, solution, &within));
+    let joules = |energy: f64| within.energy.engineering(energy, "J");
     let _ = write!(
         text,
         "elastic energy {}, work of the loads {}",
@@ -167,7 +188,7 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
         false => "\n".to_owned(),
     });
     if let Some(motion) = &solution.motion {
-        text.push_str(&energy_text(motion));
+        text.push_str(&energy_text(motion, &within));
     }
     for warning in warnings {
         let _ = writeln!(text, "note: {warning}");
@@ -181,27 +202,37 @@ pub(super) fn solution(solved: &Solved<'_>) -> String {
     text
 }
 
+/// Names the quantities that grow along the path of a scene.
+fn drive_text(scene: &Scene) -> Drive {
+    match (scene.loads.is_empty(), moved(scene)) {
+        (false, true) => Drive::Both,
+        (true, true) => Drive::Supports,
+        (_, false) => Drive::Loads,
+    }
+}
+
 fn moved(scene: &Scene) -> bool {
     scene.supports.iter().any(Support::moves)
 }
 
 /// Formats the reaction of each support, if there are several or one moves.
-fn reactions(scene: &Scene, solution: &Solution) -> String {
+fn reactions(scene: &Scene, solution: &Solution, within: &Contexts) -> String {
     let mut text = String::new();
     if solution.supports.len() < 2 && !moved(scene) {
         return text;
     }
     for (i, (support, reaction)) in scene.supports.iter().zip(&solution.supports).enumerate() {
         let _ = write!(text, "  {}", support_text(scene, i));
+        let part = solution.load_factor;
         if support.displacement != [0.0; 2] {
-            let _ = write!(text, ", moved by {}", engineering_pair(support.displacement, "m"));
+            let _ = write!(text, ", moved by {}", engineering_pair(support.displacement.map(|u| part * u), "m"));
         }
         if support.turn != 0.0 {
-            let _ = write!(text, ", rotated by {}", engineering(support.turn.to_degrees(), "°"));
+            let _ = write!(text, ", rotated by {}", engineering(part * support.turn.to_degrees(), "°"));
         }
-        let _ = write!(text, ": reaction {}", pair(reaction.force, "N"));
+        let _ = write!(text, ": reaction {}", within.force.pair(reaction.force.into(), "N"));
         if matches!(support.place, Place::Edge(_)) {
-            let _ = write!(text, ", moment about its middle {}", engineering(reaction.moment, "N m"));
+            let _ = write!(text, ", moment about its middle {}", within.moment.engineering(reaction.moment, "N m"));
         }
         text.push('\n');
     }
@@ -212,8 +243,13 @@ fn pair(v: Vector2<f64>, unit: &str) -> String {
     engineering_pair(v.into(), unit)
 }
 
-fn joules(energy: f64) -> String {
-    engineering(energy, "J")
+/// Describes the steps of a motion until `time`: the last one ends with the motion, and may be shorter than the others.
+fn steps_text(scene: &Scene, steps: u64, time: f64) -> String {
+    let usual = scene.dynamics.time_step.min(scene.dynamics.duration);
+    let before = steps.saturating_sub(1) as f64 * usual;
+    let [usual, last] = [usual, time - before].map(|length| engineering(length, "s"));
+    let text = format!("{} of {usual}", count(steps, "step"));
+    if steps < 2 || last == usual { text } else { format!("{text}, the last of {last},") }
 }
 
 /// Describes the method, or the integrator with its theory if that is linear.
@@ -228,21 +264,24 @@ fn solver_text(scene: &Scene) -> String {
 }
 
 /// Formats energies and momentum of a motion.
-fn energy_text(motion: &MotionResult) -> String {
+fn energy_text(motion: &MotionResult, within: &Contexts) -> String {
     let MotionResult { counts, ledger, momentum, critical_step, .. } = motion;
+    let joules = |energy: f64| within.energy.engineering(energy, "J");
+    let gained = within.energy.rounded(ledger.integrator) < 0.0;
     let mut text = format!(
         "kinetic energy {}, potential of the loads {}, dissipated {}, put in by pulses {}\n\
-         lost by the integrator {}: energy drift {:.2e} of the largest kinetic energy, {:.2e} of the energy put in\n\
+         {} by the integrator {}: energy drift {:.2e} of the largest kinetic energy, {:.2e} of the energy put in\n\
          momentum {}, angular momentum about the origin {}\n",
         joules(ledger.kinetic),
         joules(ledger.potential),
         joules(ledger.dissipated),
         joules(ledger.pulses),
-        joules(ledger.integrator),
+        if gained { "gained" } else { "lost" },
+        joules(ledger.integrator.abs()),
         ledger.drift(),
         ledger.drift_of_input(),
-        pair(momentum.linear, "kg m/s"),
-        engineering(momentum.angular, "kg m²/s")
+        within.momentum.pair(momentum.linear.into(), "kg m/s"),
+        within.angular_momentum.engineering(momentum.angular, "kg m²/s")
     );
     if counts.halvings > 0 {
         let _ = writeln!(text, "{} of a step that did not converge", count(counts.halvings, "halving"));
@@ -280,11 +319,11 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     for departure in &curve.departures {
         let _ = writeln!(
             text,
-            "linear theory differs by {} % at {:.1} % of the load: tip rotation {:.1}°, largest strain {:.2} %",
+            "linear theory differs by {} % at {} of the load: tip rotation {}, largest strain {}",
             departure.percent,
-            100.0 * departure.at.factor,
-            departure.at.rotation.to_degrees().abs(),
-            100.0 * departure.at.strain
+            engineering(three_digits(100.0 * departure.at.factor), "%"),
+            engineering(three_digits(departure.at.rotation.to_degrees().abs()), "°"),
+            engineering(three_digits(100.0 * departure.at.strain), "%")
         );
     }
     text.push('\n');
@@ -300,6 +339,15 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
         let _ = writeln!(text, "{:<7} at full load: {}, {word}", point.method.id(), pair(point.tip, "m"));
     }
     text
+}
+
+/// Rounds to three significant digits.
+fn three_digits(value: f64) -> f64 {
+    if value == 0.0 {
+        return value;
+    }
+    let unit = 10f64.powf(value.abs().log10().floor() - 2.0);
+    (value / unit).round() * unit
 }
 
 /// Formats a load–deflection curve as CSV.
@@ -338,20 +386,25 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
         None => write!(text, "   load   "),
     };
     let _ = writeln!(text, "{}", probe.map_or_else(String::new, |probe| format!("displacement of {probe}")));
-    let shown = (path.states.len() / 12).max(1);
-    for state in path.states.iter().step_by(shown) {
-        let _ = write!(text, "{:5.1} %  ", 100.0 * state.factor);
+    let shown: Vec<&PathState> = path.states.iter().step_by((path.states.len() / 12).max(1)).collect();
+    // The smallest number of digits that tells the rows apart.
+    let digits = (1..=8).find(|&digits| {
+        let rows = shown.iter().map(|state| format!("{:.digits$}", 100.0 * state.factor));
+        rows.collect::<BTreeSet<_>>().len() == shown.len()
+    });
+    let digits = digits.unwrap_or(1);
+    for state in shown {
+        let _ = write!(text, "{:5.digits$} %  ", 100.0 * state.factor);
         if let Some(columns) = driven_text(scene, path, state) {
             let _ = write!(text, "{:<width$}  {:<15}  ", columns[0], columns[1]);
         }
         if let Some(u) = state.probes.first() {
-            let _ = write!(text, "{:<24}", pair(*u, "m"));
+            let _ = write!(text, "{:<24}  ", pair(*u, "m"));
         }
-        let word = if state.stable == Some(false) { path_chart::unstable_text(path) } else { "" };
-        let _ = writeln!(text, "{word}");
+        let _ = writeln!(text, "{}", path_chart::stability_text(state));
     }
     text.push('\n');
-    for pair in path.states.windows(2) {
+    for pair in path.states.windows(2).filter(|pair| pair.iter().all(|state| state.unstable_modes == 0)) {
         let (at, word) = match [pair[0].stable, pair[1].stable] {
             [Some(true), Some(false)] => {
                 (&pair[0], "the limit load: beyond it, the path is unstable under force control")

@@ -39,7 +39,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         return Ok(ExitCode::from(NOT_CONVERGED));
     }
     if let Some(reason) = status.failure() {
-        eprintln!("warpbeam: {}: {reason}", status.id());
+        eprintln!("warpbeam: {}: {reason}", status.word());
     }
     Ok(exit_code(&status))
 }

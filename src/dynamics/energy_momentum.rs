@@ -5,7 +5,7 @@
 //! form: [`crate::element::Elements::linearize_between`]. Energy, momentum and angular momentum are conserved up to the
 //! residual of the step; the halves of a halved step conserve them too.
 
-use super::stage::{Stage, Step};
+use super::stage::{MeanForce, Stage, Step};
 use super::step::{Solves, StepEnergy, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
@@ -30,7 +30,6 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     if let Solves::Times(_) = solver.solves {
         solver.solves = Solves::Tolerance(solver.tolerance);
     }
-    let spring_at_start = solver.mouse_spring_force(start);
     solver.problem.set_stage(start.time + 0.5 * h, &|pulse| pulse.mean(start.time, start.time + h));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
@@ -53,5 +52,9 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         [(2.0 / h, &state.displacement), (-2.0 / h, &start.displacement), (-1.0, &start.velocity)],
     );
     state.time = start.time + h;
-    Ok(if *records_energy { solver.record(&stage, start, state, spring_at_start) } else { StepEnergy::default() })
+    let energies =
+        if *records_energy { solver.record(&stage, start, state, &MeanForce::OWN) } else { StepEnergy::default() };
+    // The target of a mouse spring moves on from its position at the end of the step.
+    solver.problem.set_time(state.time);
+    Ok(energies)
 }

@@ -4,7 +4,7 @@
 //! loses even more energy, mostly from motion that should not be damped: the first mode of a beam at 60 steps per
 //! second keeps 72 % of its energy per period.
 
-use super::stage::{Stage, Step};
+use super::stage::{MeanForce, Stage, Step};
 use super::step::{Solves, StepEnergy, StepError, combine, work};
 use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
@@ -25,7 +25,6 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
 fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     let Step { solver, h, start, state, records_energy, .. } = step;
     let h = *h;
-    let spring_at_start = solver.mouse_spring_force(start);
     solver.problem.set_stage(start.time + h, &|pulse| pulse.mean(start.time, start.time + h));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
     // A single solve loses least energy if it starts at the current state, with the matrix A without G.
@@ -55,7 +54,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     if !*records_energy {
         return Ok(StepEnergy::default());
     }
-    let mut energies = solver.record(&stage, start, state, spring_at_start);
+    let mut energies = solver.record(&stage, start, state, &MeanForce::OWN);
     // ½ |Δv|² in the norm of M is the energy that the scheme removes from any non-uniform motion.
     let [change, momentum] = &mut solver.memory.scratch;
     combine(change, [(1.0, &state.velocity), (-1.0, &start.velocity)]);

@@ -5,7 +5,14 @@ use nalgebra::Vector2;
 use super::Inertia;
 use super::step::StepEnergy;
 use crate::assembly::{Mass, Problem};
+use crate::format::{engineering, percent};
+use crate::sentence::{Sentence, sentence};
 use crate::state::State;
+
+/// Largest energy gained from the integrator, relative to the energy put in, with which a motion counts as a success.
+const MOST_GAINED: f64 = 0.1;
+/// Smallest energy gained, relative to the energy put in, for which the time step is reported as too long.
+const NOTED_GAIN: f64 = 0.01;
 
 /// Energies of a motion, J, and the energy added and removed since its start. Their sum is the energy at the start;
 /// [`Self::imbalance`] is the rounding error.
@@ -139,6 +146,25 @@ impl Ledger {
     pub fn drift_of_input(&self) -> f64 {
         let drift = -self.integrator / self.put_in;
         if drift.is_finite() { drift } else { 0.0 }
+    }
+
+    /// Returns `true` if the integrator has added more than a tenth of the energy put in: the motion is not that of the
+    /// body.
+    #[must_use]
+    pub fn has_gained_too_much(&self) -> bool {
+        self.drift_of_input() > MOST_GAINED
+    }
+
+    /// Returns a warning if the integrator has added more than a hundredth of the energy put in.
+    pub(crate) fn gain_warning(&self) -> Option<Sentence> {
+        let gain = self.drift_of_input();
+        (gain > NOTED_GAIN).then(|| {
+            sentence!(
+                "the integrator gained %{energy}, %{percent} of the energy put in: the time step is too long",
+                energy = engineering(-self.integrator, "J"),
+                percent = percent(100.0 * gain)
+            )
+        })
     }
 }
 

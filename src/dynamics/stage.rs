@@ -42,6 +42,19 @@ pub(super) struct Stage<'a> {
     pub damping: f64,
 }
 
+/// Mean force of the mouse spring over a stage: the part of earlier stages, N, and the share of the force in the stage's
+/// own equations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MeanForce {
+    pub earlier: Vector2<f64>,
+    pub share: f64,
+}
+
+impl MeanForce {
+    /// Mean force of a step with a single stage.
+    pub const OWN: Self = Self { earlier: Vector2::new(0.0, 0.0), share: 1.0 };
+}
+
 /// Largest number of terms of a difference quotient.
 const TERMS: usize = 3;
 /// Number of solves after which the iteration of a stage fails; usually two to eight suffice.
@@ -419,7 +432,7 @@ impl StageSolver<'_> {
     }
 
     /// Returns the force of the mouse spring in a stage's equations, N.
-    fn applied_mouse_spring_force(&self, stage: &Stage<'_>, start: &State, state: &State) -> Vector2<f64> {
+    pub(super) fn applied_mouse_spring_force(&self, stage: &Stage<'_>, start: &State, state: &State) -> Vector2<f64> {
         self.problem.mouse_spring().map_or_else(Vector2::zeros, |spring| {
             let (u, v) = held(stage, spring, start, state);
             spring.force(u, v)
@@ -428,38 +441,29 @@ impl StageSolver<'_> {
 
     /// Computes the stage's entries in the ledger; the residual at its end is left in the memory's forces.
     ///
-    /// The integrator's loss is the work of the unsolved residual, and the difference between the work of loads and
-    /// mouse spring and the work of the forces used. Averaged forces do the work of the potential, and pulses and mouse
-    /// spring do the work of their forces half way. Forces at the end do not: pulses are recorded with their mean over
-    /// the stage, the mouse spring by the trapezoidal rule.
-    pub(super) fn record(
-        &mut self,
-        stage: &Stage<'_>,
-        start: &State,
-        state: &State,
-        spring_at_start: Vector2<f64>,
-    ) -> StepEnergy {
-        let applied = self.applied_mouse_spring_force(stage, start, state);
+    /// The integrator's loss is the work of the unsolved residual, and the difference between the work of loads and the
+    /// work of the forces used. Averaged forces do the work of the potential, and pulses do the work of their forces half
+    /// way. Forces at the end do not: pulses are recorded with their mean over the stage.
+    ///
+    /// The mouse spring does the work of the mean force that the integrator applies. Its force at the end velocity would
+    /// not do: a firm spring damps a light node within a step, and the end velocity of a trapezoidal stage then alternates.
+    pub(super) fn record(&mut self, stage: &Stage<'_>, start: &State, state: &State, spring: &MeanForce) -> StepEnergy {
+        let spring = spring.earlier + self.applied_mouse_spring_force(stage, start, state) * spring.share;
         self.residual(stage, None, start, state);
-        let spring_at_end = self.mouse_spring_force(state);
         let loads = self.problem.loads();
         let moved = |spring: &MouseSpring| spring.mean(&state.displacement) - spring.mean(&start.displacement);
         let moved = self.problem.mouse_spring().map_or_else(Vector2::zeros, moved);
         let Memory { forces, damping, .. } = &*self.memory;
-        let (used, spring_work) = (work(&forces.external, start, state), applied.dot(&moved));
+        let used = work(&forces.external, start, state);
         let potential = loads.potential(start, 1.0) - loads.potential(state, 1.0);
-        let (pulses, spring) = if stage.between {
-            (used - potential, spring_work)
-        } else {
-            (loads.pulse_work([start, state]), (spring_at_start + spring_at_end).dot(&moved) * 0.5)
-        };
+        let pulses = if stage.between { used - potential } else { loads.pulse_work([start, state]) };
         let damps = self.damping != Damping::default();
         let unsolved = work(&forces.residual, start, state);
         StepEnergy {
             dissipated: if damps { work(damping, start, state) } else { 0.0 },
-            lost: Some(unsolved + (potential + pulses - used) + (spring - spring_work)),
+            lost: Some(unsolved + (potential + pulses - used)),
             pulses,
-            mouse_spring: spring,
+            mouse_spring: spring.dot(&moved),
         }
     }
 

@@ -40,7 +40,7 @@ pub enum StopReason {
         /// Reason why it failed.
         error: StepError,
     },
-    /// An explicit step gave a state that is not finite.
+    /// An explicit motion ran away, or reached a state that is not finite.
     Exploded {
         /// Step length, s.
         step: f64,
@@ -73,8 +73,8 @@ impl From<&StopReason> for Sentence {
                 sentence!("a time step failed even when shortened to %{n} s: %{error}", n = number(*step), error)
             }
             StopReason::Exploded { step, critical } => sentence!(
-                "the motion exploded: the time step is %{n} s, the critical one about %{critical} s; shorten the time \
-                 step",
+                "the motion exploded: the time step of %{n} s is too long; near rest, the critical one is about \
+                 %{critical} s",
                 n = number(*step),
                 critical = number(*critical)
             ),

@@ -4,7 +4,7 @@
 //! and Shampine 1996, *Analysis and implementation of TR-BDF2*. L-stable: modes that the step cannot resolve are
 //! damped, others hardly. Both stages have the same matrix up to the state at which it is evaluated.
 
-use super::stage::{Stage, Step};
+use super::stage::{MeanForce, Stage, Step};
 use super::step::{StepEnergy, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::scene::IntegratorKind;
@@ -28,7 +28,7 @@ const GAMMA: f64 = 2.0 - SQRT_2;
 fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     let Step { solver, h, start, state, middle, records_energy } = step;
     let h = *h;
-    let mut spring = solver.mouse_spring_force(start);
+    let spring_at_start = solver.mouse_spring_force(start);
     let mut energies = StepEnergy::default();
 
     // Trapezoidal stage: x_g = x₀ + γh (v₀ + v_g)/2, M (v_g − v₀) = γh (f₀ + f_g)/2 − γh f_d.
@@ -42,7 +42,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     solver.follow(state);
     // `state.net_force` is overwritten at the end of the step.
     let mut net_force = std::mem::take(&mut state.net_force);
-    solver.add_mouse_spring_force(spring, &mut net_force);
+    solver.add_mouse_spring_force(spring_at_start, &mut net_force);
     // Half of the pulses acts at the start of the step, half at the end of the stage, both with their mean.
     solver.add_pulse_force(start, 1.0, &mut net_force);
     let trapezoid = Stage {
@@ -64,14 +64,15 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     );
     state.time = start.time + g;
     if recorded {
-        let stage = solver.record(&trapezoid, start, state, spring);
+        let mean = MeanForce { earlier: spring_at_start * 0.5, share: 0.5 };
+        let stage = solver.record(&trapezoid, start, state, &mean);
         // The damping force of the stage is twice that of the step, because it acts over half of the stage's time.
         energies = StepEnergy { dissipated: 0.5 * stage.dissipated, lost: None, ..stage };
     }
+    let spring_at_end = solver.applied_mouse_spring_force(&trapezoid, start, state);
     state.net_force = net_force;
     solved?;
     middle.copy_from(state);
-    spring = solver.mouse_spring_force(middle);
 
     // Backward difference: v₁ = (x₁ − c₁x_g + c₀x₀)/w, M (v₁ − c₁v_g + c₀v₀)/w = f₁ − f_d.
     let w = h * (1.0 - GAMMA) / (2.0 - GAMMA);
@@ -110,7 +111,9 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     state.time = start.time + h;
     solver.keep_net_force(&backward, start, state);
     if *records_energy {
-        let stage = solver.record(&backward, middle, state, spring);
+        // M (v₁ − v_g) = c₀ M (v_g − v₀) + w f₁ is the impulse of this stage.
+        let earlier = (spring_at_start + spring_at_end) * (0.5 * g * c0 / (h - g));
+        let stage = solver.record(&backward, middle, state, &MeanForce { earlier, share: w / (h - g) });
         energies.dissipated += stage.dissipated;
         energies.pulses += stage.pulses;
         energies.mouse_spring += stage.mouse_spring;

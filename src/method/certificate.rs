@@ -12,10 +12,10 @@ use crate::state::State;
 /// See [`Simulation::certify`](crate::Simulation::certify) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Certificate {
-    /// `true` if the exact tangent is positive definite; `None` for linear theory and before the end.
+    /// `true` if the exact tangent is positive definite; `None` for linear theory and away from equilibria.
     pub stable: Option<bool>,
-    /// ρ = |λ|max(A⁻¹G): the warped iteration converges here if it is below 1. `None` for linear theory, before the
-    /// end, and if A cannot be factorized.
+    /// ρ = |λ|max(A⁻¹G): by this factor a small disturbance of the equilibrium grows or shrinks in each warped iteration.
+    /// `None` away from equilibria, for linear theory, and if A cannot be factorized.
     pub fixed_point_rho: Option<f64>,
 }
 
@@ -93,10 +93,16 @@ pub fn support_stiffness(
 #[must_use]
 pub fn rho_text(rho: f64) -> Sentence {
     match rho {
-        ..1.0 => sentence!("the warped iteration converges near here: ρ = %{n} < 1", n = format!("{rho:.3}")),
+        ..1.0 => sentence!(
+            "the warped iteration converges near this equilibrium: a disturbance shrinks by ρ = %{n} an iteration",
+            n = format!("{rho:.3}")
+        ),
         _ => {
             let rho = if rho < 1000.0 { format!("{rho:.3}") } else { format!("{rho:.1e}") };
-            sentence!("the warped iteration cannot converge here: ρ = %{n} > 1", n = rho)
+            sentence!(
+                "the warped iteration leaves this equilibrium: a disturbance grows by ρ = %{n} an iteration",
+                n = rho
+            )
         }
     }
 }

@@ -96,6 +96,8 @@ pub struct Iteration<'a> {
     pub workspace: &'a mut Workspace,
     /// Measured times.
     pub timings: &'a mut Timings,
+    /// Number of linear solves before the limit of iterations is reached, at least 1.
+    pub solves_left: u32,
 }
 
 impl Iteration<'_> {

@@ -16,6 +16,7 @@ mod certificate;
 mod iteration;
 mod linear;
 mod newton;
+mod path;
 mod status;
 mod warped;
 
@@ -23,6 +24,8 @@ pub use auto::{AutoReport, Decision};
 pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_text, support_stiffness};
 pub(crate) use iteration::measure;
 pub use iteration::{Iteration, IterationError, Tolerances, Workspace};
+pub use path::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
+pub(crate) use path::{PathFollower, PathProgress, StaticEquations};
 pub(crate) use status::is_useful_start;
 pub use status::{Reason, floor_text};
 
@@ -172,6 +175,17 @@ pub(crate) trait Method: std::fmt::Debug + Send + Sync {
     /// Returns the number of load steps so far, including the current one.
     fn load_steps(&self) -> u32 {
         1
+    }
+
+    /// Returns the number of linear solves of the last iteration.
+    fn solves(&self) -> u32 {
+        1
+    }
+
+    /// Returns the critical points of the path from rest to the current state; `None` if the state is not known to be
+    /// the end of that path.
+    fn path_events(&self) -> Option<PathEvents> {
+        None
     }
 
     /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.

@@ -1,20 +1,33 @@
-//! Newton's method with the exact tangent A + G: full steps with adaptive load stepping.
+//! Newton's method with the exact tangent A + G.
 //!
-//! The first full step from rest is the linear solution, which is far too long, and the second one corrects it: a line
-//! search on the energy would reject both and slow Newton's method down. If full steps fail, the load is applied in
-//! parts. If no part is small enough, line-searched descent takes over: with A + G if it is positive definite, else
-//! with A + max(G, 0), which always is.
+//! From rest, the whole load is applied at once, with full steps. The first one is the linear solution, which is far too
+//! long, and the second one corrects it: a line search on the energy would reject both and slow the method down. The
+//! result counts as the end of the path from rest if nothing in the iteration softens, as columns and arches do:
+//!
+//! - the body does not soften to first order in the load ([`softening`]),
+//! - every tangent is positive definite, which Cholesky tells at no cost,
+//! - the displacement is not larger than that of linear theory.
+//!
+//! Otherwise [`PathFollower`] follows the path from rest.
+//!
+//! From another state, as of a load that is dragged, full steps lead to the equilibrium nearby; if they fail, the path is
+//! followed from rest.
 //!
 //! The motion of supports is applied with the load: the body is rotated as a whole with them, and the rest of their
-//! motion enters the first step of a load step as a force.
+//! motion enters the first step as a force.
+
+use nalgebra::Vector2;
 
 use super::iteration::ROUNDING;
+use super::path::{PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations, jump_off};
 use super::status::{LONGEST_STEP, farthest};
-use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Reason, Restart, Verdict};
+use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Reason, Restart, Verdict, Workspace};
 use crate::assembly::Kinematics;
+use crate::continuation::PathPoint;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
-use crate::state::State;
+use crate::state::{State, largest};
+use crate::timings::timed;
 
 pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Newton,
@@ -24,140 +37,291 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     motion: Some(MotionMethod::Exact),
 };
 
-/// Full steps per load step before the residual must be close to zero. Usually 5 to 9 are needed.
+/// Full steps before the residual must be close to zero. Usually 5 to 9 are needed.
 const MAX_STEPS: u32 = 15;
 /// Relative residual below which convergence is quadratic.
 const CLOSE: f64 = 1e-2;
 /// Additional steps once the residual is below [`CLOSE`].
 const LAST_STEPS: u32 = 6;
+/// Number of successive steps without decrease after which full steps are given up.
+const PATIENCE: u32 = 3;
+/// Largest softening with which the whole load is applied at once. A larger value sends fewer bodies to the path, at the
+/// risk of a missed limit load.
+const MAX_SOFTENING: f64 = 0.05;
+/// Largest displacement, relative to that of linear theory, with which the result counts as the end of the path.
+const MAX_GROWTH: f64 = 1.1;
+
+/// Part of the search.
+#[derive(Clone, Debug, Default)]
+enum Phase {
+    /// Full steps under the whole load.
+    #[default]
+    Direct,
+    /// The path from rest, once its follower is made.
+    Path(Option<Box<PathFollower>>),
+    /// Full steps from the end of the path.
+    Finish(PathEvents),
+    /// Full steps under growing parts of the load, where rounding errors hide the path or it is too long.
+    LoadSteps(Box<LoadSteps>),
+}
+
+/// Load steps, each by full steps.
+#[derive(Clone, Debug)]
+struct LoadSteps {
+    /// Last equilibrium, and its load factor.
+    base: State,
+    reached: f64,
+    /// Length of the current load step.
+    step: f64,
+    /// Limit point of the path, and the critical points on it, if the path was followed beyond it.
+    limit: Option<(PathPoint<State>, PathEvents)>,
+    /// Critical points of the path once the result is known.
+    events: Option<PathEvents>,
+}
+
 /// Factor by which load steps grow after a success.
 const GROW: f64 = 2.0;
 /// Factor by which load steps shrink after a failure.
 const SHRINK: f64 = 0.35;
-/// Smallest load step; below it descent takes over.
-const SMALLEST_LOAD_STEP: f64 = 1e-4;
+/// Number of solves along a path after which load steps take over: they solve slender bodies in fewer solves, but are not
+/// known to end on the path.
+const MAX_PATH_SOLVES: u32 = 600;
+/// Smallest load step.
+const MIN_LOAD_STEP: f64 = 1e-4;
 /// Relative residual accepted between load steps; the next step corrects it.
 const BETWEEN_LOAD_STEPS: f64 = 1e-3;
-/// Number of successive steps without decrease after which a load step is given up.
-const PATIENCE: u32 = 3;
-/// Armijo's constant: descent accepts a step if the energy falls by at least this fraction of the decrease predicted by
-/// the slope.
-const SUFFICIENT: f64 = 1e-4;
-/// Largest number of halvings of a descent step.
-const MAX_HALVINGS: u32 = 40;
 
-/// State of load stepping.
+/// State of the method.
 #[derive(Clone, Debug)]
 pub struct Newton {
-    /// Load factor of the current load step.
-    target: f64,
-    /// Last load factor with a known equilibrium; `base` is that equilibrium.
-    reached: f64,
-    base: Option<State>,
-    is_based: bool,
-    load_step: f64,
-    /// Largest load step that the supports allow.
-    largest_load_step: f64,
+    phase: Phase,
+    /// Load factor of the current state.
+    load_factor: f64,
     load_steps: u32,
+    from_rest: bool,
+    /// `true` if the end of the path may be unstable, beyond a bifurcation.
+    may_be_unstable: bool,
     steps: u32,
+    /// Number of linear solves of the last iteration.
+    solves: u32,
     shortest: f64,
     worse: u32,
-    descends: bool,
-    no_descent: bool,
     last_step: f64,
+    /// Length of the last step relative to the one before.
+    contraction: Option<f64>,
     last_residual: f64,
+    /// Norm of the displacement of linear theory, m.
+    linear: f64,
+    /// Reason why the path has ended before the whole load.
+    end: Option<Reason>,
 }
 
 impl Default for Newton {
     fn default() -> Self {
         Self {
-            target: 1.0,
-            reached: 0.0,
-            base: None,
-            is_based: false,
-            load_step: 1.0,
-            largest_load_step: 1.0,
+            phase: Phase::Direct,
+            load_factor: 1.0,
             load_steps: 1,
+            from_rest: false,
+            may_be_unstable: false,
             steps: 0,
+            solves: 1,
             shortest: f64::INFINITY,
             worse: 0,
-            descends: false,
-            no_descent: false,
             last_step: 0.0,
+            contraction: None,
             last_residual: f64::INFINITY,
+            linear: 0.0,
+            end: None,
         }
     }
 }
 
 impl Newton {
-    fn begin_load_step(&mut self) {
-        self.load_step = self.load_step.min(self.largest_load_step);
-        // Descent applies the whole load at once, but not large rotations of supports.
-        let step = if self.descends { self.largest_load_step } else { self.load_step };
-        self.target = (self.reached + step).min(1.0);
-        self.load_steps += 1;
-        self.steps = 0;
-        self.shortest = f64::INFINITY;
-        self.worse = 0;
-        self.last_residual = f64::INFINITY;
+    /// Returns the method that follows the path from rest from its first iteration on.
+    pub(super) fn on_path() -> Self {
+        let mut newton = Self::default();
+        newton.begin_path();
+        newton
     }
 
-    /// Returns to the last equilibrium and tries a smaller load step, or descent if it would be too small.
-    fn give_up_load_step(&mut self, state: &mut State) -> Verdict {
-        self.restore(state);
-        self.load_step = SHRINK * (self.target - self.reached);
-        self.descends = self.load_step < SMALLEST_LOAD_STEP;
-        self.begin_load_step();
+    fn begin_path(&mut self) {
+        self.phase = Phase::Path(None);
+        self.from_rest = false;
+        (self.load_factor, self.load_steps) = (0.0, 0);
+    }
+
+    /// Returns to rest and begins to follow the path.
+    fn give_up(&mut self, state: &mut State) {
+        state.reset();
+        self.begin_path();
+    }
+
+    /// Ends full steps without success: follows the path, tries a shorter load step, or stops.
+    fn fail(&mut self, state: &mut State) -> Verdict {
+        match &mut self.phase {
+            Phase::Finish(_) => return Verdict::Stop(Reason::NoEquilibrium(1.0)),
+            Phase::LoadSteps(steps) => {
+                state.copy_from(&steps.base);
+                steps.step = SHRINK * (self.load_factor - steps.reached);
+                if steps.step < MIN_LOAD_STEP {
+                    self.load_factor = steps.reached;
+                    return Verdict::Stop(Reason::NoEquilibrium(steps.reached));
+                }
+                self.begin_load_step();
+            }
+            Phase::Direct | Phase::Path(_) => self.give_up(state),
+        }
         Verdict::Changed
     }
 
-    /// Restores the last equilibrium; without load this is the body at rest, wherever the iteration started.
-    fn restore(&mut self, state: &mut State) {
-        let Some(base) = self.base.as_mut().filter(|_| self.is_based) else { return };
-        if self.reached == 0.0 {
-            base.reset();
-        }
-        state.copy_from(base);
+    /// Begins to apply the load in steps from rest.
+    fn begin_load_steps(&mut self, state: &mut State, limit: Option<(PathPoint<State>, PathEvents)>) {
+        state.reset();
+        let steps = LoadSteps { base: state.clone(), reached: 0.0, step: SHRINK, limit, events: None };
+        self.phase = Phase::LoadSteps(Box::new(steps));
+        self.begin_load_step();
     }
 
-    /// Performs a step that lowers the energy: with A + G if it is positive definite, else with A + max(G, 0), halved
-    /// until the energy falls.
-    fn descend(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        if !it.supports_are_at(self.target, Kinematics::Corotated) {
-            it.carry(self.target);
-            it.assemble(Tangent::WARPED, self.target);
-            it.factorize()?;
-            it.put_supports(self.target, Kinematics::Corotated);
-            self.last_step = it.step()?;
+    fn begin_load_step(&mut self) {
+        if let Phase::LoadSteps(steps) = &self.phase {
+            self.load_factor = (steps.reached + steps.step).min(1.0);
+            self.load_steps += 1;
+        }
+        self.begin_full_steps();
+    }
+
+    fn begin_full_steps(&mut self) {
+        (self.steps, self.worse) = (0, 0);
+        (self.shortest, self.last_residual) = (f64::INFINITY, f64::INFINITY);
+    }
+
+    /// Returns `true` if the tangent is known to be positive definite without a factorization: every tangent of the
+    /// iteration was, and the last two steps contract so fast that it is not singular between them (Deuflhard, section
+    /// 2.1).
+    fn is_known_stable(&self) -> bool {
+        /// Largest contraction.
+        const FAST: f64 = 0.1;
+        let is_fast = self.contraction.is_some_and(|ratio| ratio <= FAST);
+        matches!(self.phase, Phase::Direct) && self.from_rest && is_fast
+    }
+
+    /// Performs a full step under the current load.
+    fn step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+        it.carry(self.load_factor);
+        let is_first = self.from_rest && self.steps == 1;
+        if is_first && it.problem.loads().moments().next().is_some() {
+            // Linear theory has no part of the moments in its tangent.
+            it.workspace.tangent = None;
+            it.assemble(Tangent::EXACT, 0.0);
+        }
+        it.assemble(Tangent::EXACT, self.load_factor);
+        let definite = it.factorize_symmetric();
+        if self.from_rest && !definite {
+            self.give_up(it.state);
             return Ok(());
         }
-        it.assemble(Tangent::EXACT, self.target);
-        if it.factorize().is_err() {
-            it.assemble(Tangent::DEFINITE, self.target);
-            it.factorize()?;
+        if is_first {
+            it.workspace.trial.copy_from(it.state);
         }
-        it.solve_for_step()?;
-        let (problem, trial) = (it.problem, &mut it.workspace.trial);
-        let promised = problem.system().pattern().dot(&it.forces.residual, &it.workspace.free);
-        let before = problem.energy(it.state, self.target);
-        // Differences of energies below this are rounding errors.
-        let noise = 1e-13 * before.abs();
-        let mut fraction = 1.0;
-        for _ in 0..MAX_HALVINGS {
-            trial.copy_from(it.state);
-            problem.system().pattern().advance(&it.workspace.free, fraction, &mut trial.displacement);
-            problem.system().follow(trial, self.kinematics());
-            let after = problem.energy(trial, self.target);
-            if after.is_finite() && after <= before - SUFFICIENT * fraction * promised + noise {
-                it.advance(fraction);
-                self.last_step = it.step_length();
-                return Ok(());
+        it.put_supports(self.load_factor, Kinematics::Corotated);
+        let step = it.step()?;
+        self.contraction = (self.last_step > 0.0).then(|| step / self.last_step);
+        self.last_step = step;
+        if is_first {
+            self.linear = size(&it.state.displacement);
+            if softens(it) {
+                self.give_up(it.state);
             }
-            fraction *= 0.5;
         }
-        self.no_descent = true;
         Ok(())
     }
+
+    /// Follows the path by a step.
+    fn follow(&mut self, it: &mut Iteration<'_>) {
+        let Phase::Path(follower) = &mut self.phase else { return };
+        let Iteration { problem, forces, workspace, timings, state, solves_left, .. } = it;
+        let mut equations = StaticEquations::new(problem, forces, workspace, timings);
+        let before = follower.as_ref().map_or(0, |follower| follower.linearizations());
+        if follower.is_none() {
+            *follower = PathFollower::start(&mut equations).map(Box::new);
+        }
+        let Some(follower) = follower else {
+            self.end = Some(Reason::NoEquilibrium(0.0));
+            return;
+        };
+        let progress = follower.advance(&mut equations, 1.0, before + *solves_left);
+        workspace.tangent = None;
+        self.solves = (follower.linearizations() - before).max(1);
+        self.load_steps = follower.steps;
+        let shown = match &progress {
+            PathProgress::Continue => follower.current(),
+            PathProgress::Reached | PathProgress::Ended(_) => follower.last(),
+        };
+        state.copy_from(&shown.state);
+        self.load_factor = shown.factor;
+        let is_too_long = follower.linearizations() > MAX_PATH_SOLVES;
+        match progress {
+            PathProgress::Continue if is_too_long => {
+                let limit = follower.limit().cloned().map(|limit| (limit, std::mem::take(&mut follower.events)));
+                self.begin_load_steps(state, limit);
+            }
+            PathProgress::Continue | PathProgress::Ended(PathEndReason::Solves(_)) => {}
+            PathProgress::Reached => {
+                // The last step may have passed the full load.
+                follower.events.bifurcations.retain(|bifurcation| bifurcation.factor <= 1.0);
+                self.may_be_unstable = !follower.events.bifurcations.is_empty();
+                self.phase = Phase::Finish(std::mem::take(&mut follower.events));
+                self.load_factor = 1.0;
+                self.begin_full_steps();
+            }
+            // Rounding errors keep the follower from any step, or the descent is too slow.
+            PathProgress::Ended(_) => {
+                let limit = follower.limit().cloned().map(|limit| (limit, std::mem::take(&mut follower.events)));
+                self.begin_load_steps(state, limit);
+            }
+        }
+    }
+}
+
+/// Returns by how much more than under linear theory the body is displaced, to first order in the load and relative to
+/// the linear displacement: positive for a body that softens, as an arch. The first step from rest, whose start is in
+/// the workspace, is the linear displacement d; with the elastic energy ½ a s² + ⅙ c s³ along s d it is −c/2a.
+fn softening(it: &mut Iteration<'_>) -> f64 {
+    /// Length of the differences relative to the height of the strip: strains and rotations of this order.
+    const STEP: f64 = 1e-3;
+    /// Largest displacement, relative to the size of the body, that is only rounding error.
+    const ROUNDING_ERROR: f64 = 1e-11;
+    let Iteration { problem, forces, state, workspace, timings, .. } = it;
+    let Workspace { trial, tangent, nodal, .. } = &mut **workspace;
+    *tangent = None;
+    timed(&mut timings.assemble, || {
+        for (d, (start, end)) in nodal.iter_mut().zip(trial.displacement.iter().zip(&state.displacement)) {
+            *d = end - start;
+        }
+        let longest = largest(nodal);
+        if longest <= ROUNDING_ERROR * problem.system().size() {
+            return 0.0;
+        }
+        let step = (STEP * problem.system().strip()[1] / longest).min(1.0);
+        let mut work = |by: f64| {
+            for (u, d) in trial.displacement.overwrite().iter_mut().zip(&*nodal) {
+                *u += d * by;
+            }
+            problem.follow_and_linearize(trial, Kinematics::Corotated, forces, None);
+            problem.balance(trial, Kinematics::Corotated, 0.5 * by.abs().min(step), forces);
+            let dot = |f: &[Vector2<f64>]| nodal.iter().zip(f).map(|(d, f)| d.dot(f)).sum::<f64>();
+            [dot(forces.internal()), dot(forces.external())]
+        };
+        let ([ahead, pushes], [behind, pulls]) = (work(step), work(-2.0 * step));
+        -(ahead + behind - 2.0 * (pushes - pulls)) / (step * (ahead - behind))
+    })
+}
+
+/// Returns `true` if the exact tangent of the current state is positive definite.
+fn is_stable_now(it: &mut Iteration<'_>, load_factor: f64) -> bool {
+    it.assemble(Tangent::EXACT, load_factor);
+    it.factorize().is_ok()
 }
 
 impl Method for Newton {
@@ -166,8 +330,7 @@ impl Method for Newton {
     }
 
     fn restart(&mut self, _: Restart) {
-        // Keep the allocated state, so that no memory is allocated per frame.
-        *self = Self { base: self.base.take(), ..Self::default() };
+        *self = Self::default();
     }
 
     fn tangent(&self) -> Option<Tangent> {
@@ -175,75 +338,85 @@ impl Method for Newton {
     }
 
     fn load_factor(&self) -> f64 {
-        self.target
+        self.load_factor
     }
 
     fn load_steps(&self) -> u32 {
         self.load_steps
     }
 
+    fn solves(&self) -> u32 {
+        self.solves
+    }
+
+    fn path_events(&self) -> Option<PathEvents> {
+        match &self.phase {
+            Phase::Direct if self.from_rest => Some(PathEvents::default()),
+            Phase::Finish(events) => Some(events.clone()),
+            Phase::LoadSteps(steps) => steps.events.clone(),
+            Phase::Direct | Phase::Path(_) => None,
+        }
+    }
+
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        if !self.is_based {
-            match &mut self.base {
-                Some(base) if base.accept(it.state).is_ok() => base.copy_from(it.state),
-                base => *base = Some(it.state.clone()),
-            }
-            self.is_based = true;
-            self.largest_load_step = it.problem.supports().largest_load_step();
-            if it.supports_rotate_in_steps() {
-                self.load_step = self.largest_load_step;
-                self.target = self.load_step;
-                it.workspace.tangent = None;
-            }
+        self.solves = 1;
+        if let Phase::Path(_) = self.phase {
+            self.follow(it);
+            return Ok(());
         }
         self.steps += 1;
-        if self.descends {
-            return self.descend(it);
+        if self.steps == 1 && matches!(self.phase, Phase::Direct) {
+            let supports = it.problem.supports();
+            self.from_rest = it.state.displacement.iter().all(|u| *u == Vector2::zeros());
+            if self.from_rest && supports.largest_load_step() < 1.0 {
+                self.begin_path();
+                self.follow(it);
+                return Ok(());
+            }
         }
-        it.carry(self.target);
-        it.assemble(Tangent::EXACT, self.target);
-        it.factorize_symmetric();
-        it.put_supports(self.target, Kinematics::Corotated);
-        self.last_step = it.step()?;
-        Ok(())
+        self.step(it)
     }
 
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
-        let (residual, tolerance) = (it.residual, it.tolerances.residual);
-        if self.steps == 0 {
-            // Before the first step only a state under the full load can have converged; without load the state is
-            // trivially in equilibrium.
-            let is_there = self.target == 1.0 && it.supports_are_at(1.0, Kinematics::Corotated);
+        let (residual, is_partial) = (it.residual, self.load_factor < 1.0);
+        let tolerance = it.tolerances.residual.max(if is_partial { BETWEEN_LOAD_STEPS } else { 0.0 });
+        if let Phase::Path(_) = self.phase {
+            return self.end.take().map_or(Verdict::Continue, Verdict::Stop);
+        }
+        if self.steps == 0 && matches!(self.phase, Phase::LoadSteps(_)) {
+            return Verdict::Continue;
+        }
+        if self.steps == 0 && matches!(self.phase, Phase::Direct) {
+            // A body at rest without load is in equilibrium, but its supports may have to move.
+            let is_there = it.supports_are_at(1.0, Kinematics::Corotated);
             return if residual <= tolerance && is_there { Verdict::Converged } else { Verdict::Continue };
         }
-        let enough = if self.target < 1.0 { tolerance.max(BETWEEN_LOAD_STEPS) } else { tolerance };
         let gets_on = residual < self.last_residual;
         self.last_residual = residual;
         // A step computed from a residual at rounding level would be rounding error too, and move soft bodies far.
-        let floor = if residual <= enough || self.target < 1.0 { None } else { it.floor() };
-        if residual <= enough || floor.is_some() {
-            it.assemble(Tangent::EXACT, self.target);
-            let stable = it.factorize().is_ok();
-            if self.target == 1.0 && (stable || self.descends) {
+        let floor = if residual <= tolerance || is_partial { None } else { it.floor() };
+        if residual <= tolerance || floor.is_some() {
+            let grows = self.from_rest && size(&it.state.displacement) > MAX_GROWTH * self.linear;
+            let is_known = self.may_be_unstable || self.is_known_stable();
+            if !grows && (is_known || is_stable_now(it, self.load_factor)) {
+                if let Phase::LoadSteps(steps) = &mut self.phase
+                    && is_partial
+                {
+                    steps.base.copy_from(it.state);
+                    steps.reached = self.load_factor;
+                    steps.step *= GROW;
+                    self.begin_load_step();
+                    return Verdict::Changed;
+                }
+                if let Phase::LoadSteps(steps) = &mut self.phase
+                    && let Some((limit, mut events)) = steps.limit.take()
+                {
+                    events.jump = Some(jump_off(it.problem, &limit, it.state));
+                    steps.events = Some(events);
+                }
                 return floor.map_or(Verdict::Converged, Verdict::AtRounding);
             }
-            if !stable && !self.descends {
-                return self.give_up_load_step(it.state);
-            }
-            self.descends = false;
-            if let Some(base) = &mut self.base {
-                base.copy_from(it.state);
-            }
-            self.reached = self.target;
-            self.load_step = GROW * self.load_step.max(SMALLEST_LOAD_STEP);
-            self.begin_load_step();
-            return Verdict::Changed;
-        }
-        if self.no_descent {
-            return Verdict::Stop(Reason::NoDescent);
-        }
-        if self.descends {
-            return Verdict::Continue;
+            return self.fail(it.state);
         }
         if self.last_step < self.shortest {
             self.shortest = self.last_step;
@@ -251,7 +424,7 @@ impl Method for Newton {
         } else {
             self.worse += 1;
         }
-        let near = residual < ROUNDING && self.target == 1.0;
+        let near = residual < ROUNDING && !is_partial;
         if self.worse >= PATIENCE && near && !gets_on {
             return Verdict::Stop(Reason::Stuck(self.worse));
         }
@@ -260,18 +433,43 @@ impl Method for Newton {
         let hopeless = self.steps > 1
             && (too_long || self.worse >= PATIENCE && !near || farthest(it.system(), it.state) > LONGEST_STEP);
         let late = self.steps >= MAX_STEPS + if residual < CLOSE { LAST_STEPS } else { 0 };
-        if late || hopeless { self.give_up_load_step(it.state) } else { Verdict::Continue }
+        if late || hopeless { self.fail(it.state) } else { Verdict::Continue }
     }
 
     fn stop(&mut self, state: &mut State) {
-        // Descent never raises the energy, so its last state is the best one.
-        if !self.descends {
-            self.restore(state);
-            self.target = self.reached;
+        match &self.phase {
+            Phase::Path(Some(follower)) => {
+                state.copy_from(&follower.last().state);
+                self.load_factor = follower.last().factor;
+            }
+            // Without load the body at rest is the only known equilibrium.
+            Phase::Direct | Phase::Path(None) => {
+                state.reset();
+                self.load_factor = 0.0;
+            }
+            Phase::LoadSteps(steps) => {
+                state.copy_from(&steps.base);
+                self.load_factor = steps.reached;
+            }
+            Phase::Finish(_) => {}
         }
     }
 
     fn recover(&mut self, it: &mut Iteration<'_>, error: IterationError) -> Verdict {
-        if self.descends { Verdict::Stop(Reason::Iteration(error)) } else { self.give_up_load_step(it.state) }
+        match self.phase {
+            Phase::Direct | Phase::LoadSteps(_) => self.fail(it.state),
+            Phase::Path(_) | Phase::Finish(_) => Verdict::Stop(Reason::Iteration(error)),
+        }
     }
+}
+
+/// Returns `true` if a body softens; see [`softening`].
+pub(super) fn softens(it: &mut Iteration<'_>) -> bool {
+    // Without a displacement it is not a number: nothing softens.
+    softening(it) > MAX_SOFTENING
+}
+
+/// Returns the Euclidean norm of a displacement, m.
+pub(super) fn size(u: &[Vector2<f64>]) -> f64 {
+    u.iter().map(|u| u.norm_squared()).sum::<f64>().sqrt()
 }

@@ -3,7 +3,7 @@
 use super::iteration::ROUNDING;
 use super::{Iteration, IterationError, Verdict};
 use crate::assembly::System;
-use crate::format::{number, two_digits};
+use crate::format::{engineering, number, two_digits};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::state::{State, largest};
 
@@ -21,8 +21,8 @@ pub enum Reason {
     RanAway(f64),
     /// An iteration failed.
     Iteration(IterationError),
-    /// Neither the smallest load step nor descent made progress.
-    NoDescent,
+    /// No stable equilibrium was found beyond this load factor.
+    NoEquilibrium(f64),
     /// Stopped from outside.
     Interrupted,
 }
@@ -32,7 +32,7 @@ impl Reason {
     #[must_use]
     pub fn is_divergence(&self) -> bool {
         match self {
-            Self::IterationLimit(_) | Self::Stuck(_) | Self::NoDescent | Self::Interrupted => false,
+            Self::IterationLimit(_) | Self::Stuck(_) | Self::NoEquilibrium(_) | Self::Interrupted => false,
             Self::Stalled(_) | Self::RanAway(_) | Self::Iteration(_) => true,
         }
     }
@@ -43,25 +43,24 @@ displayed!(Reason);
 impl From<&Reason> for Sentence {
     fn from(reason: &Reason) -> Self {
         match reason {
-            Reason::IterationLimit(n) => sentence!(
-                "the limit of %{count} is reached; a higher limit may help",
-                count = Self::count(*n, "iteration")
-            ),
+            Reason::IterationLimit(n) => {
+                sentence!("the limit of %{count} is reached", count = Self::count(*n, "iteration"))
+            }
             Reason::Stuck(n) => {
                 sentence!("the residual has not fallen for %{n} iterations, and is larger than rounding errors", n)
             }
-            Reason::Stalled(n) => sentence!(
-                "the residual has not fallen for %{n} iterations: the load is too large for this method; lower the load",
-                n
-            ),
+            Reason::Stalled(n) => {
+                sentence!("the residual has not fallen for %{n} iterations: the load is too large for this method", n)
+            }
             Reason::RanAway(sizes) => {
-                sentence!("the body has moved by more than %{n} times its size; lower the load", n = sizes)
+                sentence!("the body has moved by more than %{n} times its size", n = sizes)
             }
             Reason::Interrupted => sentence!("interrupted before the end: the result is partial"),
-            Reason::NoDescent => sentence!(
-                "neither smaller load steps nor a descent of the energy lead to an equilibrium; lower the load"
+            Reason::NoEquilibrium(factor) => sentence!(
+                "no stable equilibrium was found beyond %{percent} of the load",
+                percent = engineering(100.0 * factor, "%")
             ),
-            Reason::Iteration(error) => sentence!("%{error}; lower the load", error),
+            Reason::Iteration(error) => error.into(),
         }
     }
 }

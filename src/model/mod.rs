@@ -225,7 +225,7 @@ impl Default for SolverSettings {
         Self {
             method: MethodKind::default(),
             tolerance: 1e-8,
-            max_iterations: 100,
+            max_iterations: 1000,
             accept_after: 0,
             max_error_percent: 1.0,
         }

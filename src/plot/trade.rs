@@ -18,8 +18,8 @@ const WIDTH: f64 = 1.5;
 
 /// The error at which a measurement is drawn, percent.
 #[must_use]
-pub fn drawn_error(m: &Measurement) -> f64 {
-    m.error.bound().clamp(SMALLEST_ERROR, LARGEST_ERROR)
+pub fn drawn_error(study: &Study, m: &Measurement) -> f64 {
+    study.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR)
 }
 
 /// Draws the study.
@@ -27,7 +27,7 @@ pub fn drawn_error(m: &Measurement) -> f64 {
 pub fn study(study: &Study) -> Drawing {
     let point = |m: &Measurement| Point {
         time: m.milliseconds(),
-        error: drawn_error(m),
+        error: drawn_error(study, m),
         element: m.setting.element,
         color: color(m.setting.method.id(), false),
         faint: !m.converged,
@@ -52,7 +52,7 @@ pub fn motion_study(study: &MotionStudy) -> Drawing {
     let points = study.measurements.iter().filter_map(|m| {
         Some(Point {
             time: m.milliseconds,
-            error: study.resolved(m.error?.bound()).clamp(SMALLEST_ERROR, LARGEST_ERROR),
+            error: study.error_bound(m)?.clamp(SMALLEST_ERROR, LARGEST_ERROR),
             element: m.setting.element,
             color: color(m.setting.integrator.id(), false),
             faint: m.setting.method == MethodKind::Linear,

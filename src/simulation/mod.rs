@@ -83,6 +83,8 @@ pub struct Solution {
     pub iterations: u32,
     /// Number of load steps.
     pub load_steps: u32,
+    /// Fraction of loads and prescribed displacements that the state belongs to: below 1 if the search ended on the way.
+    pub load_factor: f64,
     /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖.
     pub residual: f64,
     /// Bound of the residual's rounding error; see [`Equilibrium::residual_floor`].
@@ -591,6 +593,7 @@ impl Simulation {
             status: self.status.clone(),
             iterations: self.iterations(),
             load_steps: search.map_or(1, Equilibrium::load_steps),
+            load_factor,
             residual: self.residual(),
             residual_floor: search.and_then(Equilibrium::residual_floor),
             certificate: search.and_then(Equilibrium::certificate),
@@ -665,8 +668,16 @@ impl Simulation {
     #[doc(hidden)]
     #[must_use]
     pub fn stress_result(&self) -> StressResult {
+        let Body { problem, state, .. } = &self.body;
         let nodal = self.nodal_stress();
-        StressResult::of(&self.body.problem, &nodal, &self.mesh_error(&nodal))
+        let mut result = StressResult::of(problem, &nodal, &self.mesh_error(&nodal));
+        if self.is_linear() && !result.probes.is_empty() {
+            let rotated = NodalStress::of(problem, state, Kinematics::Corotated);
+            for (own, probe) in result.probes.iter_mut().zip(problem.probes()) {
+                own.rotation_deg = rotated.mean(&probe.weights).rotation.angle().to_degrees();
+            }
+        }
+        result
     }
 
     /// Returns the displacement of a probe, m, the mean over its edge; `None` if there is no such probe.

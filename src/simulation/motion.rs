@@ -22,6 +22,8 @@ const NO_TIME: f64 = 1e-6;
 /// Largest energy added by a step, relative to the energy of the body and the work on it; a step that adds more has
 /// failed.
 const MOST_ADDED: f64 = 0.25;
+/// Largest relative residual of a stage while a mouse spring is attached.
+const GRABBED: f64 = 1e-6;
 /// Speed below which a node counts as at rest, body sizes per second.
 const UNSEEN: f64 = 1e-6;
 /// Duration, s, for which all nodes must be at rest; also at least [`QUIET_STEPS`] steps.
@@ -257,7 +259,7 @@ impl TimeStepping {
                 false => MotionDecision::OldFactor,
             });
             if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
-                self.stopped = Some(StopReason::RanAway(FARTHEST));
+                self.stopped = Some(self.reason_to_run_away(whole));
             }
         }
         self.timings.add(&self.last_step);
@@ -326,6 +328,9 @@ impl TimeStepping {
         let settings = &scene.dynamics;
         let solves = match settings.iterations {
             0 => Solves::Tolerance(scene.solver.tolerance),
+            // A single solve leaves a residual where the force of the spring bends at its cap; the work of this residual
+            // would be energy that the integrator adds.
+            _ if problem.mouse_spring().is_some() => Solves::Tolerance(scene.solver.tolerance.max(GRABBED)),
             n => Solves::Times(n),
         };
         let mut step = Step {
@@ -355,6 +360,16 @@ impl TimeStepping {
         match self.critical_step {
             Some(critical) => StopReason::Exploded { step: part, critical },
             None => StopReason::Step { step: part, error },
+        }
+    }
+
+    /// Returns the reason why a node has moved too far: a step beyond the critical one, or one that adds energy.
+    fn reason_to_run_away(&self, step: f64) -> StopReason {
+        match self.critical_step {
+            Some(critical) if step > critical || self.ledger.has_gained_too_much() => {
+                StopReason::Exploded { step, critical }
+            }
+            _ => StopReason::RanAway(FARTHEST),
         }
     }
 

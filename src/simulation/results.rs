@@ -190,13 +190,17 @@ pub struct LargestStress {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProbeStress {
-    /// Angle of R, degrees, from −180 to 180.
+    /// Angle of the polar rotation of F, degrees, from −180 to 180; also in linear theory, whose strains are measured
+    /// without it.
     pub rotation_deg: f64,
     /// Biot strain ε, in the rotated frame.
     pub strain: PlaneTensor,
     /// Cauchy stress, Pa; `None` if it is undefined.
     pub cauchy: Option<PlaneTensor>,
 }
+
+/// Von Mises stress relative to Young's modulus below which it is the rounding error of a rotation.
+const ROUNDING: f64 = 1e-14;
 
 /// Stress results of a state.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -227,7 +231,10 @@ impl StressResult {
         });
         let largest = nodal.largest_von_mises();
         Self {
-            singularity: largest.and_then(|(node, _)| Singularity::at(problem, node)),
+            // A stress of 0 does not grow with the mesh.
+            singularity: largest
+                .filter(|(_, von_mises)| *von_mises > ROUNDING * material.young)
+                .and_then(|(node, _)| Singularity::at(problem, node)),
             largest: largest.map(|(node, von_mises)| LargestStress {
                 von_mises,
                 node,

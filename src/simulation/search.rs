@@ -7,8 +7,8 @@ use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
 use crate::displacement::Displacement;
 use crate::element::Tangent;
 use crate::method::{
-    AutoReport, Certificate, Iteration, IterationError, Method, Reason, Restart, Tolerances, Verdict, Workspace,
-    fixed_point_rho, is_stable, measure,
+    AutoReport, Certificate, Iteration, IterationError, Method, PathEvents, Reason, Restart, Tolerances, Verdict,
+    Workspace, fixed_point_rho, is_stable, measure,
 };
 use crate::scene::{Scene, SolverSettings, Support};
 use crate::solver::SolverError;
@@ -37,13 +37,14 @@ pub(super) struct Search {
 }
 
 /// Figures that a method computes for display.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Figures {
     kinematics: Kinematics,
     load_factor: f64,
     load_steps: u32,
     step_ratio: Option<f64>,
     auto_report: Option<AutoReport>,
+    path_events: Option<PathEvents>,
 }
 
 /// State and results of a search, as data that can be sent to another instance of it.
@@ -123,7 +124,7 @@ impl Search {
             certificate: self.certificate,
             timings: self.timings,
             last_iteration: self.last_iteration,
-            figures: self.figures,
+            figures: self.figures.clone(),
         }
     }
 
@@ -144,12 +145,13 @@ impl Search {
     }
 
     fn figures(&self) -> Figures {
-        self.figures.unwrap_or_else(|| Figures {
+        self.figures.clone().unwrap_or_else(|| Figures {
             kinematics: self.method.kinematics(),
             load_factor: self.method.load_factor(),
             load_steps: self.method.load_steps(),
             step_ratio: self.method.step_ratio(),
             auto_report: self.method.report(),
+            path_events: self.method.path_events(),
         })
     }
 
@@ -256,7 +258,7 @@ impl Search {
         self.previous.0.copy_from(displacement);
         self.previous.1.clone_from(edge_angles);
         let iterated = self.with_method(body, &mut workspace, &mut timings, |method, it| method.iterate(it));
-        self.iterations += 1;
+        self.iterations += self.method.solves();
         let measured = iterated.and_then(|()| {
             self.measure(body, &mut workspace, &mut timings);
             if self.residual.is_finite() { Ok(()) } else { Err(IterationError::NotFinite) }
@@ -292,6 +294,7 @@ impl Search {
             state: &mut body.state,
             workspace,
             timings,
+            solves_left: body.scene.solver.max_iterations.saturating_sub(self.iterations).max(1),
         };
         work(self.method.as_mut(), &mut iteration)
     }
@@ -371,7 +374,7 @@ impl Search {
             return certificate;
         }
         let holds = problem.mouse_spring().is_some();
-        if holds || self.status == Status::Running || self.kinematics() == Kinematics::Linear {
+        if holds || !self.is_equilibrium() || self.kinematics() == Kinematics::Linear {
             return Certificate::default();
         }
         let made = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
@@ -384,6 +387,15 @@ impl Search {
             stable: Some(is_stable(problem, state, load_factor, forces, workspace)),
         });
         *self.certificate.insert(certificate)
+    }
+
+    /// Returns `true` if the state is an equilibrium: at the whole load, or at the part of it that was reached.
+    fn is_equilibrium(&self) -> bool {
+        match self.status {
+            Status::Converged => true,
+            Status::NotConverged(_) => self.load_factor() < 1.0,
+            _ => false,
+        }
     }
 
     pub fn certificate(&self) -> Option<Certificate> {
@@ -408,6 +420,11 @@ impl Search {
 
     pub fn auto_report(&self) -> Option<AutoReport> {
         self.figures().auto_report
+    }
+
+    /// Returns the critical points of the path from rest, if it is known to lead to the result.
+    pub fn path_events(&self) -> Option<PathEvents> {
+        self.figures().path_events.filter(|_| self.status.is_success())
     }
 
     pub fn status(&self) -> &Status {

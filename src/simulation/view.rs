@@ -4,7 +4,7 @@ use super::motion::{Moment, TimeStepping};
 use super::search::Search;
 use super::{Body, Simulation};
 use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
-use crate::method::{AutoReport, Certificate};
+use crate::method::{AutoReport, Certificate, PathEvents};
 
 /// Results of a search for an equilibrium; returned by [`Simulation::equilibrium`].
 ///
@@ -55,6 +55,13 @@ impl Equilibrium<'_> {
     #[must_use]
     pub fn residual_floor(self) -> Option<f64> {
         self.search.residual_floor().filter(|_| self.search.residual() > self.body.scene.solver.tolerance)
+    }
+
+    /// Returns the critical points of the path from rest; `None` if the result is not known to be its end.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn path_events(self) -> Option<PathEvents> {
+        self.search.path_events()
     }
 
     /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.

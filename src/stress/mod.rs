@@ -13,6 +13,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::assembly::{Kinematics, Problem};
+use crate::format::{number, three_digits};
 use crate::rotation::{Rotation, polar_or};
 use crate::scene::{Material, Plane};
 use crate::sentence::{Sentence, sentence};
@@ -143,12 +144,26 @@ pub const LAW_HOLDS: f64 = 0.1;
 /// Returns a warning for strains beyond [`LAW_HOLDS`].
 #[must_use]
 pub fn strain_warning(max_strain: f64) -> Option<Sentence> {
+    /// Relative excess that is rounding error.
+    const ROUNDING: f64 = 1e-9;
     let percent = 100.0 * max_strain;
-    (percent.is_finite() && max_strain > LAW_HOLDS).then(|| {
+    (percent.is_finite() && max_strain > LAW_HOLDS * (1.0 + ROUNDING)).then(|| {
         sentence!(
             "strains reach %{n} %: beyond %{most} % the linear law between stress and strain is not realistic",
-            n = format!("{percent:.0}"),
+            n = number(three_digits(percent)),
             most = (100.0 * LAW_HOLDS).to_string()
+        )
+    })
+}
+
+/// Returns a warning for a state in which some elements, out of `all`, are inverted.
+#[must_use]
+pub fn inversion_warning(inverted: usize, all: usize) -> Option<Sentence> {
+    (inverted > 0).then(|| {
+        sentence!(
+            "inverted elements: %{n} of %{all}, with a negative area, which no real body can have",
+            n = inverted.to_string(),
+            all = all.to_string()
         )
     })
 }

@@ -16,7 +16,8 @@ use crate::mesh::{Mesh, Segment, bent, straightened};
 use crate::method::{Workspace, is_stable};
 use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
 use crate::sentence::sentence;
-use crate::simulation::{Simulation, SimulationError, Status};
+use crate::simulation::{Deformation, Simulation, SimulationError, Status};
+use crate::state::largest;
 
 /// Cost allowed for a reference solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,7 +41,7 @@ impl Effort {
     /// Returns the largest sum of unknowns over all solves.
     fn most_work(self) -> f64 {
         match self {
-            Self::Bounded => 3e5,
+            Self::Bounded => 5e5,
             Self::Full => f64::INFINITY,
         }
     }
@@ -107,12 +108,12 @@ const LEAST_MESHES: usize = 3;
 /// Distance between two mesh lines, relative to the cell size in the other direction, below which they are merged.
 const NARROWEST: f64 = 1e-4;
 /// Iteration limit of Newton's method per mesh.
-const MOST_ITERATIONS: u32 = 500;
+const MOST_ITERATIONS: u32 = 1000;
 /// Tolerance of the solutions.
 const TOLERANCE: f64 = 1e-11;
 
-/// Computes the reference solution. With `near`, a solution of the scene on a mesh of its own, the search starts there,
-/// so that it finds the same one of several equilibria.
+/// Computes the reference solution: on each mesh the end of the load path from rest. With `near`, a simulation of the
+/// scene on a mesh of its own, that mesh is refined.
 ///
 /// # Errors
 /// [`StudyError`] if the mesh is too fine to be refined, no mesh has an equilibrium, or the search was cancelled.
@@ -137,12 +138,16 @@ pub(super) fn fine(
     loop {
         let system = Arc::new(System::with_mesh(&scene, meshes.mesh()?).map_err(SimulationError::from)?);
         let mut simulation = Simulation::with_system(&scene, system)?;
-        match (&start, near) {
-            (Some(start), _) => simulation.start_from(start).map_err(|_| StudyError::NoReference)?,
-            (None, Some(near)) => start_near(&mut simulation, near),
-            (None, None) => {}
+        if let Some(start) = &start {
+            simulation.start_from(start).map_err(|_| StudyError::NoReference)?;
         }
-        let converged = match search.solve(&mut simulation)? {
+        let mut status = search.solve(&mut simulation)?;
+        if status == Status::Converged && start.as_ref().is_some_and(|start| is_far(start, &simulation)) {
+            // Near a critical load, the coarser solution may lead to another equilibrium.
+            simulation.reset();
+            status = search.solve(&mut simulation)?;
+        }
+        let converged = match status {
             Status::Converged => true,
             // The budget is spent; use the previous meshes.
             Status::Running if !solutions.is_empty() => break,
@@ -169,7 +174,9 @@ pub(super) fn fine(
         }
     }
     let simulation = finest.ok_or(StudyError::NoReference)?;
-    if !stands(&simulation)? {
+    // Elements turned inside out are no solution of the continuous problem.
+    let is_inverted = Deformation::of(simulation.problem(), simulation.state()).inverted_elements > 0;
+    if is_inverted || !stands(&simulation)? {
         return Err(StudyError::NoReference);
     }
     let errors = errors(&solutions, has_point);
@@ -186,6 +193,15 @@ pub(super) fn fine(
         is_polygon: scene.beam.is_none() && has_straight_sides(simulation.system().mesh()),
         unknowns: simulation.system().dofs(),
     })
+}
+
+/// Returns `true` if a solution is so far from the one it was started from that it may be another equilibrium.
+fn is_far(start: &[Vector2<f64>], simulation: &Simulation) -> bool {
+    /// Distance relative to the largest displacement.
+    const FAR: f64 = 0.03;
+    let u = simulation.displacement();
+    let distance = start.iter().zip(u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    distance > FAR * largest(u).max(largest(start))
 }
 
 /// Returns `true` if the equilibrium is stable; descent of the energy may end in an unstable one.
@@ -242,8 +258,9 @@ impl Search<'_> {
         let fraction = (unknowns as f64 / self.effort.most_unknowns() as f64).min(1.0);
         while *simulation.status() == Status::Running && self.work <= self.effort.most_work() {
             check((self.observe)(Progress { fraction, now: &now }))?;
+            let before = simulation.iterations();
             simulation.step();
-            self.work += unknowns as f64;
+            self.work += f64::from(simulation.iterations() - before) * unknowns as f64;
         }
         Ok(simulation.status().clone())
     }
@@ -252,24 +269,6 @@ impl Search<'_> {
     fn has_work_for(&self, unknowns: usize) -> bool {
         const FEW: f64 = 4.0;
         self.work + FEW * unknowns as f64 <= self.effort.most_work()
-    }
-}
-
-/// Starts from a solution on another mesh of the same body, if it can be interpolated at all nodes.
-fn start_near(simulation: &mut Simulation, near: &Simulation) {
-    let (mesh, from) = (simulation.system().mesh(), near.system().mesh());
-    let (outline, size) = (from.outline(), near.system().size());
-    let carried: Option<Vec<Vector2<f64>>> = mesh
-        .nodes()
-        .iter()
-        .map(|&at| {
-            let weights = from.weights(from.pick(from.nodes(), &outline, at, size)?)?;
-            Some(weights.iter().map(|&(node, w)| near.displacement()[node as usize] * w).sum())
-        })
-        .collect();
-    // Otherwise the search starts at rest.
-    if let Some(carried) = carried {
-        let _ = simulation.start_from(&carried);
     }
 }
 

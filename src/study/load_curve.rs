@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use crate::assembly::System;
-use crate::exact_beam::{ExactBeam, error_percent};
+use crate::exact_beam::{ExactBeam, PathPoint, error_percent};
 use crate::method::METHODS;
 use crate::scene::{MethodKind, Place, Scene};
 use crate::simulation::{Simulation, Status};
@@ -72,6 +72,10 @@ pub struct LoadCurve {
 const LARGEST_FACTOR: f64 = 1.25;
 /// Number of samples: enough for a smooth line and for limits accurate to a percent of their load.
 const SAMPLES: u32 = 50;
+/// Number of samples below a limit of linear theory with which its load is interpolated between them.
+const FEWEST_BELOW: usize = 10;
+/// Largest number of times that the first part of the samples is sampled again.
+const MAX_ZOOMS: u32 = 4;
 /// Error limits of linear theory, percent; the article states that it is good to 3–5 %.
 const DEPARTURES: [f64; 3] = [3.0, 5.0, 10.0];
 
@@ -88,23 +92,36 @@ impl LoadCurve {
         let none =
             Sample { factor: 0.0, linear: Vector2::zeros(), exact: Vector2::zeros(), rotation: 0.0, strain: 0.0 };
         let (loaded, buckles_at) = beam.path_to_critical(LARGEST_FACTOR, SAMPLES);
-        let samples: Vec<Sample> = std::iter::once(none)
-            .chain(loaded.into_iter().map(|p| Sample {
-                factor: p.factor,
-                linear: linear * p.factor,
-                exact: p.tip.x - rest,
-                rotation: p.tip.angle,
-                strain: 0.5 * height * (p.clamp_moment / beam.bending).abs(),
-            }))
-            .collect();
-        let departures = DEPARTURES.into_iter().filter_map(|percent| departure(&samples, percent)).collect();
+        let sample = |p: &PathPoint| Sample {
+            factor: p.factor,
+            linear: linear * p.factor,
+            exact: p.tip.x - rest,
+            rotation: p.tip.angle,
+            strain: 0.5 * height * (p.clamp_moment / beam.bending).abs(),
+        };
+        let samples: Vec<Sample> = std::iter::once(none).chain(loaded.iter().map(sample)).collect();
+        let sampled = |largest: f64| -> Vec<Sample> {
+            std::iter::once(none).chain(beam.path(largest, SAMPLES).iter().map(sample)).collect()
+        };
+        let sampled = |percent: f64| {
+            let mut samples = samples.clone();
+            // Linear theory may fail in the first part of the samples: these are sampled again.
+            for _ in 0..MAX_ZOOMS {
+                let first = samples.iter().skip(1).position(|s| s.linear_error_percent() > percent)?;
+                let Some(end) = samples.get(first + 1).filter(|_| first < FEWEST_BELOW) else { break };
+                samples = sampled(end.factor);
+            }
+            Some(samples)
+        };
+        let departures = DEPARTURES.into_iter().filter_map(|percent| departure(&sampled, percent)).collect();
         let methods = METHODS.iter().filter_map(|entry| method_point(scene, entry.kind, &system)).collect();
         Some(Self { samples, buckles_at, departures, methods })
     }
 }
 
-/// Returns the load at which the error of linear theory first exceeds `percent`.
-fn departure(samples: &[Sample], percent: f64) -> Option<Departure> {
+/// Returns the load at which the error of linear theory first exceeds `percent`, in samples that are fine enough for it.
+fn departure(sampled: &dyn Fn(f64) -> Option<Vec<Sample>>, percent: f64) -> Option<Departure> {
+    let samples = sampled(percent)?;
     let pair = samples.windows(2).find(|w| w[1].linear_error_percent() > percent)?;
     let [a, b] = [pair[0], pair[1]];
     let (from, to) = (a.linear_error_percent(), b.linear_error_percent());

@@ -1,5 +1,6 @@
 //! Measurements over many solves.
 
+mod bound;
 mod colors;
 mod convergence;
 pub mod extremes;
@@ -19,12 +20,11 @@ mod timing;
 mod trade;
 mod tune;
 
+pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 pub use colors::color;
 pub use fine::{Effort, MovedPoint, moved_points};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
-pub use load_path::{
-    Bifurcation, Jump, LoadPath, PathEnd, PathEndReason, PathState, PathSummary, support_name, support_text,
-};
+pub use load_path::{Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text};
 pub use motion::MotionStudy;
 pub use progress::{Extent, Observer, PartialObserver, Progress, StudyError};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]

@@ -158,9 +158,9 @@ impl Piece {
 /// The lines of a path.
 fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, Piece)> {
     let stable: Vec<bool> = path.states.iter().map(|s| s.stable != Some(false)).collect();
-    let jump = path.jump.filter(|jump| jump.distance > 0.0);
-    let cut = jump.and_then(|jump| path.states.iter().position(|s| s.factor > jump.factor));
-    let Some(cut) = cut.filter(|&cut| cut > 0) else { return branches(points, &stable) };
+    let Some(cut) = path.states_before_jump.filter(|cut| (1..points.len()).contains(cut)) else {
+        return branches(points, &stable);
+    };
     let ((before, after), (stable_before, stable_after)) = (points.split_at(cut), stable.split_at(cut));
     let mut pieces = branches(before, stable_before);
     pieces.extend(branches(after, stable_after));
@@ -204,7 +204,17 @@ fn bifurcations<'a>(
     })
 }
 
-/// Name of the unstable part of a path: where a support moves, it is unstable only once that is let go of.
+/// Name of the unstable part of a path with a moving support: stable while the support is held, if no mode is unstable.
 pub(crate) fn unstable_text(path: &LoadPath) -> &'static str {
-    if path.driven.is_some() { "unstable under force control" } else { "unstable" }
+    let is_held = path.states.iter().all(|state| state.unstable_modes == 0);
+    if path.driven.is_some() && is_held { "unstable under force control" } else { "unstable" }
+}
+
+/// Name of a state of a path for tables; empty if it is stable.
+pub(crate) fn stability_text(state: &PathState) -> &'static str {
+    match state.stable {
+        Some(false) if state.unstable_modes == 0 => "unstable under force control",
+        Some(false) => "unstable",
+        _ => "",
+    }
 }

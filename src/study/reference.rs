@@ -160,8 +160,8 @@ impl Reference {
         Self::find(scene, None, Effort::Bounded, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// Computes the reference solution of a scene. If the scene has several equilibria it is the one nearest to `near`,
-    /// a solution of the scene on its own mesh, or without `near` the one reached from rest.
+    /// Computes the reference solution of a scene: of several equilibria the one to which loading from rest leads. With
+    /// `near`, a simulation of the scene on a mesh of its own, that mesh is refined.
     ///
     /// # Errors
     /// [`StudyError`]: the scene is dynamic or has no probe, its mesh is too fine to be refined, the fine solutions do
@@ -186,7 +186,6 @@ impl Reference {
         if near.is_some_and(is_unstable) {
             return Err(StudyError::Unstable);
         }
-        let near = near.filter(|near| *near.status() == Status::Converged && !near.is_linear());
         let beam = ExactBeam::of(scene);
         match (beam.and_then(|b| b.tip_displacement()), fine(scene, near, effort, observe)) {
             (Some(tip), Ok(fine)) => Ok(Self::confirmed(scene, beam, tip, fine)),
@@ -327,7 +326,7 @@ pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
 fn run_to_end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Simulation, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
-    scene.solver.max_iterations = scene.solver.max_iterations.max(200);
+    scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
     scene.solver.accept_after = 0;
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
     if *simulation.solve() != Status::Converged && method == MethodKind::Newton {

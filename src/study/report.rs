@@ -4,23 +4,42 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 use super::trade::Study;
+use crate::format::percent;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 
+/// Mark of a setting whose rank is undecided.
+pub(super) const UNDECIDED: &str = " (rank undecided)";
+
+/// Explains the mark of undecided ranks; `own` is the reference's own error, percent.
+pub(super) fn undecided_note(own: f64) -> String {
+    format!(
+        "rank undecided: a faster setting may be as accurate, because their errors differ by less than the reference's \
+         own error, {}\n",
+        percent(own)
+    )
+}
+
+/// Ends the sentence about an error that is below those of all settings.
+pub(super) fn not_reached() -> String {
+    "is not reached by a measured setting".to_owned()
+}
+
 impl Study {
-    /// Formats the study as CSV, with times in microseconds.
+    /// Formats the study as CSV, with times in microseconds. `error_bound_percent` is the sum of the error's parts;
+    /// `at_most_percent` includes the reference's own error.
     #[must_use]
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "element,cells_along,cells_across,dofs,method,iterations,converged,time_us,rotate_us,assemble_us,factorize_us,solve_us,error_percent,discretization_percent,iteration_percent,model_percent,error_bound_percent,pareto\n",
+            "element,cells_along,cells_across,dofs,method,iterations,converged,time_us,rotate_us,assemble_us,factorize_us,solve_us,error_percent,discretization_percent,iteration_percent,model_percent,error_bound_percent,pareto,at_most_percent,undecided\n",
         );
-        for m in &self.measurements {
+        for (m, undecided) in self.measurements.iter().zip(self.undecided()) {
             let [along, across] = m.setting.cells.unwrap_or([0, 0]);
             let us = |d: Duration| d.as_secs_f64() * 1e6;
             let (t, e) = (&m.time, &m.error);
             let _ = writeln!(
                 text,
-                "{},{along},{across},{},{},{},{},{:.2},{:.2},{:.2},{:.2},{:.2},{:e},{:e},{:e},{:e},{:e},{}",
+                "{},{along},{across},{},{},{},{},{:.2},{:.2},{:.2},{:.2},{:.2},{:e},{:e},{:e},{:e},{:e},{},{:e},{undecided}",
                 m.setting.element.id(),
                 m.dofs,
                 m.setting.method.id(),
@@ -36,7 +55,8 @@ impl Study {
                 e.iteration,
                 e.model,
                 e.bound(),
-                m.pareto
+                m.pareto,
+                self.error_bound(m)
             );
         }
         text
@@ -47,25 +67,33 @@ impl Study {
     pub fn summary(&self) -> String {
         let mut text = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);
         text.push_str(
-            "Pareto front: no measured setting is both faster and more accurate (error: at most the sum of its parts):\n",
+            "Pareto front: no measured setting is both faster and more accurate (error: at most the sum of its parts and \
+             of the reference's own error):\n",
         );
         text.push_str("    time, ms    at most, %     measured   mesh error  stopped early  linear theory   setting\n");
-        for m in self.front() {
+        let ranked = self.measurements.iter().zip(self.undecided()).filter(|(m, _)| m.pareto);
+        let mut front: Vec<_> = ranked.collect();
+        front.sort_by_key(|(m, _)| m.time.total());
+        for (m, undecided) in &front {
             let e = &m.error;
             let _ = writeln!(
                 text,
-                "{:12.4} {:12.4} {:12.4} {:12.4} {:14.4} {:14.4}   {}",
+                "{:12.4} {:12.4} {:12.4} {:12.4} {:14.4} {:14.4}   {}{}",
                 m.milliseconds(),
-                e.bound(),
+                self.error_bound(m),
                 e.total,
                 e.discretization,
                 e.iteration,
                 e.model,
-                m.setting
+                m.setting,
+                if *undecided { UNDECIDED } else { "" }
             );
         }
-        text.push('\n');
         let own = self.against.own_error_percent;
+        if front.iter().any(|(_, undecided)| *undecided) {
+            text.push_str(&undecided_note(own));
+        }
+        text.push('\n');
         for percent in [10.0, 1.0, 0.1] {
             if own >= percent {
                 let _ =
@@ -74,8 +102,8 @@ impl Study {
             }
             let cost = self
                 .cheapest_within(percent)
-                .map_or_else(|| "not reached".to_owned(), |m| format!("{:.4} ms, {}", m.milliseconds(), m.setting));
-            let _ = writeln!(text, "an error of {percent} % costs {cost}");
+                .map_or_else(not_reached, |m| format!("costs {:.4} ms, {}", m.milliseconds(), m.setting));
+            let _ = writeln!(text, "an error of {percent} % {cost}");
             for element in ElementKind::all() {
                 for method in METHODS.iter().map(|m| m.kind) {
                     let own = self.measurements.iter().filter(|m| {

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 use web_time::{Duration, Instant};
 
+use super::bound::{at_most, undecided};
 use super::fine::{Effort, finest_element};
 use super::parallel::{self, CalledOff};
 use super::pareto;
@@ -308,7 +309,7 @@ impl Study {
     }
 
     fn mark_pareto(&mut self) {
-        let pairs: Vec<_> = self.measurements.iter().map(|m| (m.milliseconds(), m.error.bound())).collect();
+        let pairs = self.times_and_errors();
         for (m, front) in self.measurements.iter_mut().zip(pareto::front(&pairs)) {
             m.pareto = front;
         }
@@ -326,7 +327,18 @@ impl Study {
     /// reference.
     #[must_use]
     pub fn error_bound(&self, measurement: &Measurement) -> f64 {
-        measurement.error.bound() + self.against.own_error_percent
+        at_most(measurement.error.bound(), self.against.own_error_percent)
+    }
+
+    /// Returns for every measurement `true` if its rank is undecided: its error and the smallest one of faster settings
+    /// differ by less than the reference's own error.
+    #[must_use]
+    pub fn undecided(&self) -> Vec<bool> {
+        undecided(&self.times_and_errors(), self.against.own_error_percent)
+    }
+
+    fn times_and_errors(&self) -> Vec<(f64, f64)> {
+        self.measurements.iter().map(|m| (m.milliseconds(), m.error.bound())).collect()
     }
 
     /// Returns the cheapest measurement whose error is at most `percent`.

@@ -147,12 +147,22 @@ impl std::fmt::Display for Tuning {
             (false, _, true) => "the most accurate within the time",
             (false, _, false) => "the fastest of all",
         };
-        let text = if *met {
-            format!("{meeting} of {measured} settings measured here meet {demand}; {which}")
-        } else {
-            format!("none of {measured} settings measured here meets {demand}; {which}")
+        let own = study.against.own_error_percent;
+        let is_as_accurate = |m: &&Measurement| {
+            m.converged && demand.time_is_met(m) && (m.error.bound() - chosen.error.bound()).abs() < own
         };
-        let (e, own) = (&chosen.error, study.against.own_error_percent);
+        let as_accurate = study.measurements.iter().filter(is_as_accurate).count();
+        // The setting itself is one of them.
+        let undecided = match as_accurate > 1 && which.starts_with("the most accurate") {
+            true => format!(", undecided between {as_accurate} whose errors differ by less than the reference's own"),
+            false => String::new(),
+        };
+        let text = if *met {
+            format!("{meeting} of {measured} settings measured here meet {demand}; {which}{undecided}")
+        } else {
+            format!("none of {measured} settings measured here meets {demand}; {which}{undecided}")
+        };
+        let e = &chosen.error;
         writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference)?;
         writeln!(f, "{text}:")?;
         writeln!(

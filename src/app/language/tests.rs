@@ -9,7 +9,7 @@ use crate::method::{Decision, IterationError, Reason, floor_text, rho_text};
 use crate::scene::limits::{CELLS, FORCE};
 use crate::scene::{self, Scene, SceneError, Source, units};
 use crate::sentence::Sentence;
-use crate::study::{Jump, LoadPath, Reference, Setting, path_chart};
+use crate::study::{Drive, Elsewhere, Jump, LoadPath, Reference, Setting, path_chart};
 
 fn open(id: &str) -> Scene {
     scene::open(&Source { name: id.into(), assignments: Vec::new() }).unwrap()
@@ -34,17 +34,19 @@ fn the_sentences_of_the_library_are_translated() {
         both(&Reason::Stuck(30)),
         both(&Reason::Stalled(30)),
         both(&Reason::RanAway(1e6)),
-        both(&Reason::NoDescent),
+        both(&Reason::NoEquilibrium(0.5)),
         both(&Reason::Iteration(IterationError::NotFinite)),
         both(&Decision::OldFactor),
         both(&StopReason::Step { step: 1e-3, error: StepError::NotConverged(20) }),
         both(&StopReason::Exploded { step: 0.1, critical: 0.02 }),
         both(&StopReason::RanAway(100.0)),
         both(&StopReason::Interrupted),
-        both(&Jump { factor: 1.0, distance: 0.0 }),
-        both(&Jump { factor: 0.5, distance: 0.0 }),
-        both(&Jump { factor: 0.5, distance: 0.1 }),
+        both(&Jump { factor: 0.5, distance: None, is_on_path: false, drive: Drive::Loads }),
+        both(&Jump { factor: 0.5, distance: Some(0.1), is_on_path: true, drive: Drive::Supports }),
+        both(&Jump { factor: 0.5, distance: Some(0.1), is_on_path: false, drive: Drive::Both }),
+        both(&Elsewhere { distance: 0.1 }),
         both(&crate::stress::strain_warning(0.5).unwrap()),
+        both(&crate::stress::inversion_warning(3, 10).unwrap()),
         both(&FORCE.check(-1.0).unwrap_err()),
         both(&CELLS.expected("\u{201c}0\u{201d}")),
         both(&cells.validate().unwrap_err()),

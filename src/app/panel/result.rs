@@ -126,14 +126,14 @@ fn quality_rows(row: &mut Row<'_>, input: &Readout<'_>) {
                the nodes";
     row("Mesh error", text, tip);
     let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
-    let warning = quality.warning().filter(|_| known);
-    let text = match (known, &warning) {
+    let warnings: Vec<String> = quality.warnings().filter(|_| known).map(|warning| said(&warning)).collect();
+    let text = match (known, warnings.is_empty()) {
         (false, _) => UNKNOWN.to_owned(),
-        (true, None) => strain,
-        (true, Some(_)) => fill!("%{strain}: too large", strain = strain),
+        (true, true) => strain,
+        (true, false) => fill!("%{strain}: too large", strain = strain),
     };
-    let tip = tr("The largest principal strain");
-    let tip = warning.map_or_else(|| tip.to_owned(), |text| format!("{tip}; {}", said(&text)));
+    let tip = std::iter::once(tr("The largest principal strain").to_owned()).chain(warnings);
+    let tip = tip.collect::<Vec<_>>().join("; ");
     row("Strain", text, &tip);
 }
 

@@ -10,7 +10,7 @@ use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::scene::{DynamicsSettings, Scene, SolverSettings};
 use crate::simulation::Simulation;
-use crate::study::{Effort, LoadCurve, LoadPath, PathSummary, Reference};
+use crate::study::{Effort, LoadCurve, LoadPath, PathFromRest, Reference};
 
 /// Load–displacement curve of a scene.
 #[derive(Debug, Serialize, Deserialize)]
@@ -26,8 +26,8 @@ facts! {
     ReferenceFact = "reference": Reference, find_reference;
     /// Load–displacement curve.
     CurveFact = "curve": Curve, |scene, _| curve(scene);
-    /// Jumps of the body on the load path that starts at rest.
-    JumpFact = "jump": PathSummary, |scene, _| LoadPath::summary_of(scene);
+    /// End of the load path from rest, and the jumps on it.
+    PathFact = "path": PathFromRest, |scene, _| LoadPath::end_of_scene(scene);
     /// Lowest natural frequency, Hz.
     FrequencyFact = "frequency": f64, |scene, _| natural_frequency(scene);
 }
@@ -44,8 +44,8 @@ pub(crate) struct Facts {
     /// Reference solution that errors are measured against.
     pub reference: Lazy<ReferenceFact>,
     pub curve: Lazy<CurveFact>,
-    /// Jumps of the body on the load path that starts at rest.
-    pub jump: Lazy<JumpFact>,
+    /// End of the load path from rest, and the jumps on it.
+    pub path: Lazy<PathFact>,
     /// Lowest natural frequency, Hz.
     pub frequency: Lazy<FrequencyFact>,
 }
@@ -58,21 +58,21 @@ impl Facts {
             self.reference.invalidate();
         }
         self.curve.invalidate();
-        self.jump.invalidate();
+        self.path.invalidate();
     }
 
     /// Requests the results of a scene at rest; returns `true` while one of them is pending.
     pub(super) fn request_at_rest(&mut self, scene: &Scene, needs_curve: bool) -> bool {
         let reference = self.reference.request(scene);
-        let jump = self.jump.request(scene);
+        let path = self.path.request(scene);
         let curve = needs_curve && self.curve.request(scene);
-        reference || jump || curve
+        reference || path || curve
     }
 
     /// Computes the results of a scene at rest, and waits for them.
     pub(super) fn wait_at_rest(&mut self, scene: &Scene, needs_curve: bool) {
         self.reference.wait(scene);
-        self.jump.wait(scene);
+        self.path.wait(scene);
         if needs_curve {
             self.curve.wait(scene);
         }

@@ -272,7 +272,7 @@ impl Lab {
             _ => false,
         };
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_looking());
-        let at_rest = !session.is_motion() && (facts.reference.is_pending() || facts.jump.is_pending());
+        let at_rest = !session.is_motion() && (facts.reference.is_pending() || facts.path.is_pending());
         session.is_working() || plots || learns || at_rest
     }
 

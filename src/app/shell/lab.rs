@@ -244,7 +244,7 @@ impl Lab {
         let facts = session.facts();
         Readout {
             reference: facts.reference.get(),
-            jump: facts.jump.get(),
+            path: facts.path.get().map(|path| path.to(session.simulation().displacement())),
             equilibrium_rho: self.lesson.as_ref().and_then(|lesson| lesson.learn.rho()),
             quality: session.quality(),
             reference_progress: facts.reference.progress(),

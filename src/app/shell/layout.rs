@@ -354,7 +354,7 @@ impl Lab {
             let remedy = diagnosis::remedy(&input, errors).filter(|_| self.desk.view.mode == Mode::Explore);
             let help = |ui: &mut Ui, remedy: &diagnosis::Remedy| {
                 let pressed = ui.button(&remedy.offer).on_hover_text(&remedy.text).clicked();
-                pressed.then(|| Action::Edit(remedy.edits, remedy.scene.clone()))
+                pressed.then(|| remedy.action.clone())
             };
             if let Some(remedy) = remedy.as_ref().filter(|_| !is_low) {
                 chip(palette.error_chip).show(ui, |ui| {

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use crate::scene::Material;
 use crate::sentence::Sentence;
 use crate::simulation::{Deformation, Simulation};
-use crate::stress::strain_warning;
+use crate::stress::{inversion_warning, strain_warning};
 
 /// Quality of the last state that was evaluated.
 #[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -15,8 +15,8 @@ pub(crate) struct Quality {
     pub mesh_error_percent: Option<f64>,
     /// Largest principal strain.
     pub max_strain: f64,
-    /// `true` if an element is turned inside out.
-    is_inside_out: bool,
+    /// Number of elements that are turned inside out, and number of all elements.
+    inside_out: [usize; 2],
 }
 
 impl Quality {
@@ -27,7 +27,8 @@ impl Quality {
         }
         self.mesh_error_percent = simulation.mesh_error(&simulation.nodal_stress()).percent;
         let deformation = Deformation::of(simulation.problem(), simulation.state());
-        (self.max_strain, self.is_inside_out) = (deformation.max_strain, deformation.inverted_elements > 0);
+        self.max_strain = deformation.max_strain;
+        self.inside_out = [deformation.inverted_elements, simulation.mesh().element_count()];
         self.of = Some((simulation.displacement().to_vec(), *simulation.problem().material()));
     }
 
@@ -40,13 +41,14 @@ impl Quality {
     /// evaluated it is computed here.
     pub(crate) fn is_inside_out(&self, simulation: &Simulation) -> bool {
         if self.is_of(simulation) {
-            return self.is_inside_out;
+            return self.inside_out[0] > 0;
         }
         simulation.system().elements().smallest_area_ratio(simulation.displacement()) <= 0.0
     }
 
-    /// Returns the warning for large strains.
-    pub(crate) fn warning(&self) -> Option<Sentence> {
-        strain_warning(self.max_strain)
+    /// Returns the warnings for inverted elements and for large strains.
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = Sentence> {
+        let [inverted, all] = self.inside_out;
+        inversion_warning(inverted, all).into_iter().chain(strain_warning(self.max_strain))
     }
 }

@@ -12,10 +12,10 @@
 use nalgebra::Vector2;
 
 use self::expansion::{Expansion, relative_size, solve_nodal};
-use super::newton::Newton;
+use super::newton::{Newton, size, softens};
 use super::status::{LONGEST_STEP, StepLengths, farthest};
-use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Restart, Verdict};
-use crate::assembly::Kinematics;
+use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, PathEvents, Restart, Verdict};
+use crate::assembly::{Forces, Kinematics};
 use crate::element::Tangent;
 use crate::rotation::Rotation;
 use crate::scene::MethodKind;
@@ -54,6 +54,10 @@ const LONG: f64 = 0.2;
 const NEAR: f64 = 0.05;
 /// Number of steps after which load stepping takes over; near a solution three or four steps suffice.
 const MAX_STEPS: u32 = 15;
+/// Smallest resultant of the loads, relative to their norm, that is more than rounding error.
+const RESULTANT: f64 = 1e-9;
+/// Largest displacement, relative to that of linear theory, of a body that does not soften.
+const MAX_GROWTH: f64 = 1.1;
 
 /// Factorized tangent and its observed convergence.
 #[derive(Debug)]
@@ -79,7 +83,11 @@ pub struct Auto {
     linear: bool,
     steps: u32,
     lengths: StepLengths,
+    /// Norm of the displacement after the first step from rest, that of linear theory, m.
+    linear_size: f64,
     newton: Option<Newton>,
+    /// `true` if the search began at rest.
+    from_rest: bool,
     report: AutoReport,
     /// Last step, as a nodal vector.
     step: Vec<Vector2<f64>>,
@@ -152,10 +160,17 @@ impl Auto {
         self.report.factorizations += 1;
         self.report.decision = Decision::NewFactor;
         self.tangent = Some(OldTangent { factor, definite, trusted: it.residual <= TRUSTED, serves: false });
+        let is_first = self.from_rest && self.steps == 1;
+        if is_first {
+            it.workspace.trial.copy_from(it.state);
+        }
         it.put_supports(1.0, Kinematics::Corotated);
         self.solve_for_step(it)?;
         let step = relative_size(it.problem, &self.step, &it.state.displacement);
         self.advance(it, step, true);
+        if is_first {
+            self.check_softening(it);
+        }
         Ok(())
     }
 
@@ -187,10 +202,34 @@ impl Auto {
         };
     }
 
+    /// Follows the path from rest if the first step, whose start is in the workspace, shows that the body softens.
+    fn check_softening(&mut self, it: &mut Iteration<'_>) {
+        self.linear_size = size(&it.state.displacement);
+        if softens(it) {
+            self.start_load_steps(it.state);
+        }
+    }
+
+    /// Returns `true` if the forces of the current state balance in total as well as the requested error: a small error
+    /// of the displacement of a slender body does not imply it.
+    fn is_balanced(it: &Iteration<'_>) -> bool {
+        let pattern = it.system().pattern();
+        let Forces { external, residual, .. } = &*it.forces;
+        let total = |force: &[Vector2<f64>]| {
+            let free = force.iter().zip(pattern.mask()).map(|(f, mask)| f.component_mul(mask));
+            free.sum::<Vector2<f64>>().norm()
+        };
+        let tolerance = USABLE * it.tolerances.error;
+        let all = pattern.norm(external);
+        // Loads without a resultant, as a moment, leave nothing to compare with.
+        let resultant = total(external);
+        resultant <= RESULTANT * all || total(residual) <= tolerance * resultant
+    }
+
     /// Starts load stepping from rest.
     fn start_load_steps(&mut self, state: &mut State) -> Verdict {
         state.reset();
-        self.newton = Some(Newton::default());
+        self.newton = Some(Newton::on_path());
         self.tangent = None;
         self.report.decision = Decision::LoadSteps;
         Verdict::Changed
@@ -267,6 +306,17 @@ impl Method for Auto {
         self.newton.as_ref().map_or(1, Method::load_steps)
     }
 
+    fn solves(&self) -> u32 {
+        self.newton.as_ref().map_or(1, Method::solves)
+    }
+
+    fn path_events(&self) -> Option<PathEvents> {
+        match &self.newton {
+            Some(newton) => newton.path_events(),
+            None => (self.from_rest && !self.linear).then(PathEvents::default),
+        }
+    }
+
     fn step_ratio(&self) -> Option<f64> {
         self.lengths.ratio()
     }
@@ -278,12 +328,22 @@ impl Method for Auto {
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         self.steps += 1;
         if let Some(newton) = &mut self.newton {
-            self.report.solves += 1;
-            self.report.factorizations += 1;
-            return newton.iterate(it);
+            let iterated = newton.iterate(it);
+            self.report.solves += newton.solves();
+            self.report.factorizations += newton.solves();
+            return iterated;
         }
-        if self.steps == 1 && self.try_linear(it)? {
-            return Ok(());
+        if self.steps == 1 {
+            self.from_rest = it.state.displacement.iter().all(|u| *u == Vector2::zeros());
+            if self.from_rest {
+                it.workspace.trial.copy_from(it.state);
+            }
+            if self.try_linear(it)? {
+                if self.from_rest && !self.linear {
+                    self.check_softening(it);
+                }
+                return Ok(());
+            }
         }
         if it.supports_rotate_in_steps() {
             self.start_load_steps(it.state);
@@ -328,11 +388,14 @@ impl Method for Auto {
             return self.accept(it);
         }
         let trusted = self.tangent.as_ref().is_some_and(|t| t.trusted);
-        let within = trusted && self.report.estimated_error <= USABLE * it.tolerances.error;
+        let within = trusted && self.report.estimated_error <= USABLE * it.tolerances.error && Self::is_balanced(it);
         let done = within || it.residual <= it.tolerances.residual;
         match &self.tangent {
-            Some(tangent) if done && tangent.definite => self.accept(it),
-            Some(_) if done => self.start_load_steps(it.state),
+            Some(tangent) if done => {
+                let grows = self.from_rest && size(&it.state.displacement) > MAX_GROWTH * self.linear_size;
+                if tangent.definite && !grows { self.accept(it) } else { self.start_load_steps(it.state) }
+            }
+            Some(tangent) if self.from_rest && !tangent.definite => self.start_load_steps(it.state),
             _ if self.steps >= MAX_STEPS || farthest(it.system(), it.state) > LONGEST_STEP => {
                 self.start_load_steps(it.state)
             }

@@ -151,9 +151,6 @@ pub struct Entry {
     pub tip: Vector2<f64>,
 }
 
-/// Iteration limit of a case.
-const MAX_ITERATIONS: u32 = 300;
-
 /// Returns all cases, a few hundred or many thousand: a grid of loads and shapes from rest, all initial states,
 /// distorted cells, and scenes with mesh files.
 #[must_use]
@@ -232,7 +229,6 @@ impl Case {
             scene.set_element(self.element);
             scene.scale_loads(self.alpha);
             scene.solver.method = self.method;
-            scene.solver.max_iterations = MAX_ITERATIONS;
             scene.solver.accept_after = 0;
             return scene;
         }
@@ -252,14 +248,12 @@ impl Case {
             .with_method(self.method)
             .clamp("left")
             .probe("tip", "right");
-        let mut scene = if self.moved {
+        if self.moved {
             let displacement = length * (self.alpha / 3.0).min(FARTHEST_TIP);
             scene.support([length, 0.0], &[Axis::Y]).moved([0.0, -displacement], 0.0)
         } else {
             scene.force("right", [0.0, -force])
-        };
-        scene.solver.max_iterations = MAX_ITERATIONS;
-        scene
+        }
     }
 
     /// Solves the case and classifies its outcome.

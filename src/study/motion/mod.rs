@@ -10,6 +10,7 @@ use nalgebra::Vector2;
 use self::plan::{Job, MeshPlan, Plan, Samples, cells};
 pub use self::reference::MotionReference;
 use self::reference::fine_path;
+use super::bound::{at_most, undecided};
 use super::fine::finest_element;
 use super::parallel::{self, CalledOff};
 use super::pareto;
@@ -279,7 +280,8 @@ impl MotionStudy {
     /// [`StudyError`].
     pub fn observed(scene: &Scene, extent: Extent, observe: PartialObserver<'_, Self>) -> Result<Self, StudyError> {
         let plan = extent.plan();
-        let samples = Samples::of(scene, plan);
+        MotionReference::check(scene)?;
+        let samples = Samples::of(scene, plan)?;
         let studied = Studied { scene, samples, plan };
         let reference = MotionReference::new(scene, extent, &mut |progress| {
             observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress }, None)
@@ -395,7 +397,23 @@ impl MotionStudy {
     /// Returns `true` if the error of a measurement plus the reference's own error is at most `percent`.
     #[must_use]
     pub fn is_within(&self, measurement: &MotionMeasurement, percent: f64) -> bool {
-        measurement.error.is_some_and(|e| e.bound() + self.reference.error_percent <= percent)
+        self.error_bound(measurement).is_some_and(|bound| bound <= percent)
+    }
+
+    /// Returns the bound of the error of a measurement, percent of the size of the path: its parts, and the error of
+    /// the reference; `None` for a motion that did not finish.
+    #[must_use]
+    pub fn error_bound(&self, measurement: &MotionMeasurement) -> Option<f64> {
+        measurement.error.map(|e| at_most(e.bound(), self.reference.error_percent))
+    }
+
+    /// Returns for every measurement `true` if its rank is undecided: its error and the smallest one of faster settings
+    /// differ by less than the reference's own error.
+    #[must_use]
+    pub fn undecided(&self) -> Vec<bool> {
+        let error = |m: &MotionMeasurement| m.error.map_or(f64::INFINITY, |e| e.bound());
+        let pairs: Vec<_> = self.measurements.iter().map(|m| (m.milliseconds, error(m))).collect();
+        undecided(&pairs, self.reference.error_percent)
     }
 
     /// Returns the Pareto-optimal measurements, fastest first.

@@ -1,17 +1,24 @@
 //! Plan of a study of motions: meshes, integrators, time steps, methods and numbers of solves, and sampling times.
 
+use std::f64::consts::TAU;
 use std::time::Duration;
 
 use super::MotionSetting;
-use crate::dynamics::{INTEGRATORS, IntegratorEntry};
+use crate::assembly::{Mass, Problem};
+use crate::dynamics::{INTEGRATORS, IntegratorEntry, lowest_frequency};
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind, Scene};
-use crate::study::progress::Extent;
+use crate::simulation::SimulationError;
+use crate::study::progress::{Extent, StudyError};
+use crate::study::reference::system_of;
 
 /// Size of a study.
 pub(super) struct Plan {
-    /// Longest simulated time, in s and in time steps of the scene.
+    /// Longest simulated time, in periods of the body's lowest natural frequency and in time steps of the scene; the
+    /// longer one counts.
     longest: (f64, f64),
+    /// Largest number of samples of a path; a longer motion is sampled, and stepped, more coarsely.
+    most_samples: f64,
     /// Longest time step relative to the scene's.
     coarsest: f64,
     /// Numbers of steps in the longest step.
@@ -29,7 +36,8 @@ pub(super) struct Plan {
 }
 
 const QUICK: Plan = Plan {
-    longest: (1.0, 60.0),
+    longest: (2.0, 60.0),
+    most_samples: 240.0,
     coarsest: 1.0,
     steps: &[1, 2, 4],
     solves: &[1, 0],
@@ -40,7 +48,8 @@ const QUICK: Plan = Plan {
 };
 
 const FULL: Plan = Plan {
-    longest: (2.0, 240.0),
+    longest: (4.0, 120.0),
+    most_samples: 480.0,
     coarsest: 2.0,
     steps: &[1, 2, 4, 8, 16],
     solves: &[1, 2, 0],
@@ -75,6 +84,15 @@ impl Extent {
     }
 }
 
+/// Returns the period of the body's lowest natural frequency about rest, s; `None` for a body that is free to move.
+fn lowest_period(scene: &Scene) -> Result<Option<f64>, StudyError> {
+    let system = system_of(scene)?;
+    let mass = Mass::new(&system, scene.material.area_density());
+    let problem = Problem::new(scene, system).map_err(SimulationError::from)?;
+    let frequency = lowest_frequency(&problem, &mass).filter(|frequency| *frequency > 0.0);
+    Ok(frequency.map(|frequency| TAU / frequency).filter(|period| period.is_finite()))
+}
+
 /// Sampling times of paths: multiples of the longest time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Samples {
@@ -85,12 +103,21 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    pub fn of(scene: &Scene, plan: &Plan) -> Self {
-        let (seconds, steps) = plan.longest;
+    /// Returns the sampling times of a scene.
+    ///
+    /// # Errors
+    /// [`StudyError`] if the scene has no valid equations.
+    pub fn of(scene: &Scene, plan: &Plan) -> Result<Self, StudyError> {
+        let (periods, steps) = plan.longest;
         let own = scene.dynamics.time_step;
-        let duration = scene.dynamics.duration.min(seconds).min(steps * own);
-        let interval = (plan.coarsest * own).min(duration / FEWEST_STEPS);
-        Self { interval, count: (duration / interval * (1.0 + 1e-9)).floor().max(1.0) as u32 }
+        let longest = lowest_period(scene)?.map_or(0.0, |period| periods * period).max(steps * own);
+        let duration = scene.dynamics.duration.min(longest);
+        let mut interval = (plan.coarsest * own).min(duration / FEWEST_STEPS);
+        // Doubled, so that the scene's own step remains one of the measured steps.
+        while duration / interval > plan.most_samples {
+            interval *= 2.0;
+        }
+        Ok(Self { interval, count: (duration / interval * (1.0 + 1e-9)).floor().max(1.0) as u32 })
     }
 
     pub fn duration(self) -> f64 {

@@ -63,18 +63,24 @@ impl MotionReference {
     /// # Errors
     /// [`StudyError`].
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+        Self::check(scene)?;
+        let plan = extent.plan();
+        Self::of(scene, plan, Samples::of(scene, plan)?, observe)
+    }
+
+    /// Refuses a scene without a motion.
+    pub(super) fn check(scene: &Scene) -> Result<(), StudyError> {
         scene.validate().map_err(SimulationError::from)?;
         if scene.analysis != Analysis::Dynamic {
             return Err(StudyError::AtRest);
         }
-        let plan = extent.plan();
-        Self::of(scene, plan, Samples::of(scene, plan), observe)
-    }
-
-    fn of(scene: &Scene, plan: &Plan, samples: Samples, observe: Observer<'_>) -> Result<Self, StudyError> {
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
+        Ok(())
+    }
+
+    fn of(scene: &Scene, plan: &Plan, samples: Samples, observe: Observer<'_>) -> Result<Self, StudyError> {
         let steps = plan.reference_steps();
         let [coarse, fine] = meshes(scene, plan)?;
         // Paths on a coarser mesh, with longer steps, and the best one.

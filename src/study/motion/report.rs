@@ -6,17 +6,19 @@ use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStu
 use crate::dynamics::INTEGRATORS;
 use crate::format::{count, number};
 use crate::scene::MethodKind;
+use crate::study::report::{UNDECIDED, not_reached, undecided_note};
 use crate::study::trade::mesh_text;
 
 impl MotionStudy {
     /// Formats the study as CSV. `solves` is the number per step or stage, 0 to iterate to the tolerance; `resolved` is
-    /// `true` if the bound is above the reference's own error. Motions that did not finish have no error.
+    /// `true` if the sum of the error's parts, `error_bound_percent`, is above the reference's own error;
+    /// `at_most_percent` includes it. Motions that did not finish have no error.
     #[must_use]
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto\n",
+            "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto,at_most_percent,undecided\n",
         );
-        for m in &self.measurements {
+        for (m, undecided) in self.measurements.iter().zip(self.undecided()) {
             let [along, across] = m.setting.cells.unwrap_or([0, 0]);
             let error = m.error.map_or_else(
                 || ",,,,,,".to_owned(),
@@ -28,7 +30,7 @@ impl MotionStudy {
             );
             let _ = writeln!(
                 text,
-                "{},{along},{across},{},{},{},{:e},{},{},{:.4},{error},{:e},{},{},{},{},{}",
+                "{},{along},{across},{},{},{},{:e},{},{},{:.4},{error},{:e},{},{},{},{},{},{},{undecided}",
                 m.setting.element.id(),
                 m.dofs,
                 m.setting.integrator.id(),
@@ -42,7 +44,8 @@ impl MotionStudy {
                 m.counts.steps,
                 m.counts.solves,
                 m.counts.factorizations,
-                m.pareto
+                m.pareto,
+                self.error_bound(m).map_or_else(String::new, |bound| format!("{bound:e}"))
             );
         }
         text
@@ -64,26 +67,32 @@ impl MotionStudy {
         }
         text.push_str(
             "\nPareto front: no measured setting is both faster and more accurate (time: per simulated \
-             second; error: at most the sum of its parts):\n",
+             second; error: at most the sum of its parts and of the reference's own error):\n",
         );
         text.push_str(
             "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting\n",
         );
-        for m in self.front() {
-            let Some(e) = m.error else { continue };
+        let ranked = self.measurements.iter().zip(self.undecided()).filter(|(m, _)| m.pareto);
+        let mut front: Vec<_> = ranked.collect();
+        front.sort_by(|(a, _), (b, _)| a.milliseconds.total_cmp(&b.milliseconds));
+        for (m, undecided) in &front {
+            let (Some(e), Some(bound)) = (m.error, self.error_bound(m)) else { continue };
             let _ = writeln!(
                 text,
-                "{:12.3} {:>12} {:>11} {:11.4} {:12.4} {:11.4} {:14.4} {:11.4}   {}",
+                "{:12.3} {bound:12.4} {:11.4} {:11.4} {:12.4} {:11.4} {:14.4} {:11.4}   {}{}",
                 m.milliseconds,
-                self.percent_text(e.bound()),
-                self.percent_text(e.total),
+                e.total,
                 e.rms,
                 e.discretization,
                 e.integration,
                 e.model,
                 m.drift_percent,
-                m.setting
+                m.setting,
+                if *undecided { UNDECIDED } else { "" }
             );
+        }
+        if front.iter().any(|(_, undecided)| *undecided) {
+            text.push_str(&undecided_note(self.reference.error_percent));
         }
         text.push('\n');
         self.costs(&mut text);
@@ -100,8 +109,8 @@ impl MotionStudy {
                 continue;
             }
             let best = self.fastest_within(percent);
-            let cost = best.map_or_else(|| "not reached".to_owned(), time_text);
-            let _ = writeln!(text, "an error of {percent} % costs {cost}");
+            let cost = best.map_or_else(not_reached, |m| format!("costs {}", time_text(m)));
+            let _ = writeln!(text, "an error of {percent} % {cost}");
             for integrator in INTEGRATORS {
                 let own = self.fastest_of(percent, |m| m.setting.integrator == integrator.kind);
                 let cost = own.map_or_else(|| "not reached".to_owned(), time_text);
@@ -200,12 +209,6 @@ impl MotionStudy {
         if let Some(m) = most {
             let _ = writeln!(text, "the most energy was gained, {:.2} %, by {}", m.drift_percent, m.setting);
         }
-    }
-
-    /// Formats an error; errors below the reference's own are shown as an upper bound.
-    fn percent_text(&self, percent: f64) -> String {
-        let own = self.reference.error_percent;
-        if percent <= own { format!("≤ {own:.4}") } else { format!("{percent:.4}") }
     }
 }
 

@@ -91,14 +91,23 @@ impl Measured {
         }
     }
 
-    /// Returns the error of a setting in the plot, percent; for a motion it is not below the error of the reference
-    /// solution.
+    /// Returns the error of a setting in the plot, percent.
     pub(crate) fn drawn_error(&self, choice: &Choice) -> f64 {
         match (self, choice) {
-            (_, Choice::Rest(m)) => drawn_error(m),
-            (Self::Motion(study), choice) => study.resolved(choice.error_percent()).min(1e3),
-            (Self::Rest(_), choice) => choice.error_percent(),
+            (Self::Rest(study), Choice::Rest(m)) => drawn_error(study, m),
+            _ => self.error_percent(choice).min(1e3),
         }
+    }
+
+    /// Returns the error bound of a setting, percent, including the error of the reference solution; infinite for a
+    /// motion that did not finish.
+    pub(crate) fn error_percent(&self, choice: &Choice) -> f64 {
+        let bound = match (self, choice) {
+            (Self::Rest(study), Choice::Rest(m)) => Some(study.error_bound(m)),
+            (Self::Motion(study), Choice::Motion(m)) => study.error_bound(m),
+            _ => None,
+        };
+        bound.unwrap_or(f64::INFINITY)
     }
 }
 
@@ -108,14 +117,6 @@ impl Choice {
         match self {
             Self::Rest(m) => m.milliseconds(),
             Self::Motion(m) => m.milliseconds / FRAMES,
-        }
-    }
-
-    /// Returns the error bound, percent.
-    pub(crate) fn error_percent(&self) -> f64 {
-        match self {
-            Self::Rest(m) => m.error.bound(),
-            Self::Motion(m) => m.error.map_or(f64::INFINITY, |e| e.bound()),
         }
     }
 

@@ -269,10 +269,11 @@ fn settings(
 /// Shows the settings that meet the demand, fastest first; a click applies one.
 fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let meeting = &budget.meeting;
+    let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let text = format!("{:>8} {:>8}  {}", milliseconds(m), percent(m.error_percent()), m.text());
+            let text = format!("{:>8} {:>8}  {}", milliseconds(m), percent(error(m)), m.text());
             let label = ui.add(
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
                     .truncate(),
@@ -327,6 +328,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
     const BUDGET_Y_AXIS: f32 = 62.0;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
+    let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
     let place = |choice: &Choice| budget.study.map_or([0.0; 2], |study| place(study, choice));
     let nearest = |x: f64, y: f64| {
         let distance = |m: &Choice| (place(m)[0] - x).hypot(place(m)[1] - y);
@@ -352,7 +354,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .y_axis_formatter(|mark, _| decade_text(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", m.text(), milliseconds(m), percent(m.error_percent()))),
+                .map(|m| format!("{}\n{}, {}", m.text(), milliseconds(m), percent(error(m)))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)

@@ -24,8 +24,8 @@ pub(super) fn best(
     percent: f64,
 ) -> Option<(Measurement, bool)> {
     let own = study.measurements.iter().filter(|m| (m.setting.element, m.setting.method) == (element, method));
-    let good = own.clone().filter(|m| m.error.bound() <= percent).min_by_key(|m| m.time.total());
-    let closest = || own.min_by(|a, b| a.error.bound().total_cmp(&b.error.bound()));
+    let good = own.clone().filter(|m| study.error_bound(m) <= percent).min_by_key(|m| m.time.total());
+    let closest = || own.min_by(|a, b| study.error_bound(a).total_cmp(&study.error_bound(b)));
     good.map(|m| (*m, true)).or_else(|| Some((*closest()?, false)))
 }
 
@@ -62,7 +62,10 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         for element in shown.input.scene.elements() {
             ui.label(element.id());
             for method in METHODS {
-                let best = shown.study.and_then(|study| best(study, element, method.kind, learn.asked));
+                let best = shown.study.and_then(|study| {
+                    let (m, good) = best(study, element, method.kind, learn.asked)?;
+                    Some((m, study.error_bound(&m), good))
+                });
                 cell(ui, &palette, best.as_ref());
             }
             ui.end_row();
@@ -77,19 +80,19 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     ui.label(RichText::new(text).size(SMALL).color(palette.secondary));
 }
 
-fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, bool)>) {
-    let Some((m, good)) = best else {
+fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, f64, bool)>) {
+    let Some((m, bound, good)) = best else {
         ui.label(RichText::new("\u{2013}").color(palette.secondary));
         return;
     };
     let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
-    let text = if *good { time.clone() } else { fill!("at most %{error}", error = percent(m.error.bound())) };
+    let text = if *good { time.clone() } else { fill!("at most %{error}", error = percent(*bound)) };
     let color = if *good { palette.text } else { palette.secondary };
     let tip = fill!(
         "%{setting}: %{time}, error at most %{error}",
         setting = said(&m.setting),
         time = time,
-        error = percent(m.error.bound())
+        error = percent(*bound)
     );
     ui.label(RichText::new(text).color(color)).on_hover_text(tip);
 }

@@ -1,0 +1,506 @@
+//! Paths of equilibria by pseudo-arclength continuation: a curve of solutions of r(x, λ) = 0, followed in its own
+//! length, so that it can turn back in λ.
+//!
+//! A step predicts along the unit tangent of (x, λ) and corrects by Newton's method in the plane normal to it, with two
+//! back substitutions of one factor (Riks 1979; Keller 1977). It is accepted if
+//!
+//! - the corrections contract at least by Θ = ¼ (Deuflhard, *Newton Methods for Nonlinear Problems*, section 5.1), and
+//!   the first one is at most half of the step;
+//! - the tangent turns by an angle with a cosine of at least 0.8;
+//! - the **inertia is consistent**: the number of negative eigenvalues of the tangent matrix changes by one exactly
+//!   where dλ/ds changes its sign, and nowhere else. A step that left its branch violates this.
+//!
+//! Otherwise the step is shortened. An inertia that stays inconsistent in the smallest step is a bifurcation.
+
+/// Equations r(x, λ) = 0 of a path.
+pub(crate) trait Equations {
+    /// State x.
+    type State: Clone;
+
+    /// Returns the number of unknowns.
+    fn unknowns(&self) -> usize;
+
+    /// Moves a state by `length` times `direction` over the unknowns, and its prescribed components to load factor λ.
+    fn advance(&self, state: &mut Self::State, direction: &[f64], length: f64, factor: f64);
+
+    /// Linearizes the equations at a state and load factor: writes Newton's correction at fixed λ into `correction` and
+    /// dx/dλ at fixed residual into `rate`. Returns the number of negative eigenvalues of the tangent matrix, or `None`
+    /// if the results are not finite.
+    fn linearize(
+        &mut self,
+        state: &mut Self::State,
+        factor: f64,
+        correction: &mut [f64],
+        rate: &mut [f64],
+    ) -> Option<usize>;
+
+    /// Returns the critical mode of the last linearization: the one with the eigenvalue closest to 0. `None` if unknown.
+    fn critical_mode(&mut self) -> Option<CriticalMode>;
+}
+
+/// Mode of the tangent matrix with the eigenvalue closest to 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CriticalMode {
+    /// Eigenvalue: its stiffness.
+    pub stiffness: f64,
+    /// Cosine of the angle between the growing load and the mode. It vanishes where another path crosses.
+    pub cosine: f64,
+}
+
+/// Equilibrium on a path.
+#[derive(Clone, Debug)]
+pub(crate) struct PathPoint<S> {
+    /// State x.
+    pub state: S,
+    /// Load factor λ.
+    pub factor: f64,
+    /// Number of negative eigenvalues of the tangent matrix.
+    pub modes: usize,
+    /// Unit tangent: dx/ds.
+    tangent: Vec<f64>,
+    /// Unit tangent: dλ/ds.
+    pub slope: f64,
+    /// Estimates of the first and second derivatives of the tangent along the path, over (x, λ).
+    derivatives: Vec<Vec<f64>>,
+}
+
+/// Critical point that a step has passed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Critical {
+    /// λ has an extreme value there: a limit point.
+    Limit,
+    /// Another path crosses this one; the numbers of negative eigenvalues before and after it.
+    Bifurcation([usize; 2]),
+}
+
+/// Reason why a path could not be continued.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PathFailure {
+    /// No step was accepted, however short.
+    Stuck,
+    /// The number of linearizations reached its limit.
+    Limit,
+}
+
+/// Largest ratio of successive corrections.
+const MAX_CONTRACTION: f64 = 0.25;
+/// Contraction at which the length of steps stays as it is.
+const WANTED_CONTRACTION: f64 = 0.1;
+/// Largest first correction relative to the step.
+const MAX_FIRST_CORRECTION: f64 = 0.5;
+/// Largest second-order part of a prediction relative to the step.
+const MAX_TURN: f64 = 0.25;
+/// Smallest cosine of the angle between successive tangents.
+const MIN_COSINE: f64 = 0.8;
+/// Cosine of the angle between tangents below which steps do not grow.
+const STRAIGHT: f64 = 0.95;
+/// Correction, relative to the step, with which a point counts as converged: so close to the path that the inertia is that of the
+/// point. The next step corrects what is left.
+const CONVERGED: f64 = 1e-5;
+/// Largest error of a point that counts as converged.
+const RESIDUE: f64 = 2e-3;
+/// Correction that is only rounding error.
+const ROUNDING: f64 = 1e-9;
+/// Largest number of corrections of a step.
+const MAX_CORRECTIONS: u32 = 8;
+/// Length of the first step.
+const FIRST_STEP: f64 = 0.1;
+/// Longest step.
+const MAX_STEP: f64 = 1.0;
+/// Step in which an inconsistent inertia counts as a bifurcation in any case: steps of this length resolve the turn of a
+/// column with an imperfection of about 1e-13 of the load.
+const BIFURCATION_STEP: f64 = 1e-6;
+/// Factor by which a step with an inconsistent inertia is shortened.
+const SHORTER: f64 = 0.25;
+/// Step in which several bifurcations count as one.
+const MIN_SEPARATION: f64 = 1e-3;
+/// Step below which a path counts as ended.
+const MIN_STEP: f64 = 1e-7;
+/// Relative error of a limit point's load factor.
+const LIMIT_TOLERANCE: f64 = 1e-6;
+
+/// Stiffness of the critical mode at a bifurcation, relative to that at the point before it.
+const CROSSING_TOLERANCE: f64 = 1e-5;
+/// Largest cosine between load and critical mode that is rounding error.
+const ORTHOGONAL: f64 = 2e-14;
+/// Largest cosine of a small imperfection.
+const NEARLY_ORTHOGONAL: f64 = 1e-7;
+
+/// Path of solutions from a first one, followed step by step.
+#[derive(Clone, Debug)]
+pub(crate) struct Continuation<S> {
+    point: PathPoint<S>,
+    /// Point before the last step.
+    before: PathPoint<S>,
+    step: f64,
+    /// Mean curvature of the last step, and its length.
+    curvature: Option<(Vec<f64>, f64)>,
+    /// Weight of the square of x in the norm of (x, λ).
+    weight: f64,
+    /// Number of linearizations so far, and its limit.
+    pub(crate) linearizations: u32,
+    max_linearizations: u32,
+    /// Largest change of λ in a step.
+    max_by_factor: f64,
+    /// `true` if bifurcations beyond the first one, where the path is unstable already, are located too.
+    locates_all: bool,
+    scratch: [Vec<f64>; 2],
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Returns the difference of two vectors over a length.
+fn slope(from: &[f64], to: &[f64], length: f64) -> Vec<f64> {
+    from.iter().zip(to).map(|(from, to)| (to - from) / length).collect()
+}
+
+/// Returns the derivatives of the tangent at the second of two points at this distance: differences of the tangents, and
+/// of the curvatures of this step and the one before, `last`, with its length.
+fn derivatives<S>(
+    [from, to]: [&PathPoint<S>; 2],
+    step: f64,
+    last: Option<&(Vec<f64>, f64)>,
+) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let whole = |p: &PathPoint<S>| [&p.tangent[..], &[p.slope]].concat();
+    let curvature = slope(&whole(from), &whole(to), step);
+    let derivatives = match last {
+        Some((before, length)) => {
+            let second = slope(before, &curvature, 0.5 * (length + step));
+            // The difference is the curvature in the middle of the step.
+            let first = curvature.iter().zip(&second).map(|(c, d)| c + 0.5 * step * d).collect();
+            vec![first, second]
+        }
+        None => vec![curvature.clone()],
+    };
+    (curvature, derivatives)
+}
+
+impl<S: Clone> Continuation<S> {
+    /// Starts at a solution at λ = `factor`, toward growing λ. A unit of the norm is `unit` for the root mean square of
+    /// the unknowns, and 1 for λ.
+    pub fn start(
+        equations: &mut impl Equations<State = S>,
+        mut state: S,
+        factor: f64,
+        unit: f64,
+        max_linearizations: u32,
+    ) -> Option<Self> {
+        let n = equations.unknowns();
+        let weight = 1.0 / (n.max(1) as f64 * unit * unit);
+        let (mut correction, mut rate) = (vec![0.0; n], vec![0.0; n]);
+        let modes = equations.linearize(&mut state, factor, &mut correction, &mut rate)?;
+        let length = (weight * dot(&rate, &rate) + 1.0).sqrt();
+        let slope = 1.0 / length;
+        let tangent = rate.iter().map(|v| v * slope).collect();
+        let point = PathPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
+        let usable = weight.is_finite() && slope.is_finite() && slope > 0.0;
+        let before = point.clone();
+        let (step, scratch) = (FIRST_STEP, [correction, rate]);
+        let made = Self {
+            point,
+            before,
+            step,
+            curvature: None,
+            weight,
+            linearizations: 1,
+            max_linearizations,
+            max_by_factor: f64::INFINITY,
+            locates_all: false,
+            scratch,
+        };
+        usable.then_some(made)
+    }
+
+    /// Sets the largest total number of linearizations.
+    pub fn limit_linearizations(&mut self, max: u32) {
+        self.max_linearizations = max;
+    }
+
+    /// Sets the largest change of λ in a step.
+    pub fn limit_factor(&mut self, max: f64) {
+        self.max_by_factor = max;
+    }
+
+    /// Locates the bifurcations beyond the first one, too.
+    pub fn locate_all(&mut self) {
+        self.locates_all = true;
+    }
+
+    /// Returns the last point.
+    pub fn point(&self) -> &PathPoint<S> {
+        &self.point
+    }
+
+    /// Returns the point before the last step.
+    pub fn before(&self) -> &PathPoint<S> {
+        &self.before
+    }
+
+    /// Takes one step; returns the critical point that it has passed, with its place, if any.
+    pub fn step(
+        &mut self,
+        equations: &mut impl Equations<State = S>,
+    ) -> Result<Option<(Critical, PathPoint<S>)>, PathFailure> {
+        let mut step = self.step.min(MAX_STEP).min(self.max_by_factor / self.point.slope.abs());
+        let mut was_rejected = false;
+        loop {
+            if self.linearizations >= self.max_linearizations {
+                return Err(PathFailure::Limit);
+            }
+            let from = self.point.clone();
+            let Some((point, contraction, cosine)) = self.correct(equations, &from, step) else {
+                step *= 0.5;
+                was_rejected = true;
+                if step < MIN_STEP {
+                    return Err(PathFailure::Stuck);
+                }
+                continue;
+            };
+            let turns = (point.slope < 0.0) != (from.slope < 0.0);
+            let change = point.modes.abs_diff(from.modes);
+            let consistent = if turns { change == 1 } else { change == 0 };
+            // Several bifurcations in one step are told apart in shorter ones.
+            let is_single = change == 1 || step <= MIN_SEPARATION;
+            let mode = if !consistent && !turns && is_single { equations.critical_mode() } else { None };
+            // On a path that is unstable already, small imperfections count as none.
+            let orthogonal = if from.modes > 0 { NEARLY_ORTHOGONAL } else { ORTHOGONAL };
+            let crossed = mode.filter(|mode| mode.cosine <= orthogonal);
+            if !consistent && crossed.is_none() && step > BIFURCATION_STEP {
+                step = (SHORTER * step).max(BIFURCATION_STEP);
+                continue;
+            }
+            let may_grow = cosine >= STRAIGHT && !was_rejected;
+            let growth = (WANTED_CONTRACTION / contraction).sqrt().min(if may_grow { 2.0 } else { 1.0 });
+            self.step = step * growth;
+            self.before = std::mem::replace(&mut self.point, point);
+            let last = self.curvature.take();
+            let (curvature, derivatives) = derivatives([&self.before, &self.point], step, last.as_ref());
+            self.curvature = Some((curvature, step));
+            self.point.derivatives = derivatives;
+            if !consistent {
+                let modes = [self.before.modes, self.point.modes];
+                return Ok(Some((Critical::Bifurcation(modes), self.crossing(equations, step, crossed))));
+            }
+            return Ok(turns.then(|| (Critical::Limit, self.limit(equations, step))));
+        }
+    }
+
+    /// Counts a linearization; `None` if the limit of their number is reached.
+    fn count(&mut self) -> Option<()> {
+        let has_more = self.linearizations < self.max_linearizations;
+        self.linearizations += u32::from(has_more);
+        has_more.then_some(())
+    }
+
+    /// Returns the last point before the bifurcation within the last step, of this length; `beyond` is the critical mode
+    /// at its end.
+    fn crossing(
+        &mut self,
+        equations: &mut impl Equations<State = S>,
+        step: f64,
+        beyond: Option<CriticalMode>,
+    ) -> PathPoint<S> {
+        /// Largest number of trial steps.
+        const MAX_TRIALS: u32 = 6;
+        /// Number of bisections for bifurcations beyond the first.
+        const MAX_BISECTIONS: u32 = 9;
+        let from = self.before.clone();
+        let mut best = from.clone();
+        if step <= BIFURCATION_STEP {
+            return best;
+        }
+        if from.modes > 0 {
+            // Beyond the first bifurcation, the critical mode at `from` may be the one of the last.
+            let (mut low, mut high) = (0.0, step);
+            for _ in 0..if self.locates_all { MAX_BISECTIONS } else { 0 } {
+                let middle = 0.5 * (low + high);
+                let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
+                if point.modes == from.modes { (low, best) = (middle, point) } else { high = middle }
+            }
+            return best;
+        }
+        let mut state = from.state.clone();
+        let [correction, rate] = &mut self.scratch;
+        self.linearizations += 1;
+        let _ = equations.linearize(&mut state, from.factor, correction, rate);
+        let stiffness = |mode: Option<CriticalMode>| mode.map(|mode| mode.stiffness);
+        let (Some(first), Some(last)) = (stiffness(equations.critical_mode()), stiffness(beyond)) else { return best };
+        let (mut low, mut high) = ((0.0, first), (step, last));
+        for _ in 0..MAX_TRIALS {
+            let middle = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+            let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
+            let Some(stiffness) = stiffness(equations.critical_mode()) else { break };
+            let is_near = stiffness.abs() <= CROSSING_TOLERANCE * first.abs();
+            if point.modes == from.modes {
+                (low, best) = ((middle, stiffness), point);
+            } else {
+                high = (middle, stiffness);
+                // A point just beyond is as good, but for its mode.
+                if is_near {
+                    best = PathPoint { modes: from.modes, ..point };
+                }
+            }
+            if is_near {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Returns the limit point within the last step, of this length.
+    fn limit(&mut self, equations: &mut impl Equations<State = S>, step: f64) -> PathPoint<S> {
+        /// Largest number of trial steps.
+        const MAX_TRIALS: u32 = 12;
+        let from = self.before.clone();
+        let mut best = if from.slope.abs() < self.point.slope.abs() { from.clone() } else { self.point.clone() };
+        let (mut low, mut high) = ((0.0, from.slope), (step, self.point.slope));
+        for _ in 0..MAX_TRIALS {
+            // Between regula falsi and bisection, so that neither end stays.
+            let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+            let middle = 0.8 * secant + 0.1 * (low.0 + high.0);
+            let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
+            let slope = point.slope;
+            if slope.abs() < best.slope.abs() {
+                best = point;
+            }
+            if (slope < 0.0) == (low.1 < 0.0) {
+                low = (middle, slope)
+            } else {
+                high = (middle, slope)
+            }
+            if best.slope.abs() * (high.0 - low.0) <= LIMIT_TOLERANCE * best.factor.abs() {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Returns the point on the path at λ = `goal` between two of its points, with an error of order [`CONVERGED`];
+    /// `None` if they do not enclose it, or no point is found.
+    pub fn between(
+        &mut self,
+        equations: &mut impl Equations<State = S>,
+        from: &PathPoint<S>,
+        to: &PathPoint<S>,
+        goal: f64,
+    ) -> Option<PathPoint<S>> {
+        /// Largest number of trial steps.
+        const MAX_TRIALS: u32 = 8;
+        let way = |p: &PathPoint<S>| (goal - p.factor) / p.slope;
+        if (goal - from.factor) * (goal - to.factor) > 0.0 {
+            return None;
+        }
+        // From the nearer end: where λ is nearly constant, a step at fixed λ is long.
+        let mut near = if way(from).abs() <= way(to).abs() { from.clone() } else { to.clone() };
+        for _ in 0..MAX_TRIALS {
+            let modes = [from.modes.min(to.modes), from.modes.max(to.modes)];
+            if let Some(found) = self.correct_at(equations, &near, goal, modes) {
+                return Some(found);
+            }
+            let length = 0.5 * way(&near);
+            let Some((point, ..)) = self.correct(equations, &near, length.clamp(-MAX_STEP, MAX_STEP)) else { break };
+            near = point;
+        }
+        // Next to a bifurcation the corrections are rounding errors: what is left is the prediction.
+        let mut state = from.state.clone();
+        equations.advance(&mut state, &from.tangent, way(from), goal);
+        (from.modes != to.modes).then(|| PathPoint { state, factor: goal, derivatives: Vec::new(), ..from.clone() })
+    }
+
+    /// Corrects at fixed λ from a nearby point of the path.
+    fn correct_at(
+        &mut self,
+        equations: &mut impl Equations<State = S>,
+        near: &PathPoint<S>,
+        goal: f64,
+        [fewest, most]: [usize; 2],
+    ) -> Option<PathPoint<S>> {
+        let mut state = near.state.clone();
+        let distance = (goal - near.factor) / near.slope;
+        equations.advance(&mut state, &near.tangent, distance, goal);
+        let mut last: Option<f64> = None;
+        for _ in 0..MAX_CORRECTIONS {
+            self.count()?;
+            let [correction, rate] = &mut self.scratch;
+            let modes = equations.linearize(&mut state, goal, correction, rate)?;
+            let size = (self.weight * dot(correction, correction)).sqrt();
+            let first = (MAX_FIRST_CORRECTION * distance.abs()).max(RESIDUE);
+            let allowed = last.map_or(first, |last| MAX_CONTRACTION * last);
+            if size.is_nan() || size > allowed.max(ROUNDING) {
+                return None;
+            }
+            equations.advance(&mut state, correction, 1.0, goal);
+            last = Some(size);
+            if size <= (CONVERGED * distance.abs()).max(1e-4 * RESIDUE) {
+                let (point, cosine) = self.tangent_at(near, state, goal, modes)?;
+                let consistent = (fewest..=most).contains(&modes) && (point.slope < 0.0) == (near.slope < 0.0);
+                return (consistent && cosine >= MIN_COSINE).then_some(point);
+            }
+        }
+        None
+    }
+
+    /// Predicts by a step along the tangent and corrects in the plane normal to it. Returns the point, the largest
+    /// contraction, and the cosine of the angle between the tangents.
+    fn correct(
+        &mut self,
+        equations: &mut impl Equations<State = S>,
+        from: &PathPoint<S>,
+        step: f64,
+    ) -> Option<(PathPoint<S>, f64, f64)> {
+        let mut state = from.state.clone();
+        let mut factor = from.factor + step * from.slope;
+        // Higher orders of the prediction keep slender bodies from a spurious stretch, under which they are stiff.
+        for (by, part) in from.derivatives.iter().zip([0.5 * step * step, step.powi(3) / 6.0]) {
+            let (by_factor, by_x) = by.split_last()?;
+            let size = (self.weight * dot(by_x, by_x) + by_factor * by_factor).sqrt();
+            if part.abs() * size > MAX_TURN * step.abs() {
+                break;
+            }
+            factor += part * by_factor;
+            equations.advance(&mut state, by_x, part, factor);
+        }
+        equations.advance(&mut state, &from.tangent, step, factor);
+        let (mut last, mut contraction): (Option<f64>, f64) = (None, 1e-3);
+        for _ in 0..MAX_CORRECTIONS {
+            self.count()?;
+            let [correction, rate] = &mut self.scratch;
+            let modes = equations.linearize(&mut state, factor, correction, rate)?;
+            let [along, across] = [&*correction, &*rate].map(|v| self.weight * dot(&from.tangent, v));
+            let by = -along / (across + from.slope);
+            correction.iter_mut().zip(&*rate).for_each(|(c, r)| *c += by * r);
+            let size = (self.weight * dot(correction, correction) + by * by).sqrt();
+            if let Some(last) = last.filter(|last| *last > ROUNDING) {
+                contraction = contraction.max(size / last);
+            }
+            let allowed = last.map_or(MAX_FIRST_CORRECTION * step.abs(), |last| MAX_CONTRACTION * last);
+            if size.is_nan() || size > allowed.max(ROUNDING) {
+                return None;
+            }
+            factor += by;
+            equations.advance(&mut state, correction, 1.0, factor);
+            // The prediction stretches a slender body, under which its tangent is another, however small the correction.
+            let is_corrected = last.is_some();
+            last = Some(size);
+            if size <= ROUNDING || is_corrected && size <= CONVERGED * step.abs() {
+                let (point, cosine) = self.tangent_at(from, state, factor, modes)?;
+                return (cosine >= MIN_COSINE).then_some((point, contraction, cosine));
+            }
+        }
+        None
+    }
+
+    /// Returns the point with the unit tangent of the last linearization, and the cosine of its angle with that of
+    /// `from`.
+    fn tangent_at(&self, from: &PathPoint<S>, state: S, factor: f64, modes: usize) -> Option<(PathPoint<S>, f64)> {
+        let rate = &self.scratch[1];
+        let length = (self.weight * dot(rate, rate) + 1.0).sqrt();
+        let cosine = (self.weight * dot(&from.tangent, rate) + from.slope) / length;
+        let slope = cosine.signum() / length;
+        let tangent = rate.iter().map(|v| v * slope).collect();
+        let point = PathPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
+        length.is_finite().then_some((point, cosine.abs()))
+    }
+}
