@@ -5,7 +5,7 @@ mod common;
 
 use common::motion::momentum;
 use common::random::Random;
-use common::{scene_with, solve_json, stdout, warpbeam};
+use common::{scene_with, stdout, warpbeam};
 use nalgebra::Vector2;
 use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::scene::{Damping, Load, Pulse};
