@@ -156,7 +156,9 @@ impl Ledger {
     }
 
     /// Returns a warning if the integrator has added more than a hundredth of the energy put in.
-    pub(crate) fn gain_warning(&self) -> Option<Sentence> {
+    #[doc(hidden)]
+    #[must_use]
+    pub fn gain_warning(&self) -> Option<Sentence> {
         let gain = self.drift_of_input();
         (gain > NOTED_GAIN).then(|| {
             sentence!(

@@ -211,7 +211,8 @@ pub(crate) fn unstable_text(path: &LoadPath) -> &'static str {
 }
 
 /// Name of a state of a path for tables; empty if it is stable.
-pub(crate) fn stability_text(state: &PathState) -> &'static str {
+#[must_use]
+pub fn stability_text(state: &PathState) -> &'static str {
     match state.stable {
         Some(false) if state.unstable_modes == 0 => "unstable under force control",
         Some(false) => "unstable",
