@@ -321,9 +321,11 @@ impl<S: Clone> Continuation<S> {
             }
             return best;
         }
+        if self.count().is_none() {
+            return best;
+        }
         let mut state = from.state.clone();
         let [correction, rate] = &mut self.scratch;
-        self.linearizations += 1;
         let _ = equations.linearize(&mut state, from.factor, correction, rate);
         let stiffness = |mode: Option<CriticalMode>| mode.map(|mode| mode.stiffness);
         let (Some(first), Some(last)) = (stiffness(equations.critical_mode()), stiffness(beyond)) else { return best };

@@ -510,7 +510,8 @@ impl PathFollower {
         let mut state = self.last.state.clone();
         equations.advance(&mut state, &[], 0.0, goal);
         for _ in 0..MAX_DESCENT {
-            if self.linearizations() >= solves {
+            // The state at the end takes one more linearization.
+            if self.linearizations() + 1 >= solves {
                 return PathProgress::Ended(PathEndReason::Solves(solves));
             }
             self.descent_steps += 1;
