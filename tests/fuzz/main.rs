@@ -118,7 +118,7 @@ impl<'a> Choices<'a> {
         }
         text += &format!("[[probe]]\nname = \"p\"\nedge = \"{}\"\n", self.of(&edges));
         text += &format!(
-            "[solver]\nmethod = \"{}\"\nmax_iterations = 300\nmax_error_percent = {:e}\n",
+            "[solver]\nmethod = \"{}\"\nmax_iterations = 1000\nmax_error_percent = {:e}\n",
             self.of(&["linear", "warped", "newton", "auto"]),
             10f64.powi(self.below(5) as i32 - 3)
         );
