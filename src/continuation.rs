@@ -13,7 +13,7 @@
 //! Otherwise the step is shortened. An inertia that stays inconsistent in the smallest step is a bifurcation.
 
 /// Equations r(x, λ) = 0 of a path.
-pub(crate) trait Equations {
+pub(crate) trait PathEquations {
     /// State x.
     type State: Clone;
 
@@ -49,7 +49,7 @@ pub(crate) struct CriticalMode {
 
 /// Equilibrium on a path.
 #[derive(Clone, Debug)]
-pub(crate) struct PathPoint<S> {
+pub(crate) struct ContinuationPoint<S> {
     /// State x.
     pub state: S,
     /// Load factor λ.
@@ -94,8 +94,8 @@ const MAX_TURN: f64 = 0.25;
 const MIN_COSINE: f64 = 0.8;
 /// Cosine of the angle between tangents below which steps do not grow.
 const STRAIGHT: f64 = 0.95;
-/// Correction, relative to the step, with which a point counts as converged: so close to the path that the inertia is that of the
-/// point. The next step corrects what is left.
+/// Correction, relative to the step, with which a point counts as converged: the inertia is then that of the path. The next
+/// step corrects the remaining error.
 const CONVERGED: f64 = 1e-5;
 /// Largest error of a point that counts as converged.
 const RESIDUE: f64 = 2e-3;
@@ -129,9 +129,9 @@ const NEARLY_ORTHOGONAL: f64 = 1e-7;
 /// Path of solutions from a first one, followed step by step.
 #[derive(Clone, Debug)]
 pub(crate) struct Continuation<S> {
-    point: PathPoint<S>,
+    point: ContinuationPoint<S>,
     /// Point before the last step.
-    before: PathPoint<S>,
+    before: ContinuationPoint<S>,
     step: f64,
     /// Mean curvature of the last step, and its length.
     curvature: Option<(Vec<f64>, f64)>,
@@ -159,11 +159,11 @@ fn slope(from: &[f64], to: &[f64], length: f64) -> Vec<f64> {
 /// Returns the derivatives of the tangent at the second of two points at this distance: differences of the tangents, and
 /// of the curvatures of this step and the one before, `last`, with its length.
 fn derivatives<S>(
-    [from, to]: [&PathPoint<S>; 2],
+    [from, to]: [&ContinuationPoint<S>; 2],
     step: f64,
     last: Option<&(Vec<f64>, f64)>,
 ) -> (Vec<f64>, Vec<Vec<f64>>) {
-    let whole = |p: &PathPoint<S>| [&p.tangent[..], &[p.slope]].concat();
+    let whole = |p: &ContinuationPoint<S>| [&p.tangent[..], &[p.slope]].concat();
     let curvature = slope(&whole(from), &whole(to), step);
     let derivatives = match last {
         Some((before, length)) => {
@@ -181,7 +181,7 @@ impl<S: Clone> Continuation<S> {
     /// Starts at a solution at λ = `factor`, toward growing λ. A unit of the norm is `unit` for the root mean square of
     /// the unknowns, and 1 for λ.
     pub fn start(
-        equations: &mut impl Equations<State = S>,
+        equations: &mut impl PathEquations<State = S>,
         mut state: S,
         factor: f64,
         unit: f64,
@@ -194,7 +194,7 @@ impl<S: Clone> Continuation<S> {
         let length = (weight * dot(&rate, &rate) + 1.0).sqrt();
         let slope = 1.0 / length;
         let tangent = rate.iter().map(|v| v * slope).collect();
-        let point = PathPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
+        let point = ContinuationPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
         let usable = weight.is_finite() && slope.is_finite() && slope > 0.0;
         let before = point.clone();
         let (step, scratch) = (FIRST_STEP, [correction, rate]);
@@ -229,20 +229,20 @@ impl<S: Clone> Continuation<S> {
     }
 
     /// Returns the last point.
-    pub fn point(&self) -> &PathPoint<S> {
+    pub fn point(&self) -> &ContinuationPoint<S> {
         &self.point
     }
 
     /// Returns the point before the last step.
-    pub fn before(&self) -> &PathPoint<S> {
+    pub fn before(&self) -> &ContinuationPoint<S> {
         &self.before
     }
 
     /// Takes one step; returns the critical point that it has passed, with its place, if any.
     pub fn step(
         &mut self,
-        equations: &mut impl Equations<State = S>,
-    ) -> Result<Option<(Critical, PathPoint<S>)>, PathFailure> {
+        equations: &mut impl PathEquations<State = S>,
+    ) -> Result<Option<(Critical, ContinuationPoint<S>)>, PathFailure> {
         let mut step = self.step.min(MAX_STEP).min(self.max_by_factor / self.point.slope.abs());
         let mut was_rejected = false;
         loop {
@@ -298,10 +298,10 @@ impl<S: Clone> Continuation<S> {
     /// at its end.
     fn crossing(
         &mut self,
-        equations: &mut impl Equations<State = S>,
+        equations: &mut impl PathEquations<State = S>,
         step: f64,
         beyond: Option<CriticalMode>,
-    ) -> PathPoint<S> {
+    ) -> ContinuationPoint<S> {
         /// Largest number of trial steps.
         const MAX_TRIALS: u32 = 6;
         /// Number of bisections for bifurcations beyond the first.
@@ -341,7 +341,7 @@ impl<S: Clone> Continuation<S> {
                 high = (middle, stiffness);
                 // A point just beyond is as good, but for its mode.
                 if is_near {
-                    best = PathPoint { modes: from.modes, ..point };
+                    best = ContinuationPoint { modes: from.modes, ..point };
                 }
             }
             if is_near {
@@ -352,7 +352,7 @@ impl<S: Clone> Continuation<S> {
     }
 
     /// Returns the limit point within the last step, of this length.
-    fn limit(&mut self, equations: &mut impl Equations<State = S>, step: f64) -> PathPoint<S> {
+    fn limit(&mut self, equations: &mut impl PathEquations<State = S>, step: f64) -> ContinuationPoint<S> {
         /// Largest number of trial steps.
         const MAX_TRIALS: u32 = 12;
         let from = self.before.clone();
@@ -383,14 +383,14 @@ impl<S: Clone> Continuation<S> {
     /// `None` if they do not enclose it, or no point is found.
     pub fn between(
         &mut self,
-        equations: &mut impl Equations<State = S>,
-        from: &PathPoint<S>,
-        to: &PathPoint<S>,
+        equations: &mut impl PathEquations<State = S>,
+        from: &ContinuationPoint<S>,
+        to: &ContinuationPoint<S>,
         goal: f64,
-    ) -> Option<PathPoint<S>> {
+    ) -> Option<ContinuationPoint<S>> {
         /// Largest number of trial steps.
         const MAX_TRIALS: u32 = 8;
-        let way = |p: &PathPoint<S>| (goal - p.factor) / p.slope;
+        let way = |p: &ContinuationPoint<S>| (goal - p.factor) / p.slope;
         if (goal - from.factor) * (goal - to.factor) > 0.0 {
             return None;
         }
@@ -405,20 +405,25 @@ impl<S: Clone> Continuation<S> {
             let Some((point, ..)) = self.correct(equations, &near, length.clamp(-MAX_STEP, MAX_STEP)) else { break };
             near = point;
         }
-        // Next to a bifurcation the corrections are rounding errors: what is left is the prediction.
+        // Next to a bifurcation the corrections are rounding errors, and the prediction is more accurate.
         let mut state = from.state.clone();
         equations.advance(&mut state, &from.tangent, way(from), goal);
-        (from.modes != to.modes).then(|| PathPoint { state, factor: goal, derivatives: Vec::new(), ..from.clone() })
+        (from.modes != to.modes).then(|| ContinuationPoint {
+            state,
+            factor: goal,
+            derivatives: Vec::new(),
+            ..from.clone()
+        })
     }
 
     /// Corrects at fixed λ from a nearby point of the path.
     fn correct_at(
         &mut self,
-        equations: &mut impl Equations<State = S>,
-        near: &PathPoint<S>,
+        equations: &mut impl PathEquations<State = S>,
+        near: &ContinuationPoint<S>,
         goal: f64,
         [fewest, most]: [usize; 2],
-    ) -> Option<PathPoint<S>> {
+    ) -> Option<ContinuationPoint<S>> {
         let mut state = near.state.clone();
         let distance = (goal - near.factor) / near.slope;
         equations.advance(&mut state, &near.tangent, distance, goal);
@@ -448,10 +453,10 @@ impl<S: Clone> Continuation<S> {
     /// contraction, and the cosine of the angle between the tangents.
     fn correct(
         &mut self,
-        equations: &mut impl Equations<State = S>,
-        from: &PathPoint<S>,
+        equations: &mut impl PathEquations<State = S>,
+        from: &ContinuationPoint<S>,
         step: f64,
-    ) -> Option<(PathPoint<S>, f64, f64)> {
+    ) -> Option<(ContinuationPoint<S>, f64, f64)> {
         let mut state = from.state.clone();
         let mut factor = from.factor + step * from.slope;
         // Higher orders of the prediction keep slender bodies from a spurious stretch, under which they are stiff.
@@ -496,13 +501,19 @@ impl<S: Clone> Continuation<S> {
 
     /// Returns the point with the unit tangent of the last linearization, and the cosine of its angle with that of
     /// `from`.
-    fn tangent_at(&self, from: &PathPoint<S>, state: S, factor: f64, modes: usize) -> Option<(PathPoint<S>, f64)> {
+    fn tangent_at(
+        &self,
+        from: &ContinuationPoint<S>,
+        state: S,
+        factor: f64,
+        modes: usize,
+    ) -> Option<(ContinuationPoint<S>, f64)> {
         let rate = &self.scratch[1];
         let length = (self.weight * dot(rate, rate) + 1.0).sqrt();
         let cosine = (self.weight * dot(&from.tangent, rate) + from.slope) / length;
         let slope = cosine.signum() / length;
         let tangent = rate.iter().map(|v| v * slope).collect();
-        let point = PathPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
+        let point = ContinuationPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
         length.is_finite().then_some((point, cosine.abs()))
     }
 }

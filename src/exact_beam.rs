@@ -14,7 +14,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector2};
 
-use crate::continuation::{Continuation, Critical, CriticalMode, Equations};
+use crate::continuation::{Continuation, Critical, CriticalMode, PathEquations};
 use crate::model::{Analysis, Axis, Load, Place, Plane, Scene, Support};
 
 /// Clamped beam and its loads, in any consistent units.
@@ -285,7 +285,7 @@ struct Shooting<'a> {
     scratch: DVector<f64>,
 }
 
-impl Equations for Shooting<'_> {
+impl PathEquations for Shooting<'_> {
     type State = DVector<f64>;
 
     fn unknowns(&self) -> usize {

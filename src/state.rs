@@ -188,6 +188,12 @@ pub(crate) fn same_length(what: &'static str, expected: usize, got: usize) -> Re
     if expected == got { Ok(()) } else { Err(StateError::Length { what, expected, got }) }
 }
 
+/// Returns the largest distance of a node between two nodal fields.
+#[must_use]
+pub(crate) fn largest_distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
 /// Returns the largest length in a nodal field.
 #[must_use]
 pub(crate) fn largest(nodal: &[Vector2<f64>]) -> f64 {

@@ -455,3 +455,15 @@ fn random_columns_arches_and_strips_end_on_their_path() {
     assert!(wrong.is_empty(), "{wrong:#?}");
     assert!(judged >= share(200) / 3, "{judged} judged");
 }
+
+/// The states of a path are in the order of the load, bifurcations and jumps included.
+#[test]
+fn states_are_in_the_order_of_the_load() {
+    for scene in
+        ["shortened-strip", "shortened-column-plain", "turned-arch"].map(file_scene).iter().chain(&[scene("jump")])
+    {
+        let path = LoadPath::of(scene).unwrap();
+        let ordered = path.states.windows(2).all(|pair| pair[0].factor <= pair[1].factor);
+        assert!(ordered, "{}: {:?}", scene.name, path.states.iter().map(|s| s.factor).collect::<Vec<_>>());
+    }
+}

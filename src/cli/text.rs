@@ -10,7 +10,7 @@ use super::CliError;
 use super::contexts::Contexts;
 use super::solved::Solved;
 use crate::export::csv_field;
-use crate::format::{count, engineering, engineering_pair, prefix};
+use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
 use crate::method::{Certificate, floor_text, rho_text};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
@@ -339,15 +339,6 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
         let _ = writeln!(text, "{:<7} at full load: {}, {word}", point.method.id(), pair(point.tip, "m"));
     }
     text
-}
-
-/// Rounds to three significant digits.
-fn three_digits(value: f64) -> f64 {
-    if value == 0.0 {
-        return value;
-    }
-    let unit = 10f64.powf(value.abs().log10().floor() - 2.0);
-    (value / unit).round() * unit
 }
 
 /// Formats a load–deflection curve as CSV.

@@ -10,9 +10,9 @@ use crate::sentence::{Sentence, sentence};
 use crate::state::State;
 
 /// Largest energy gained from the integrator, relative to the energy put in, with which a motion counts as a success.
-const MOST_GAINED: f64 = 0.1;
+const MAX_GAIN: f64 = 0.1;
 /// Smallest energy gained, relative to the energy put in, for which the time step is reported as too long.
-const NOTED_GAIN: f64 = 0.01;
+const MIN_NOTED_GAIN: f64 = 0.01;
 
 /// Energies of a motion, J, and the energy added and removed since its start. Their sum is the energy at the start;
 /// [`Self::imbalance`] is the rounding error.
@@ -152,7 +152,7 @@ impl Ledger {
     /// body.
     #[must_use]
     pub fn has_gained_too_much(&self) -> bool {
-        self.drift_of_input() > MOST_GAINED
+        self.drift_of_input() > MAX_GAIN
     }
 
     /// Returns a warning if the integrator has added more than a hundredth of the energy put in.
@@ -160,7 +160,7 @@ impl Ledger {
     #[must_use]
     pub fn gain_warning(&self) -> Option<Sentence> {
         let gain = self.drift_of_input();
-        (gain > NOTED_GAIN).then(|| {
+        (gain > MIN_NOTED_GAIN).then(|| {
             sentence!(
                 "the integrator gained %{energy}, %{percent} of the energy put in: the time step is too long",
                 energy = engineering(-self.integrator, "J"),

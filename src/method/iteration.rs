@@ -135,6 +135,11 @@ impl Iteration<'_> {
         self.problem.supports().are_at(system.mesh(), load_factor, kinematics, &self.state.displacement)
     }
 
+    /// Returns `true` if the body has not moved.
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.state.displacement.iter().all(|u| *u == Vector2::zeros())
+    }
+
     /// Returns `true` if the supports are at rest and rotate so far that their motion must be applied in parts.
     pub(super) fn supports_rotate_in_steps(&self) -> bool {
         let supports = self.problem.supports();

@@ -19,11 +19,11 @@
 use nalgebra::Vector2;
 
 use super::iteration::ROUNDING;
-use super::path::{PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations, jump_off};
+use super::path::{Jump, PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
 use super::status::{LONGEST_STEP, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Reason, Restart, Verdict, Workspace};
 use crate::assembly::Kinematics;
-use crate::continuation::PathPoint;
+use crate::continuation::ContinuationPoint;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
 use crate::state::{State, largest};
@@ -53,7 +53,7 @@ const MAX_GROWTH: f64 = 1.1;
 
 /// Part of the search.
 #[derive(Clone, Debug, Default)]
-enum Phase {
+enum NewtonPhase {
     /// Full steps under the whole load.
     #[default]
     Direct,
@@ -74,7 +74,7 @@ struct LoadSteps {
     /// Length of the current load step.
     step: f64,
     /// Limit point of the path, and the critical points on it, if the path was followed beyond it.
-    limit: Option<(PathPoint<State>, PathEvents)>,
+    limit: Option<(ContinuationPoint<State>, PathEvents)>,
     /// Critical points of the path once the result is known.
     events: Option<PathEvents>,
 }
@@ -94,7 +94,7 @@ const BETWEEN_LOAD_STEPS: f64 = 1e-3;
 /// State of the method.
 #[derive(Clone, Debug)]
 pub struct Newton {
-    phase: Phase,
+    phase: NewtonPhase,
     /// Load factor of the current state.
     load_factor: f64,
     load_steps: u32,
@@ -119,7 +119,7 @@ pub struct Newton {
 impl Default for Newton {
     fn default() -> Self {
         Self {
-            phase: Phase::Direct,
+            phase: NewtonPhase::Direct,
             load_factor: 1.0,
             load_steps: 1,
             from_rest: false,
@@ -146,7 +146,7 @@ impl Newton {
     }
 
     fn begin_path(&mut self) {
-        self.phase = Phase::Path(None);
+        self.phase = NewtonPhase::Path(None);
         self.from_rest = false;
         (self.load_factor, self.load_steps) = (0.0, 0);
     }
@@ -160,8 +160,8 @@ impl Newton {
     /// Ends full steps without success: follows the path, tries a shorter load step, or stops.
     fn fail(&mut self, state: &mut State) -> Verdict {
         match &mut self.phase {
-            Phase::Finish(_) => return Verdict::Stop(Reason::NoEquilibrium(1.0)),
-            Phase::LoadSteps(steps) => {
+            NewtonPhase::Finish(_) => return Verdict::Stop(Reason::NoEquilibrium(1.0)),
+            NewtonPhase::LoadSteps(steps) => {
                 state.copy_from(&steps.base);
                 steps.step = SHRINK * (self.load_factor - steps.reached);
                 if steps.step < MIN_LOAD_STEP {
@@ -170,21 +170,21 @@ impl Newton {
                 }
                 self.begin_load_step();
             }
-            Phase::Direct | Phase::Path(_) => self.give_up(state),
+            NewtonPhase::Direct | NewtonPhase::Path(_) => self.give_up(state),
         }
         Verdict::Changed
     }
 
     /// Begins to apply the load in steps from rest.
-    fn begin_load_steps(&mut self, state: &mut State, limit: Option<(PathPoint<State>, PathEvents)>) {
+    fn begin_load_steps(&mut self, state: &mut State, limit: Option<(ContinuationPoint<State>, PathEvents)>) {
         state.reset();
         let steps = LoadSteps { base: state.clone(), reached: 0.0, step: SHRINK, limit, events: None };
-        self.phase = Phase::LoadSteps(Box::new(steps));
+        self.phase = NewtonPhase::LoadSteps(Box::new(steps));
         self.begin_load_step();
     }
 
     fn begin_load_step(&mut self) {
-        if let Phase::LoadSteps(steps) = &self.phase {
+        if let NewtonPhase::LoadSteps(steps) = &self.phase {
             self.load_factor = (steps.reached + steps.step).min(1.0);
             self.load_steps += 1;
         }
@@ -203,7 +203,7 @@ impl Newton {
         /// Largest contraction.
         const FAST: f64 = 0.1;
         let is_fast = self.contraction.is_some_and(|ratio| ratio <= FAST);
-        matches!(self.phase, Phase::Direct) && self.from_rest && is_fast
+        matches!(self.phase, NewtonPhase::Direct) && self.from_rest && is_fast
     }
 
     /// Performs a full step under the current load.
@@ -239,7 +239,7 @@ impl Newton {
 
     /// Follows the path by a step.
     fn follow(&mut self, it: &mut Iteration<'_>) {
-        let Phase::Path(follower) = &mut self.phase else { return };
+        let NewtonPhase::Path(follower) = &mut self.phase else { return };
         let Iteration { problem, forces, workspace, timings, state, solves_left, .. } = it;
         let mut equations = StaticEquations::new(problem, forces, workspace, timings);
         let before = follower.as_ref().map_or(0, |follower| follower.linearizations());
@@ -262,22 +262,18 @@ impl Newton {
         self.load_factor = shown.factor;
         let is_too_long = follower.linearizations() > MAX_PATH_SOLVES;
         match progress {
-            PathProgress::Continue if is_too_long => {
-                let limit = follower.limit().cloned().map(|limit| (limit, std::mem::take(&mut follower.events)));
-                self.begin_load_steps(state, limit);
-            }
-            PathProgress::Continue | PathProgress::Ended(PathEndReason::Solves(_)) => {}
+            PathProgress::Ended(PathEndReason::Solves(_)) => {}
+            PathProgress::Continue if !is_too_long => {}
             PathProgress::Reached => {
-                // The last step may have passed the full load.
-                follower.events.bifurcations.retain(|bifurcation| bifurcation.factor <= 1.0);
-                self.may_be_unstable = !follower.events.bifurcations.is_empty();
-                self.phase = Phase::Finish(std::mem::take(&mut follower.events));
+                let events = follower.take_events();
+                self.may_be_unstable = !events.bifurcations.is_empty();
+                self.phase = NewtonPhase::Finish(events);
                 self.load_factor = 1.0;
                 self.begin_full_steps();
             }
-            // Rounding errors keep the follower from any step, or the descent is too slow.
-            PathProgress::Ended(_) => {
-                let limit = follower.limit().cloned().map(|limit| (limit, std::mem::take(&mut follower.events)));
+            // The path is too long, rounding errors keep the follower from any step, or the descent is too slow.
+            PathProgress::Continue | PathProgress::Ended(_) => {
+                let limit = follower.limit().cloned().map(|limit| (limit, follower.take_events()));
                 self.begin_load_steps(state, limit);
             }
         }
@@ -304,17 +300,23 @@ fn softening(it: &mut Iteration<'_>) -> f64 {
             return 0.0;
         }
         let step = (STEP * problem.system().strip()[1] / longest).min(1.0);
+        // Dead forces are the same in both states, and cancel.
+        let loads_vary = problem.loads().moments().next().is_some() || problem.mouse_spring().is_some();
         let mut work = |by: f64| {
             for (u, d) in trial.displacement.overwrite().iter_mut().zip(&*nodal) {
                 *u += d * by;
             }
             problem.follow_and_linearize(trial, Kinematics::Corotated, forces, None);
-            problem.balance(trial, Kinematics::Corotated, 0.5 * by.abs().min(step), forces);
             let dot = |f: &[Vector2<f64>]| nodal.iter().zip(f).map(|(d, f)| d.dot(f)).sum::<f64>();
-            [dot(forces.internal()), dot(forces.external())]
+            let internal = dot(forces.internal());
+            if !loads_vary {
+                return [internal, 0.0];
+            }
+            problem.balance(trial, Kinematics::Corotated, step, forces);
+            [internal, dot(forces.external())]
         };
         let ([ahead, pushes], [behind, pulls]) = (work(step), work(-2.0 * step));
-        -(ahead + behind - 2.0 * (pushes - pulls)) / (step * (ahead - behind))
+        -(ahead + behind - (pushes - pulls)) / (step * (ahead - behind))
     })
 }
 
@@ -351,23 +353,23 @@ impl Method for Newton {
 
     fn path_events(&self) -> Option<PathEvents> {
         match &self.phase {
-            Phase::Direct if self.from_rest => Some(PathEvents::default()),
-            Phase::Finish(events) => Some(events.clone()),
-            Phase::LoadSteps(steps) => steps.events.clone(),
-            Phase::Direct | Phase::Path(_) => None,
+            NewtonPhase::Direct if self.from_rest => Some(PathEvents::default()),
+            NewtonPhase::Finish(events) => Some(events.clone()),
+            NewtonPhase::LoadSteps(steps) => steps.events.clone(),
+            NewtonPhase::Direct | NewtonPhase::Path(_) => None,
         }
     }
 
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         self.solves = 1;
-        if let Phase::Path(_) = self.phase {
+        if let NewtonPhase::Path(_) = self.phase {
             self.follow(it);
             return Ok(());
         }
         self.steps += 1;
-        if self.steps == 1 && matches!(self.phase, Phase::Direct) {
+        if self.steps == 1 && matches!(self.phase, NewtonPhase::Direct) {
             let supports = it.problem.supports();
-            self.from_rest = it.state.displacement.iter().all(|u| *u == Vector2::zeros());
+            self.from_rest = it.is_at_rest();
             if self.from_rest && supports.largest_load_step() < 1.0 {
                 self.begin_path();
                 self.follow(it);
@@ -380,13 +382,13 @@ impl Method for Newton {
     fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
         let (residual, is_partial) = (it.residual, self.load_factor < 1.0);
         let tolerance = it.tolerances.residual.max(if is_partial { BETWEEN_LOAD_STEPS } else { 0.0 });
-        if let Phase::Path(_) = self.phase {
+        if let NewtonPhase::Path(_) = self.phase {
             return self.end.take().map_or(Verdict::Continue, Verdict::Stop);
         }
-        if self.steps == 0 && matches!(self.phase, Phase::LoadSteps(_)) {
+        if self.steps == 0 && matches!(self.phase, NewtonPhase::LoadSteps(_)) {
             return Verdict::Continue;
         }
-        if self.steps == 0 && matches!(self.phase, Phase::Direct) {
+        if self.steps == 0 && matches!(self.phase, NewtonPhase::Direct) {
             // A body at rest without load is in equilibrium, but its supports may have to move.
             let is_there = it.supports_are_at(1.0, Kinematics::Corotated);
             return if residual <= tolerance && is_there { Verdict::Converged } else { Verdict::Continue };
@@ -396,10 +398,10 @@ impl Method for Newton {
         // A step computed from a residual at rounding level would be rounding error too, and move soft bodies far.
         let floor = if residual <= tolerance || is_partial { None } else { it.floor() };
         if residual <= tolerance || floor.is_some() {
-            let grows = self.from_rest && size(&it.state.displacement) > MAX_GROWTH * self.linear;
+            let grows = self.from_rest && grows(it.state, self.linear);
             let is_known = self.may_be_unstable || self.is_known_stable();
             if !grows && (is_known || is_stable_now(it, self.load_factor)) {
-                if let Phase::LoadSteps(steps) = &mut self.phase
+                if let NewtonPhase::LoadSteps(steps) = &mut self.phase
                     && is_partial
                 {
                     steps.base.copy_from(it.state);
@@ -408,10 +410,10 @@ impl Method for Newton {
                     self.begin_load_step();
                     return Verdict::Changed;
                 }
-                if let Phase::LoadSteps(steps) = &mut self.phase
+                if let NewtonPhase::LoadSteps(steps) = &mut self.phase
                     && let Some((limit, mut events)) = steps.limit.take()
                 {
-                    events.jump = Some(jump_off(it.problem, &limit, it.state));
+                    events.jump = Some(Jump::from(&limit, Some(it.state), false, it.problem));
                     steps.events = Some(events);
                 }
                 return floor.map_or(Verdict::Converged, Verdict::AtRounding);
@@ -438,27 +440,27 @@ impl Method for Newton {
 
     fn stop(&mut self, state: &mut State) {
         match &self.phase {
-            Phase::Path(Some(follower)) => {
+            NewtonPhase::Path(Some(follower)) => {
                 state.copy_from(&follower.last().state);
                 self.load_factor = follower.last().factor;
             }
             // Without load the body at rest is the only known equilibrium.
-            Phase::Direct | Phase::Path(None) => {
+            NewtonPhase::Direct | NewtonPhase::Path(None) => {
                 state.reset();
                 self.load_factor = 0.0;
             }
-            Phase::LoadSteps(steps) => {
+            NewtonPhase::LoadSteps(steps) => {
                 state.copy_from(&steps.base);
                 self.load_factor = steps.reached;
             }
-            Phase::Finish(_) => {}
+            NewtonPhase::Finish(_) => {}
         }
     }
 
     fn recover(&mut self, it: &mut Iteration<'_>, error: IterationError) -> Verdict {
         match self.phase {
-            Phase::Direct | Phase::LoadSteps(_) => self.fail(it.state),
-            Phase::Path(_) | Phase::Finish(_) => Verdict::Stop(Reason::Iteration(error)),
+            NewtonPhase::Direct | NewtonPhase::LoadSteps(_) => self.fail(it.state),
+            NewtonPhase::Path(_) | NewtonPhase::Finish(_) => Verdict::Stop(Reason::Iteration(error)),
         }
     }
 }
@@ -467,6 +469,12 @@ impl Method for Newton {
 pub(super) fn softens(it: &mut Iteration<'_>) -> bool {
     // Without a displacement it is not a number: nothing softens.
     softening(it) > MAX_SOFTENING
+}
+
+/// Returns `true` if a displacement is so much larger than that of linear theory, whose norm is `linear`, m, that the body
+/// may have softened.
+pub(super) fn grows(state: &State, linear: f64) -> bool {
+    size(&state.displacement) > MAX_GROWTH * linear
 }
 
 /// Returns the Euclidean norm of a displacement, m.

@@ -11,11 +11,11 @@ use nalgebra::Vector2;
 use super::Workspace;
 use super::iteration::{assemble, measure};
 use crate::assembly::{Forces, Kinematics, Problem};
-use crate::continuation::{Continuation, Critical, CriticalMode, Equations, PathFailure, PathPoint};
+use crate::continuation::{Continuation, ContinuationPoint, Critical, CriticalMode, PathEquations, PathFailure};
 use crate::element::Tangent;
 use crate::format::engineering;
 use crate::sentence::{Sentence, displayed, sentence};
-use crate::state::{State, largest};
+use crate::state::{State, largest_distance};
 use crate::timings::{Timings, timed};
 
 /// Equations of a body at rest under a growing load.
@@ -73,7 +73,7 @@ impl StaticEquations<'_> {
     }
 }
 
-impl Equations for StaticEquations<'_> {
+impl PathEquations for StaticEquations<'_> {
     type State = State;
 
     fn unknowns(&self) -> usize {
@@ -200,6 +200,19 @@ pub struct Bifurcation {
 
 displayed!(Jump, Bifurcation);
 
+impl Jump {
+    /// Returns the jump from a limit point to a state, if one is known.
+    pub(super) fn from(
+        limit: &ContinuationPoint<State>,
+        to: Option<&State>,
+        is_on_path: bool,
+        problem: &Problem,
+    ) -> Self {
+        let distance = to.map(|to| largest_distance(&limit.state.displacement, &to.displacement));
+        Self { factor: limit.factor, distance, is_on_path, drive: Drive::of(problem) }
+    }
+}
+
 impl From<&Jump> for Sentence {
     fn from(jump: &Jump) -> Self {
         let (percent, drive) = (percent(jump.factor), &jump.drive);
@@ -280,11 +293,11 @@ pub enum PathEndReason {
     Interrupted,
 }
 
-/// Piece of a path between two points of it.
+/// PathPiece of a path between two points of it.
 #[derive(Clone, Debug)]
-struct Piece {
-    from: PathPoint<State>,
-    to: PathPoint<State>,
+struct PathPiece {
+    from: ContinuationPoint<State>,
+    to: ContinuationPoint<State>,
 }
 
 /// Follower of the path from rest.
@@ -292,24 +305,24 @@ struct Piece {
 pub(crate) struct PathFollower {
     path: Continuation<State>,
     /// Pieces of the last step that were not searched for the goal.
-    pieces: Vec<Piece>,
+    pieces: Vec<PathPiece>,
     /// Limit point from which the body has jumped, until the path is stable again at its load.
-    limit: Option<PathPoint<State>>,
+    limit: Option<ContinuationPoint<State>>,
     /// First stable state beyond the first limit point, at its load.
-    landing: Option<PathPoint<State>>,
+    landing: Option<ContinuationPoint<State>>,
     /// Last point before the last bifurcation.
-    crossing: Option<PathPoint<State>>,
+    crossing: Option<ContinuationPoint<State>>,
     /// Number of unstable modes that the path has got at bifurcations.
     unstable_modes: usize,
     /// Number of linearizations since the limit point.
     since_limit: u32,
     /// Last equilibrium without other unstable modes than those of bifurcations.
-    last: PathPoint<State>,
+    last: ContinuationPoint<State>,
     /// `true` while the energy descends from the limit point.
     descends: bool,
     descent_steps: u32,
     /// Critical points so far.
-    pub events: PathEvents,
+    events: PathEvents,
     /// Number of steps so far.
     pub steps: u32,
 }
@@ -373,44 +386,50 @@ impl PathFollower {
     }
 
     /// Returns the last point of the path.
-    pub fn current(&self) -> &PathPoint<State> {
+    pub fn current(&self) -> &ContinuationPoint<State> {
         self.path.point()
     }
 
     /// Returns the last point before the last bifurcation.
-    pub fn crossing(&self) -> Option<&PathPoint<State>> {
+    pub fn crossing(&self) -> Option<&ContinuationPoint<State>> {
         self.crossing.as_ref()
     }
 
     /// Returns the limit point that the path is beyond, if it has not yet returned to its load.
-    pub fn limit(&self) -> Option<&PathPoint<State>> {
+    pub fn limit(&self) -> Option<&ContinuationPoint<State>> {
         self.limit.as_ref()
     }
 
     /// Returns the first stable state beyond the first limit point, at its load, if it is on the path.
-    pub fn landing(&self) -> Option<&PathPoint<State>> {
+    pub fn landing(&self) -> Option<&ContinuationPoint<State>> {
         self.landing.as_ref()
     }
 
-    /// Returns `true` while the path is beyond a limit point, and has not yet returned to its load.
-    pub fn is_off(&self) -> bool {
-        self.limit.is_some()
+    /// Returns the critical points so far.
+    pub fn events(&self) -> &PathEvents {
+        &self.events
+    }
+
+    /// Takes the critical points up to the full load, which the last step may have passed.
+    pub fn take_events(&mut self) -> PathEvents {
+        self.events.bifurcations.retain(|bifurcation| bifurcation.factor <= 1.0);
+        std::mem::take(&mut self.events)
     }
 
     /// Returns the point at load factor `goal` between two points of a path; `None` if none is found.
     pub fn between(
         equations: &mut StaticEquations<'_>,
-        from: &PathPoint<State>,
-        to: &PathPoint<State>,
+        from: &ContinuationPoint<State>,
+        to: &ContinuationPoint<State>,
         goal: f64,
-    ) -> Option<PathPoint<State>> {
+    ) -> Option<ContinuationPoint<State>> {
         let mut path =
             Continuation::start(equations, from.state.clone(), from.factor, unit(equations.problem), u32::MAX)?;
         path.between(equations, from, to, goal)
     }
 
     /// Returns the last equilibrium without unstable modes but those of bifurcations.
-    pub fn last(&self) -> &PathPoint<State> {
+    pub fn last(&self) -> &ContinuationPoint<State> {
         &self.last
     }
 
@@ -438,7 +457,7 @@ impl PathFollower {
             Err(PathFailure::Limit) => return PathProgress::Ended(PathEndReason::Solves(solves)),
             Err(PathFailure::Stuck) if self.limit.is_some() => return self.start_descent(),
             Err(PathFailure::Stuck) => return PathProgress::Ended(PathEndReason::NoEquilibrium),
-            Ok(None) => self.pieces.push(Piece { from, to }),
+            Ok(None) => self.pieces.push(PathPiece { from, to }),
             Ok(Some((Critical::Bifurcation(modes), crossing))) => {
                 if self.limit.is_none() {
                     // The smallest load factor beyond it.
@@ -449,7 +468,7 @@ impl PathFollower {
                 }
                 let change = modes[1] as isize - modes[0] as isize;
                 self.unstable_modes = self.unstable_modes.saturating_add_signed(change);
-                self.pieces.push(Piece { from, to });
+                self.pieces.push(PathPiece { from, to });
             }
             Ok(Some((Critical::Limit, limit))) => {
                 if self.limit.is_none() && from.slope > 0.0 {
@@ -457,8 +476,8 @@ impl PathFollower {
                     self.limit = Some(limit.clone());
                     self.last = limit.clone();
                 }
-                self.pieces.push(Piece { from, to: limit.clone() });
-                self.pieces.push(Piece { from: limit, to });
+                self.pieces.push(PathPiece { from, to: limit.clone() });
+                self.pieces.push(PathPiece { from: limit, to });
             }
         }
         let leaves = self.path.point().factor < LOWEST_FACTOR * goal.max(1e-3) || self.since_limit > MAX_RETURN;
@@ -470,9 +489,9 @@ impl PathFollower {
 
     /// Searches a piece of the path for the state at `goal`, and for the state in which a jump ends; returns `true` if the
     /// former is found.
-    fn search(&mut self, equations: &mut StaticEquations<'_>, piece: &Piece, goal: f64) -> bool {
+    fn search(&mut self, equations: &mut StaticEquations<'_>, piece: &PathPiece, goal: f64) -> bool {
         let rises = piece.from.factor < piece.to.factor;
-        let stable = |p: &PathPoint<State>| p.modes == self.unstable_modes;
+        let stable = |p: &ContinuationPoint<State>| p.modes == self.unstable_modes;
         if !rises || !(stable(&piece.from) || stable(&piece.to)) {
             return false;
         }
@@ -481,9 +500,7 @@ impl PathFollower {
         {
             let is_start = piece.to.factor == limit.factor;
             if !is_start && let Some(landing) = self.path.between(equations, &piece.from, &piece.to, limit.factor) {
-                let distance = distance(&limit.state, &landing.state);
-                let drive = Drive::of(equations.problem);
-                let jump = Jump { factor: limit.factor, distance: Some(distance), is_on_path: true, drive };
+                let jump = Jump::from(&limit, Some(&landing.state), true, equations.problem);
                 self.events.jump.get_or_insert(jump);
                 self.limit = None;
                 self.landing.get_or_insert(landing.clone());
@@ -505,7 +522,7 @@ impl PathFollower {
         PathProgress::Continue
     }
 
-    /// Takes a step of the descent of the energy at the goal's load.
+    /// Descends the energy at the goal's load from the limit point.
     fn descend(&mut self, equations: &mut StaticEquations<'_>, goal: f64, solves: u32) -> PathProgress {
         let mut state = self.last.state.clone();
         equations.advance(&mut state, &[], 0.0, goal);
@@ -520,7 +537,8 @@ impl PathFollower {
                 Descent::Stable => {
                     let Some(next) = Self::start_at(equations, state, goal) else { break };
                     if let Some(limit) = &self.limit {
-                        self.events.jump.get_or_insert(jump_off(equations.problem, limit, &next.last.state));
+                        let jump = Jump::from(limit, Some(&next.last.state), false, equations.problem);
+                        self.events.jump.get_or_insert(jump);
                     }
                     *self = Self {
                         events: std::mem::take(&mut self.events),
@@ -534,9 +552,7 @@ impl PathFollower {
             }
         }
         if let Some(limit) = &self.limit {
-            let drive = Drive::of(equations.problem);
-            let jump = Jump { factor: limit.factor, distance: None, is_on_path: false, drive };
-            self.events.jump.get_or_insert(jump);
+            self.events.jump.get_or_insert(Jump::from(limit, None, false, equations.problem));
         }
         PathProgress::Ended(PathEndReason::NoEquilibrium)
     }
@@ -546,18 +562,6 @@ impl PathFollower {
 /// body's size, at which slender bodies deform nonlinearly.
 fn unit(problem: &Problem) -> f64 {
     0.1 * problem.system().size()
-}
-
-/// Returns the jump from a limit point to a state that is not on the path.
-pub(super) fn jump_off(problem: &Problem, limit: &PathPoint<State>, state: &State) -> Jump {
-    let distance = Some(distance(&limit.state, state));
-    Jump { factor: limit.factor, distance, is_on_path: false, drive: Drive::of(problem) }
-}
-
-/// Returns the largest distance of a node between two states, m.
-fn distance(a: &State, b: &State) -> f64 {
-    let between: Vec<Vector2<f64>> = a.displacement.iter().zip(&b.displacement).map(|(a, b)| b - a).collect();
-    largest(&between)
 }
 
 /// Result of a step of a descent.

@@ -34,17 +34,18 @@ pub(super) struct Search {
     last_iteration: Timings,
     /// Figures of the method, if the iterations were made by another instance of the search.
     figures: Option<Figures>,
+    /// Critical points of the path, in the same case.
+    path_events: Option<PathEvents>,
 }
 
 /// Figures that a method computes for display.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Figures {
     kinematics: Kinematics,
     load_factor: f64,
     load_steps: u32,
     step_ratio: Option<f64>,
     auto_report: Option<AutoReport>,
-    path_events: Option<PathEvents>,
 }
 
 /// State and results of a search, as data that can be sent to another instance of it.
@@ -62,6 +63,7 @@ pub struct Found {
     timings: Timings,
     last_iteration: Timings,
     figures: Figures,
+    path_events: Option<PathEvents>,
 }
 
 fn tolerances(settings: &SolverSettings) -> Tolerances {
@@ -93,6 +95,7 @@ impl Search {
             timings: Timings::default(),
             last_iteration: Timings::default(),
             figures: None,
+            path_events: None,
         }
     }
 
@@ -107,6 +110,7 @@ impl Search {
         search.timings = found.timings;
         search.last_iteration = found.last_iteration;
         search.figures = Some(found.figures);
+        search.path_events = found.path_events;
         (search, found.state)
     }
 
@@ -124,7 +128,8 @@ impl Search {
             certificate: self.certificate,
             timings: self.timings,
             last_iteration: self.last_iteration,
-            figures: self.figures.clone(),
+            figures: self.figures,
+            path_events: self.path_events.clone(),
         }
     }
 
@@ -141,17 +146,17 @@ impl Search {
             timings: self.timings,
             last_iteration: self.last_iteration,
             figures: self.figures(),
+            path_events: self.path_events(),
         }
     }
 
     fn figures(&self) -> Figures {
-        self.figures.clone().unwrap_or_else(|| Figures {
+        self.figures.unwrap_or_else(|| Figures {
             kinematics: self.method.kinematics(),
             load_factor: self.method.load_factor(),
             load_steps: self.method.load_steps(),
             step_ratio: self.method.step_ratio(),
             auto_report: self.method.report(),
-            path_events: self.method.path_events(),
         })
     }
 
@@ -424,7 +429,11 @@ impl Search {
 
     /// Returns the critical points of the path from rest, if it is known to lead to the result.
     pub fn path_events(&self) -> Option<PathEvents> {
-        self.figures().path_events.filter(|_| self.status.is_success())
+        let events = match self.figures {
+            Some(_) => self.path_events.clone(),
+            None => self.method.path_events(),
+        };
+        events.filter(|_| self.status.is_success())
     }
 
     pub fn status(&self) -> &Status {

@@ -17,7 +17,7 @@ use crate::method::{Workspace, is_stable};
 use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
 use crate::sentence::sentence;
 use crate::simulation::{Deformation, Simulation, SimulationError, Status};
-use crate::state::largest;
+use crate::state::{largest, largest_distance};
 
 /// Cost allowed for a reference solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -108,7 +108,7 @@ const LEAST_MESHES: usize = 3;
 /// Distance between two mesh lines, relative to the cell size in the other direction, below which they are merged.
 const NARROWEST: f64 = 1e-4;
 /// Iteration limit of Newton's method per mesh.
-const MOST_ITERATIONS: u32 = 1000;
+const MAX_ITERATIONS: u32 = 1000;
 /// Tolerance of the solutions.
 const TOLERANCE: f64 = 1e-11;
 
@@ -126,7 +126,7 @@ pub(super) fn fine(
     let mut scene = scene.clone();
     scene.set_element(element(&scene));
     scene.solver.method = MethodKind::Newton;
-    scene.solver.max_iterations = MOST_ITERATIONS;
+    scene.solver.max_iterations = MAX_ITERATIONS;
     scene.solver.accept_after = 0;
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
@@ -200,8 +200,7 @@ fn is_far(start: &[Vector2<f64>], simulation: &Simulation) -> bool {
     /// Distance relative to the largest displacement.
     const FAR: f64 = 0.03;
     let u = simulation.displacement();
-    let distance = start.iter().zip(u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-    distance > FAR * largest(u).max(largest(start))
+    largest_distance(start, u) > FAR * largest(u).max(largest(start))
 }
 
 /// Returns `true` if the equilibrium is stable; descent of the energy may end in an unstable one.

@@ -73,7 +73,7 @@ const LARGEST_FACTOR: f64 = 1.25;
 /// Number of samples: enough for a smooth line and for limits accurate to a percent of their load.
 const SAMPLES: u32 = 50;
 /// Number of samples below a limit of linear theory with which its load is interpolated between them.
-const FEWEST_BELOW: usize = 10;
+const MIN_BELOW: usize = 10;
 /// Largest number of times that the first part of the samples is sampled again.
 const MAX_ZOOMS: u32 = 4;
 /// Error limits of linear theory, percent; the article states that it is good to 3–5 %.
@@ -108,7 +108,7 @@ impl LoadCurve {
             // Linear theory may fail in the first part of the samples: these are sampled again.
             for _ in 0..MAX_ZOOMS {
                 let first = samples.iter().skip(1).position(|s| s.linear_error_percent() > percent)?;
-                let Some(end) = samples.get(first + 1).filter(|_| first < FEWEST_BELOW) else { break };
+                let Some(end) = samples.get(first + 1).filter(|_| first < MIN_BELOW) else { break };
                 samples = sampled(end.factor);
             }
             Some(samples)

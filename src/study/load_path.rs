@@ -6,16 +6,15 @@ use std::ops::ControlFlow;
 use nalgebra::Vector2;
 
 use crate::assembly::{Forces, Kinematics, Problem};
-use crate::continuation::PathPoint;
+use crate::continuation::ContinuationPoint;
 use crate::format::engineering;
 use crate::method::{
-    Bifurcation, Drive, Jump, PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations, Workspace,
-    support_stiffness,
+    Bifurcation, Drive, Jump, PathEndReason, PathFollower, PathProgress, StaticEquations, Workspace, support_stiffness,
 };
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status, SupportReaction, supports_power};
-use crate::state::{State, largest};
+use crate::state::{State, largest, largest_distance};
 use crate::timings::Timings;
 
 /// Equilibrium on the path.
@@ -91,9 +90,9 @@ impl From<&Elsewhere> for Sentence {
 }
 
 impl PathSummary {
-    fn of(events: &PathEvents) -> Self {
-        let buckling = events.bifurcations.iter().find(|b| b.unstable_modes[0] == 0).copied();
-        Self { jump: events.jump, buckling, ..Self::default() }
+    fn of(jump: Option<Jump>, bifurcations: &[Bifurcation]) -> Self {
+        let buckling = bifurcations.iter().find(|b| b.unstable_modes[0] == 0).copied();
+        Self { jump, buckling, ..Self::default() }
     }
 
     /// Describes jump, buckling and another end, one sentence each.
@@ -116,7 +115,7 @@ impl PathFromRest {
     /// Compares a result, a displacement in m, with the end of the path.
     #[must_use]
     pub fn to(&self, result: &[Vector2<f64>]) -> PathSummary {
-        let distance = distance(&self.end, result);
+        let distance = largest_distance(&self.end, result);
         let is_elsewhere = distance > SAME * largest(&self.end).max(largest(result));
         PathSummary { elsewhere: is_elsewhere.then_some(Elsewhere { distance }), ..self.summary }
     }
@@ -168,7 +167,8 @@ impl LoadPath {
     /// Follows as [`Self::of`] with progress reports; a cancelled path ends early.
     #[must_use]
     pub fn follow(scene: &Scene, observe: PathObserver<'_>) -> Option<Self> {
-        Tracer::new(scene)?.trace(DRAWN, observe)
+        let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
+        Tracer::new(&simulation)?.trace(DRAWN, observe)
     }
 
     /// Compares a result with the end of the load path from rest, and summarizes the path; `None` for a motion, linear
@@ -181,12 +181,12 @@ impl LoadPath {
         }
         let is_small = simulation.system().dofs() <= MAX_UNKNOWNS;
         let mut summary = match search.path_events() {
-            Some(events) => PathSummary::of(&events),
+            Some(events) => PathSummary::of(events.jump, &events.bifurcations),
             None if is_small => Self::end_of(simulation)?.to(simulation.displacement()),
             None => return None,
         };
         if is_small && summary.elsewhere.is_none() && simulation.problem().supports().move_the_body() {
-            let path = Tracer::new(simulation.scene()).and_then(|tracer| tracer.trace(INTEGRATED, observe));
+            let path = Tracer::new(simulation).and_then(|tracer| tracer.trace(INTEGRATED, observe));
             summary.supports_work = path.filter(|path| path.end.is_none()).map(|path| path.supports_work);
         }
         Some(summary)
@@ -204,7 +204,8 @@ impl LoadPath {
             return None;
         }
         let events = follower.equilibrium()?.path_events()?;
-        Some(PathFromRest { summary: PathSummary::of(&events), end: follower.displacement().to_vec() })
+        let summary = PathSummary::of(events.jump, &events.bifurcations);
+        Some(PathFromRest { summary, end: follower.displacement().to_vec() })
     }
 
     /// Follows the load path of a scene to its end; `None` if the path cannot be followed, or the model is too large.
@@ -217,12 +218,8 @@ impl LoadPath {
     /// Summarizes the path.
     #[must_use]
     pub fn summary(&self) -> PathSummary {
-        PathSummary {
-            jump: self.jump,
-            buckling: self.bifurcations.iter().find(|b| b.unstable_modes[0] == 0).copied(),
-            supports_work: self.end.is_none().then_some(self.supports_work),
-            elsewhere: None,
-        }
+        let supports_work = self.end.is_none().then_some(self.supports_work);
+        PathSummary { supports_work, ..PathSummary::of(self.jump, &self.bifurcations) }
     }
 
     /// Returns the motion of the moving support at a state: its displacement, m, or its rotation, rad, if it only
@@ -242,11 +239,6 @@ fn can_be_followed(scene: &Scene) -> bool {
     scene.analysis == Analysis::Static && scene.solver.method != MethodKind::Linear
 }
 
-/// Returns the largest distance of a node between two displacements, m.
-fn distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
-}
-
 /// Records the states of a path.
 struct Tracer {
     name: String,
@@ -262,13 +254,13 @@ struct Tracer {
     reached: f64,
     work: f64,
     /// Last equilibrium, and its stability under force control.
-    last: Option<(PathPoint<State>, Option<bool>)>,
+    last: Option<(ContinuationPoint<State>, Option<bool>)>,
 }
 
 impl Tracer {
-    fn new(scene: &Scene) -> Option<Self> {
-        let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
-        let problem = simulation.problem().clone();
+    /// Returns a recorder of the path of a simulation's scene, on its mesh.
+    fn new(simulation: &Simulation) -> Option<Self> {
+        let (scene, problem) = (simulation.scene(), simulation.problem().clone());
         Some(Self {
             name: scene.name.clone(),
             driven: scene.supports.iter().position(Support::moves),
@@ -288,6 +280,8 @@ impl Tracer {
         let mut follower = PathFollower::start(&mut self.equations())?.locating_all();
         self.record(follower.last().clone(), true);
         let (mut end, mut states_before_jump, mut bifurcations) = (None, None, 0);
+        // Critical point of the last step: the goals before it are found after the step.
+        let mut critical: Option<ContinuationPoint<State>> = None;
         let mut goals = (1..=count).map(|i| f64::from(i) / f64::from(count));
         let mut goal = goals.next();
         while let Some(to) = goal {
@@ -295,19 +289,22 @@ impl Tracer {
                 end = Some(PathEndReason::Interrupted);
                 break;
             }
-            let had_jumped = follower.is_off();
+            let had_jumped = follower.limit().is_some();
             let progress = follower.advance(&mut self.equations(), to, MAX_SOLVES);
-            let found = follower.events.bifurcations.len();
+            let is_before = matches!(progress, PathProgress::Reached)
+                && critical.as_ref().is_some_and(|critical| follower.last().factor < critical.factor);
+            if let Some(critical) = critical.take_if(|_| !is_before) {
+                self.record(critical, true);
+            }
+            let found = follower.events().bifurcations.len();
             if found > bifurcations {
                 bifurcations = found;
-                if let Some(crossing) = follower.crossing().cloned() {
-                    self.record(crossing, true);
-                }
+                critical = follower.crossing().cloned();
             }
-            if follower.is_off() && !had_jumped {
-                self.record(follower.last().clone(), true);
+            if !had_jumped {
+                critical = follower.limit().cloned().or(critical);
             }
-            if states_before_jump.is_none() && follower.events.jump.is_some_and(|jump| jump.distance.is_some()) {
+            if states_before_jump.is_none() && follower.events().jump.is_some_and(|jump| jump.distance.is_some()) {
                 states_before_jump = Some(self.path.len());
                 // No support moves in a jump.
                 if let Some(landing) = follower.landing() {
@@ -318,7 +315,7 @@ impl Tracer {
                 PathProgress::Continue => {
                     // The end of the piece of the path that was searched last.
                     let last = follower.last();
-                    if self.driven.is_some() && !follower.is_off() && last.factor > self.reached {
+                    if self.driven.is_some() && follower.limit().is_none() && last.factor > self.reached {
                         self.visit(&last.clone(), true);
                     }
                 }
@@ -332,8 +329,7 @@ impl Tracer {
                 }
             }
         }
-        // The last step may have passed the full load.
-        follower.events.bifurcations.retain(|bifurcation| bifurcation.factor <= 1.0);
+        let events = follower.take_events();
         let factor = follower.last().factor;
         if end.is_some() && self.path.last().is_some_and(|state| state.factor < factor) {
             self.record(follower.last().clone(), true);
@@ -341,9 +337,9 @@ impl Tracer {
         Some(LoadPath {
             scene: self.name,
             states: self.path,
-            jump: follower.events.jump,
+            jump: events.jump,
             states_before_jump,
-            bifurcations: follower.events.bifurcations,
+            bifurcations: events.bifurcations,
             driven: self.driven,
             supports_work: self.work,
             end: end.map(|reason| PathEnd { factor, reason, drive: Drive::of(&self.problem) }),
@@ -357,14 +353,14 @@ impl Tracer {
     /// Adds an equilibrium to the states; before it the state in which the reaction of the moving support is largest, if
     /// the body loses or regains its stability under force control in between. `works` if the supports do work on the
     /// way to it.
-    fn record(&mut self, point: PathPoint<State>, works: bool) {
+    fn record(&mut self, point: ContinuationPoint<State>, works: bool) {
         self.visit(&point, works);
         self.push(&point);
     }
 
     /// Integrates the work of moving supports to an equilibrium, and records the change of stability under force control
     /// on the way to it.
-    fn visit(&mut self, point: &PathPoint<State>, works: bool) {
+    fn visit(&mut self, point: &ContinuationPoint<State>, works: bool) {
         let stable = self.is_stable(point);
         if let Some((last, Some(before))) = self.last.take()
             && works
@@ -381,7 +377,7 @@ impl Tracer {
     }
 
     /// Integrates the work of moving supports to a state beyond the last one.
-    fn integrate(&mut self, point: &PathPoint<State>, works: bool) {
+    fn integrate(&mut self, point: &ContinuationPoint<State>, works: bool) {
         if self.driven.is_none() {
             return;
         }
@@ -393,7 +389,7 @@ impl Tracer {
         (self.power, self.reached) = (power, point.factor);
     }
 
-    fn push(&mut self, point: &PathPoint<State>) {
+    fn push(&mut self, point: &ContinuationPoint<State>) {
         let reactions = self.reactions(point);
         let probes = self.problem.probes().iter().map(|p| p.mean(&point.state.displacement)).collect();
         let stable = self.last.as_ref().and_then(|(_, stable)| *stable);
@@ -401,7 +397,7 @@ impl Tracer {
     }
 
     /// Returns `true` if a state is stable under force control.
-    fn is_stable(&mut self, point: &PathPoint<State>) -> Option<bool> {
+    fn is_stable(&mut self, point: &ContinuationPoint<State>) -> Option<bool> {
         if point.modes > 0 || self.driven.is_none() {
             return Some(point.modes == 0);
         }
@@ -412,10 +408,10 @@ impl Tracer {
     /// Returns the last or first state, between two others, that is stable under force control, by bisection.
     fn limit_under_force(
         &mut self,
-        from: &PathPoint<State>,
+        from: &ContinuationPoint<State>,
         stable: bool,
-        to: &PathPoint<State>,
-    ) -> Option<PathPoint<State>> {
+        to: &ContinuationPoint<State>,
+    ) -> Option<ContinuationPoint<State>> {
         /// Number of bisections; the reaction is stationary there, so that its error is about the square of 2⁻¹⁰.
         const BISECTIONS: u32 = 10;
         let (mut low, mut high) = (from.clone(), to.clone());
@@ -428,7 +424,7 @@ impl Tracer {
         Some(if stable { low } else { high })
     }
 
-    fn reactions(&mut self, point: &PathPoint<State>) -> Vec<SupportReaction> {
+    fn reactions(&mut self, point: &ContinuationPoint<State>) -> Vec<SupportReaction> {
         use Kinematics::Corotated;
         self.problem.linearize(&point.state, &mut self.forces, None);
         self.problem.balance(&point.state, Corotated, point.factor, &mut self.forces);

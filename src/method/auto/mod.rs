@@ -12,7 +12,7 @@
 use nalgebra::Vector2;
 
 use self::expansion::{Expansion, relative_size, solve_nodal};
-use super::newton::{Newton, size, softens};
+use super::newton::{Newton, grows, size, softens};
 use super::status::{LONGEST_STEP, StepLengths, farthest};
 use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, PathEvents, Restart, Verdict};
 use crate::assembly::{Forces, Kinematics};
@@ -55,9 +55,7 @@ const NEAR: f64 = 0.05;
 /// Number of steps after which load stepping takes over; near a solution three or four steps suffice.
 const MAX_STEPS: u32 = 15;
 /// Smallest resultant of the loads, relative to their norm, that is more than rounding error.
-const RESULTANT: f64 = 1e-9;
-/// Largest displacement, relative to that of linear theory, of a body that does not soften.
-const MAX_GROWTH: f64 = 1.1;
+const MIN_RESULTANT: f64 = 1e-9;
 
 /// Factorized tangent and its observed convergence.
 #[derive(Debug)]
@@ -223,7 +221,7 @@ impl Auto {
         let all = pattern.norm(external);
         // Loads without a resultant, as a moment, leave nothing to compare with.
         let resultant = total(external);
-        resultant <= RESULTANT * all || total(residual) <= tolerance * resultant
+        resultant <= MIN_RESULTANT * all || total(residual) <= tolerance * resultant
     }
 
     /// Starts load stepping from rest.
@@ -334,7 +332,7 @@ impl Method for Auto {
             return iterated;
         }
         if self.steps == 1 {
-            self.from_rest = it.state.displacement.iter().all(|u| *u == Vector2::zeros());
+            self.from_rest = it.is_at_rest();
             if self.from_rest {
                 it.workspace.trial.copy_from(it.state);
             }
@@ -392,7 +390,7 @@ impl Method for Auto {
         let done = within || it.residual <= it.tolerances.residual;
         match &self.tangent {
             Some(tangent) if done => {
-                let grows = self.from_rest && size(&it.state.displacement) > MAX_GROWTH * self.linear_size;
+                let grows = self.from_rest && grows(it.state, self.linear_size);
                 if tangent.definite && !grows { self.accept(it) } else { self.start_load_steps(it.state) }
             }
             Some(tangent) if self.from_rest && !tangent.definite => self.start_load_steps(it.state),
